@@ -29,6 +29,7 @@ from bem.grid.adhering import NODES, AdheringIndenter, adhesive_length, largest_
 from bem.grid.discs import disc_of, refuse_unresolved
 from bem.grid.operators import grid_operator, pressed
 from bem.grid.pressed import FIRST_CELLS, Pressing
+from bem.kernels.moduli import contact_modulus
 from contact import (
     ContactPath,
     CriticalPoint,
@@ -155,7 +156,7 @@ class CellGrid:
 
     def force(self, state: CellState) -> float:
         """F_N [N]."""
-        return 4.0 * self.scene.layer.contact_modulus * self.size**2 * float(state.pressure.sum())
+        return 4.0 * contact_modulus(self.scene.layer) * self.size**2 * float(state.pressure.sum())
 
     def columns(self, states: list[CellState]) -> FloatArray:
         """Radius, depth and force, shape (3, n)."""

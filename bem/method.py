@@ -24,6 +24,7 @@ from bem.grid.discs import Unresolved, disc_of, refuse_unresolved
 from bem.grid.fields import ContactFields, NoContact, displacement_difference, pressure_difference
 from bem.grid.operators import Boundary
 from bem.grid.pressed import LEAST_CELLS, Equilibrium, Prescribed, Pressing, equilibrium, refuse_falling
+from bem.kernels.moduli import contact_modulus
 from contact import (
     Adhesion,
     ContactPath,
@@ -244,7 +245,7 @@ class _Solving:
     def pressed(self) -> ContactPath:
         """Contacts without adhesion."""
         loading, fine = self.scene.loading, self._pressing
-        prescribed, modulus = PRESCRIBED[type(loading)], self.scene.layer.contact_modulus
+        prescribed, modulus = PRESCRIBED[type(loading)], contact_modulus(self.scene.layer)
         values = loading.values / (modulus if prescribed == "load" else 1.0)  # type: ignore[attr-defined]
         pairs: list[tuple[Equilibrium, Equilibrium]] = []
         with self.log.stage("contact"):
@@ -408,7 +409,7 @@ class _Solving:
     ) -> ContactFields | NoContact:
         if radius == 0.0:
             return NoContact()
-        load = force / self.scene.layer.contact_modulus
+        load = force / contact_modulus(self.scene.layer)
         edge, punch = edge_density(self.scene, radius), pressing.punch(radius)
         if radius == self.scene.indenter.flat_radius:
             # The rim holds the front: its density is what the contact bears, not what adhesion could.

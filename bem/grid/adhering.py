@@ -16,6 +16,7 @@ from numpy.polynomial import chebyshev as series
 
 from bem.branch import FORCE, Branch
 from bem.grid.pressed import FIRST_CELLS, Pressing, Punches
+from bem.kernels.moduli import contact_modulus
 from contact import Adhesion, Detachment, FlatPunch, InvalidInput, Scene
 from contact.records.validation import FloatArray
 from contact.scene.extent import radius_of_elongation
@@ -109,16 +110,16 @@ class AdheringIndenter:
     def equilibria(self, radius: FloatArray) -> FloatArray:
         """Depth [m] and force [N] at radii [m], shape (2, n)."""
         stiffness, moment, depth = self._pressed(radius)
-        return np.stack([depth, self.pressing.layer.contact_modulus * (stiffness * depth - moment)])
+        return np.stack([depth, contact_modulus(self.pressing.layer) * (stiffness * depth - moment)])
 
     def stiffness(self, radius: FloatArray) -> FloatArray:
         """k_N [N/m]."""
-        return np.asarray(self.pressing.layer.contact_modulus * self._pressed(radius)[0])
+        return np.asarray(contact_modulus(self.pressing.layer) * self._pressed(radius)[0])
 
     def force(self, radius: float, depth: float) -> float:
         """F [N] at a depth [m] with this contact, in equilibrium or not."""
         stiffness, moment, _ = self._pressed(np.array([radius]))
-        return float(self.pressing.layer.contact_modulus * (stiffness * depth - moment)[0])
+        return float(contact_modulus(self.pressing.layer) * (stiffness * depth - moment)[0])
 
     def _pressed(self, radius: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """k [m], M [m^2] and delta [m]."""
@@ -130,7 +131,7 @@ class AdheringIndenter:
 def adhesive_length(scene: Scene) -> float:
     """dgamma/E* [m]."""
     adhesion = scene.effect(Adhesion)
-    return 0.0 if adhesion is None else adhesion.work_of_adhesion / scene.layer.contact_modulus
+    return 0.0 if adhesion is None else adhesion.work_of_adhesion / contact_modulus(scene.layer)
 
 
 def edge_density(scene: Scene, radius: float) -> float:

@@ -16,13 +16,13 @@ class TableCoefficients:
     pressure_floor: float = 4e-7
     # Added to the errors of k_bar, which is stationary at the solution: the influence of cells is computed to that.
     stiffness_floor: float = 1e-9
-    # Share of the difference to the table of half as many cells that counts as error. Second order makes it 1/3, and
-    # it counts in full.
-    half_share: float = 1.0
+    # Share of the difference to the table of half as many cells that counts as error, the safety of all stated errors.
+    # With half of it the stiffness of a sphere near its equator is up to 2.8 times beyond.
+    half_share: float = 2.0
     # Share of the difference of the tables of half and a quarter as many cells, for where the finer two agree by
     # accident: between what second order makes of it, 1/12, and first order, 1/2. Of the difference to the finest table
     # a quarter was too little where that passes zero, too: beside a sphere's equator (64 cells, 2026-11-26).
-    quarter_share: float = 0.4
+    quarter_share: float = 0.8
     # Times the share of the difference to fewer cells that the mean square distances of both discs leave of it in k_bar
     # (`from_grid._moment_error`), where the layer is many cells thick. That share itself was 0.8 to 1.3
     # of the true one (64 and 128 cells, nu = 0.3 and 1/2, a/h = 0.01 to 3, 2026-11-22).

@@ -12,6 +12,7 @@ from scipy.interpolate import PchipInterpolator
 
 from bem.grid.discs import EDGE_CELLS, Punch
 from bem.grid.influence import REACH, kernel_of, point_response
+from bem.kernels.moduli import contact_modulus
 from contact import ElasticLayer, Profile
 from contact.answer.one_circle import no_single_circle
 from contact.records.validation import FloatArray
@@ -60,7 +61,7 @@ class ContactFields:
         last = 1.0 - 0.5 / self.punch.disc.radius
         share = np.minimum(radius / self.radius, 1.0 if self.edge == 0.0 else last)
         root = np.sqrt(np.maximum((1.0 - share) * (1.0 + share), np.finfo(float).tiny))
-        p = self.layer.contact_modulus / (pi * self.radius) * self.over_half_space(share) / root
+        p = contact_modulus(self.layer) / (pi * self.radius) * self.over_half_space(share) / root
         return np.where((radius <= self.radius) & (share < 1.0), p, 0.0)
 
     def surface_displacement(self, radius: FloatArray) -> FloatArray:

@@ -300,7 +300,9 @@ def graded_pieces(indenter: Profile, excess: float, unit: float, widest: float, 
         ends.append(_towards_pole(start, pole))
         levels = SMOOTHER_LEVELS if start > 0 else LEVELS if indenter.flat_radius > 0 else TIP_LEVELS
         levels += (
-            max(int(np.ceil(np.log((stop - start) / pole) / -np.log(GRADING))), 0) if start > 0 and pole > 0 else 0
+            max(int(np.ceil(np.log((stop - start) / pole) / -np.log(GRADING))), 0)
+            if start > 0 and 0 < pole < np.inf
+            else 0
         )
         ends.append(start + (stop - start) * GRADING ** np.arange(levels, -1, -1.0))
     # Beside a distant point the smallest pieces round to nothing.

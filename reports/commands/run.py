@@ -71,7 +71,9 @@ def run(
         solved = [case for case in chosen if not methods or any(use.label in methods for use in case.methods)]
         cases = [only_methods(case, methods) for case in ((not names and solved) or chosen)]
     cases = [with_settings(case, asked) for case in cases]
-    options = dataclasses.replace(options, methods=tuple(dict.fromkeys(methods)), executor=by_name(executor))
+    options = dataclasses.replace(
+        options, methods=tuple(dict.fromkeys((*methods, *others))), executor=by_name(executor)
+    )
     studied = options.suite in USUAL_SUITES and not names and not methods
     with locked(options.out):
         result = _carried_out(cases, options, studied, quiet=quiet)

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from bem import Bem
 from contact import (
     Cone,
     ContactRadii,
@@ -60,7 +59,7 @@ ODD = {
 }
 
 
-@pytest.fixture(scope="module", params=[Mdr(), Bem(points=128)], ids=lambda method: method.name)
+@pytest.fixture(scope="module", params=[Mdr()], ids=lambda method: method.name)
 def on_a_layer(request):
     scene = Scene(layer=LAYER, indenter=TruncatedCone(flat_radius=0.3, slope=0.1), loading=ContactRadii([0.5, 1.0]))
     return request.param.solve(scene)

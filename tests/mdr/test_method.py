@@ -60,7 +60,7 @@ def smooth_rule(start, stop, count=200):
 
 def test_it_is_a_method():
     assert isinstance(Mdr(), Method)
-    assert Mdr().refined().flat_punch == IntegralEquation(panel_width=0.5)
+    assert Mdr().refined().flat_punch == IntegralEquation(nodes=28, panel_width=0.5)
 
 
 @pytest.mark.parametrize("layer", LAYERS)
