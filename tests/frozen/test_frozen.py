@@ -26,11 +26,11 @@ def test_every_kind_has_its_file():
 def test_frozen_answer_is_within_both_stated_errors(kind, entry):
     scene = scene_from_mapping(entry["scene"]).replace(beyond_small_strains=True)
     found = numbers_of(KINDS[kind], scene, entry)
-    wrong = [line for name, was in entry["numbers"].items() for line in _different(name, was, found)]
+    wrong = [line for name, was in entry["numbers"].items() for line in different(name, was, found)]
     assert not wrong, "\n".join(wrong)
 
 
-def _different(name, was, found):
+def different(name, was, found):
     """One line for each value that is further from the frozen one than both stated errors together."""
     if name not in found:
         yield f"{name}: no error is stated any more"

@@ -1,0 +1,135 @@
+"""The kernel 1 - chi of any layer as the equation of contact needs it, in units of the depth that sets its smoothness.
+
+Uniform layers and stacks: the unit is the thickness of the surface material; 1 - chi falls like exp(-2k), so it is
+rounding beyond k = 21. Graded layers: the unit is an eighth of the thickness; 1 - chi ~ c_1/k + c_2/k^2 + ..
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from typing import Any
+
+import numpy as np
+
+from bem.kernels.of_layer import UniformKernel, surface_kernel
+from bem.kernels.protocol import SurfaceKernel
+from bem.numerics import Octaves
+from contact.records.validation import FloatArray
+from contact.scene.elastic_layer import ElasticLayer
+
+# Units per thickness of a graded layer. With 4 wide contacts need more wave numbers, with 16 narrow ones do.
+_GRADED_UNITS = 8.0
+# Nodes per octave of the table of a graded kernel: 18 leave 1e-13, 9 leave 1e-7.
+_NODES = 18
+# Wave number over 1/thickness beyond which the tail's coefficients are fitted. Half of it leaves ten times the error of
+# the tail, twice of it loses their digits.
+_FAR = 80.0
+
+
+@dataclass(frozen=True)
+class ContactKernel:
+    """1 - chi at wave numbers k in units of 1/`unit(layer)`.
+
+    Attributes:
+        surface: Kernel of the layer in units of its own thickness; None for the half-space.
+    """
+
+    surface: SurfaceKernel | None
+
+    @property
+    def is_uniform(self) -> bool:
+        """Whether the layer is a half-space: 1 - chi = 0."""
+        return self.surface is None
+
+    @property
+    def is_single(self) -> bool:
+        """Whether it is a half-space or one layer on a rigid base: contacts of convex profiles never pull there."""
+        return self.surface is None or isinstance(self.surface, UniformKernel)
+
+    @property
+    def is_graded(self) -> bool:
+        """Whether 1 - chi falls like a power of k."""
+        return self.surface is not None and not self.surface.is_smooth
+
+    @property
+    def units(self) -> float:
+        """Units per thickness of the surface material."""
+        return _GRADED_UNITS if self.is_graded else 1.0
+
+    @property
+    def longest(self) -> float:
+        """Length beyond which chi has its limit for small k."""
+        return 1.0 if self.surface is None else self.units * self.surface.longest
+
+    def chi(self, k: FloatArray) -> FloatArray:
+        """chi at wave numbers k > 0, shape (n,)."""
+        if self.surface is None:
+            return np.ones_like(k)
+        return self._tabulated(k) if self.is_graded else np.asarray(self.surface.chi(k))
+
+    def one_minus_chi(self, k: FloatArray) -> FloatArray:
+        """1 - chi at wave numbers k > 0, shape (n,)."""
+        if self.surface is None:
+            return np.zeros_like(k)
+        return 1 - self._tabulated(k) if self.is_graded else np.asarray(self.surface.one_minus_chi(k))
+
+    @cached_property
+    def tail(self) -> tuple[float, ...]:
+        """c_1, c_2, .. of 1 - chi ~ sum c_j/k^j for large k; the first is known exactly, the others are fitted."""
+        if self.surface is None or not self.is_graded:
+            return ()
+        first = -self.surface.edge_slope
+        x = np.cos(np.linspace(0.0, np.pi / 2.4, 24)) / _FAR
+        rest = np.asarray(self.surface.one_minus_chi(1 / x)) - first * x
+        fitted = np.linalg.lstsq((x[:, None] * _FAR) ** np.arange(2, 12), rest, rcond=None)[0]
+        ours = np.array([first, *(fitted * _FAR ** np.arange(2.0, 12))[:4]]) * self.units ** -np.arange(1.0, 6)
+        return tuple(ours.tolist())
+
+    @cached_property
+    def _table(self) -> Octaves:
+        """chi/k, or chi where it does not vanish with k, over octaves of k times thickness."""
+        assert self.surface is not None
+        surface, power = self.surface, self._power
+        lowest = -2 - int(np.ceil(np.log2(surface.longest)))
+        return Octaves(lambda k, _: (surface.chi(k) / k**power)[:, None], lowest, _NODES)
+
+    @cached_property
+    def _power(self) -> int:
+        assert self.surface is not None
+        return int(np.isfinite(self.surface.zero_mode))
+
+    def _tabulated(self, k: FloatArray) -> FloatArray:
+        k = k * self.units
+        chi = np.empty_like(k)
+        for octave, index in self._table.groups(k):
+            chi[index] = k[index] ** self._power * self._table(k[index], octave)[:, 0]
+        return chi
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Without tables, which are made again where they are needed."""
+        return {"surface": self.surface}
+
+
+@lru_cache(maxsize=256)
+def _kernel(surface: SurfaceKernel) -> ContactKernel:
+    return ContactKernel(surface)
+
+
+def contact_kernel(layer: ElasticLayer) -> ContactKernel:
+    """The kernel of a layer; equal layers share one, with its tables.
+
+    Raises:
+        UnsupportedSceneError: If none is known of this kind of layer.
+    """
+    if layer.is_half_space:
+        return ContactKernel(None)
+    surface = surface_kernel(layer)
+    if isinstance(surface, UniformKernel) and surface.support == "unbonded":
+        surface = UniformKernel("unbonded", 0.0)  # nu has no influence on it
+    return _kernel(surface)
+
+
+def unit_of(layer: ElasticLayer) -> float:
+    """Length [m] in which the kernel of a layer counts; 1 m on the half-space."""
+    return 1.0 if layer.is_half_space else layer.surface.thickness / contact_kernel(layer).units

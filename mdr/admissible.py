@@ -1,0 +1,122 @@
+"""Whether an equilibrium is a contact: it presses everywhere, and the surface outside is touched nowhere.
+
+A stiff film on a soft base is pressed down by the rim of a flat end like a plate and lifts off in between. A profile
+with a hollow, or any profile on layers that soften downwards, may touch outside its circle. Both make every number
+computed for one full circle wrong, so they are refused.
+"""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+
+from contact import ElasticBase, ElasticLayer, LayerStack, Scene, UnsupportedSceneError
+from contact.answer.one_circle import Circle, never_touches_beside, refuse_touching
+from contact.records.validation import FloatArray
+from mdr.contact_surface import Surface
+
+# Radii between axis and edge at which the pressure is looked at, denser towards the edge. A film that pulls does so
+# over its thickness at least.
+_RADII = 40
+# Distances from the edge and from breaks of the profile, over the thickness of the surface material, where the pressure
+# is looked at as well.
+_DISTANCES = np.geomspace(0.02, 30.0, 14)
+# Breaks with such neighbourhoods; measured profiles have more, without sharp kinks.
+_MOST_BREAKS = 6
+# A contact pulls where its pressure is below minus this share of the mean. Roundings in the centre reach 1e-9.
+_LEAST_TENSION = 1e-7
+# Overlap outside, relative to the depth, that is an error of the displacement.
+_OVERLAP = 1e-9
+
+
+class PullingContact(UnsupportedSceneError):
+    """The surfaces would have to pull at each other inside the contact, and nothing lets them.
+
+    Args:
+        contact_radius: a [m].
+        radius: Where they pull most [m].
+        tension: How strongly [Pa].
+        mean: Mean pressure of the contact [Pa].
+    """
+
+    def __init__(self, contact_radius: float, radius: float, tension: float, mean: float) -> None:
+        self.contact_radius, self.radius, self.tension = contact_radius, radius, tension
+        share = tension / mean
+        super().__init__(
+            f"a full contact of radius {contact_radius:g} m would pull at r = {radius:g} m with {tension:.3g} Pa "
+            f"({share:.2g} of its mean pressure): the surface lifts off there, and the contact is no disc; use a "
+            "rounder indenter, a softer film or a stiffer base"
+        )
+
+
+def refuse_pulling(surface: Surface, force: float) -> None:
+    """Refuse a contact under a force [N] whose pressure is negative somewhere.
+
+    Raises:
+        PullingContact: With the contact radius, the place and the size of the largest tension.
+    """
+    a = surface.a
+    density = surface.density(a * np.linspace(0, 1, 81)[1:-1])
+    if surface.tip.is_convex and surface.edge >= 0 and (np.diff(density) <= 0).all() and density[-1] >= surface.edge:
+        return  # then p is an integral of positive terms
+    mean = force / (np.pi * a * a)
+    radius = _radii(surface)
+    pressure = surface.pressure(radius)
+    low = 1 + np.flatnonzero((pressure[1:-1] <= pressure[:-2]) & (pressure[1:-1] <= pressure[2:]))
+    low = low[pressure[low] < mean]
+    if low.size:  # dips are narrow beside a rim
+        share = np.arange(1.0, 6.0) / 6.0
+        gaps = (radius[low + 1] - radius[low], radius[low - 1] - radius[low])
+        close = np.concatenate([(radius[low, None] + gap[:, None] * share).ravel() for gap in gaps])
+        radius, pressure = np.append(radius, close), np.append(pressure, surface.pressure(close))
+    lowest = int(pressure.argmin())
+    if pressure[lowest] < -_LEAST_TENSION * mean:
+        raise PullingContact(a, float(radius[lowest]), -float(pressure[lowest]), mean)
+
+
+def _radii(surface: Surface) -> FloatArray:
+    """Radii inside the contact [m], increasing, none where the pressure may be infinite: axis, edge, breaks."""
+    a, tip = surface.a, surface.tip
+    sharpest = sorted(tip.kinks, key=lambda kink: -abs(kink[1]))[:_MOST_BREAKS]
+    breaks = [b for b, _ in sharpest] or list(tip.breaks[:_MOST_BREAKS])
+    corners = np.array([a, *breaks])
+    near = min(surface.springs.unit, a) * _DISTANCES
+    beside = np.concatenate([np.subtract.outer(corners, near).ravel(), np.add.outer(corners, near).ravel()])
+    between = a * np.sin(np.pi / 2 * (np.arange(_RADII) + 0.5) / _RADII)
+    radius = np.array(sorted({*beside.tolist(), *between.tolist()}))
+    inside = (radius > 1e-3 * a) & (radius < a * (1 - 1e-9)) & ~np.isin(radius, [*corners, *tip.breaks])
+    return np.asarray(radius[inside])
+
+
+def is_touched_nowhere(scene: Scene) -> bool:
+    """Whether no circle of this scene can be touched outside: one layer, or layers that stiffen downwards, convex."""
+    return never_touches_beside(scene) or (scene.indenter.is_convex and _stiffens_downwards(scene.layer))
+
+
+def refuse_touching_outside(scene: Scene, surface: Surface) -> None:
+    """Refuse a contact outside which the indenter would touch.
+
+    Raises:
+        UnsupportedSceneError: With the contact radius and the radius of the deepest overlap.
+    """
+    if is_touched_nowhere(scene):
+        return
+    height = max(abs(surface.depth), float(surface.tip.height(np.array([surface.a]))[0]))
+    refuse_touching(scene, [Circle(surface.a, surface.depth, surface.displacement, _OVERLAP * height)])
+
+
+def _stiffens_downwards(layer: ElasticLayer) -> bool:
+    """Whether no part of a stack is softer, in shear or if confined, than one above it: then nothing bends, g rises.
+
+    Observed, not proven: tests/verification/test_beside_contact_on_stacks.py.
+    """
+    if not isinstance(layer, LayerStack):
+        return False
+    base = (layer.support,) if isinstance(layer.support, ElasticBase) else ()
+    parts = [(one.youngs_modulus, one.poissons_ratio) for one in (*layer.sublayers, *base)]
+    shear = [E / (2 * (1 + nu)) for E, nu in parts]
+    confined = [
+        np.inf if nu == 0.5 else 2 * G * (1 - nu) / (1 - 2 * nu) for G, (_, nu) in zip(shear, parts, strict=True)
+    ]
+    return all(b >= a for moduli in (shear, confined) for a, b in pairwise(moduli))

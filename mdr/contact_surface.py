@@ -1,0 +1,280 @@
+"""Pressure and displacement of the surface, Eqs. (9) and (13), from the Abel density of one contact.
+
+    phi = W + psi,  W = depth - g_hs known with its kinks,  psi = B phi smooth
+    p(r) = (E*/pi) [phi(a)/sqrt(a^2 - r^2) - int_r^a phi'(t)/sqrt(t^2 - r^2) dt]                      inside
+    w(r) = (2/pi) [int_0^a phi(t)/sqrt(r^2 - t^2) dt - int_0^inf (1 - chi) phi^(k) J_0(kr) dk]        outside
+
+psi is a series of even Legendre polynomials, whose Abel images are known: P_2n(t/a) becomes P_2n(u)/(P_2n(0) a u) with
+a u = sqrt(a^2 - r^2). On contacts much wider than the layer is thick psi varies over a thickness beside every kink of
+the profile. There it is a series of Legendre polynomials on each patch between kinks.
+"""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+from numpy.polynomial import legendre
+from numpy.typing import NDArray
+from scipy.linalg import cho_factor, cho_solve
+from scipy.special import j0
+
+from bem.equation import Radius
+from bem.numerics import even_bessel, even_legendre, gauss, graded, panels, spherical_bessel
+from contact import InvalidInput
+from contact.records.validation import FloatArray
+from mdr.spring_bed import Springs
+
+# a/h beyond which psi is a series per patch. At 2 two kinds of series are equally good.
+_WIDE = 3.0
+# a/h beyond which patches take more than the time of an answer: 0.1 s at 60, 2 s at 900.
+_HARD = 60.0
+# Kinks within which patches are used: more of them are measured points, whose jumps are small.
+_MOST_KINKS = 8
+# Share of the contact radius within which kinks make no patch of their own: around the axis there is nothing left.
+_CENTRE = 1e-3
+# Wave numbers that are summed at a time.
+_CHUNK = 20_000
+# A graded layer's 1 - chi falls like 1/k: the displacement outside takes so many times more wave numbers.
+_SLOW_DECAY = 10.0
+
+
+def is_hard(springs: Springs, a: float) -> bool:
+    """Whether psi under a contact of radius a [m] takes so many patches' polynomials that it is solved when asked."""
+    return a > _HARD * springs.unit and any(_CENTRE * a < b < a for b in springs.tip.breaks)
+
+
+def surface_of(springs: Springs, a: float, depth: float, *, is_singular: bool = False) -> Surface:
+    """Fields of the contact of radius a [m] at a depth [m]; p is singular at the edge if phi(a) is not zero."""
+    inner = [b for b in springs.tip.breaks if _CENTRE * a < b < a]
+    is_wide = not springs.kernel.is_uniform and a > _WIDE * springs.unit and not springs.kernel.tail
+    return (Patched if is_wide and 0 < len(inner) < _MOST_KINKS else Surface)(
+        springs, a, depth, is_singular=is_singular
+    )
+
+
+class Surface:
+    """Fields of one contact, psi one series of even Legendre polynomials.
+
+    Args:
+        springs: Springs of the scene.
+        a: Contact radius [m].
+        depth: Indentation depth [m].
+        is_singular: Whether phi(a) is not zero: under a flat punch, and with adhesion.
+    """
+
+    _corner = 0.0  # of psi at the edge, on graded layers
+    _degree = 0  # of polynomials under the quadrature of the pressure
+
+    def __init__(self, springs: Springs, a: float, depth: float, *, is_singular: bool = False) -> None:
+        self.springs, self.tip, self.sizes = springs, springs.tip, springs.sizes
+        self.kernel, self.a, self.depth = springs.kernel, a, depth
+        self.edge = 0.0  # phi(a)
+        if is_singular:
+            values = springs.at([a])
+            self.edge = float(values.y1[0] * (depth - values.g[0]))
+        self._solve()
+
+    def _solve(self) -> None:
+        """phi and psi as coefficients of P_2n.
+
+        On graded layers a density that ends with phi(a) leaves psi a corner, of which polynomials miss most:
+        psi = corner [(a - t) ln(1 - t/a) + (a + t) ln(1 + t/a)] + smooth, corner = -c_1 phi(a)/pi.
+        """
+        if self.kernel.is_uniform:
+            self._phi = self._series = self._smooth = np.zeros(1)
+            return
+        radius: Radius = self.springs.radius(self.a)
+        if self.kernel.tail and self.edge != 0:
+            radius = Radius(self.kernel, self.a / self.springs.unit, self.sizes, kinked=True)
+        load = -self.tip.moments(np.array([self.a]), radius.count, self.sizes.extra)[0]
+        load[0] += self.depth
+        phi = radius.solve(load)
+        self._phi, self._series = phi * radius.degree, (phi - load) * radius.degree
+        self._smooth = self._series
+        if self.kernel.tail and self.edge != 0:
+            self._corner = -self.kernel.tail[0] / self.springs.unit * self.edge / np.pi
+            m = 2.0 * np.arange(1, radius.count)
+            known = 4 * (2 * m + 1) / ((m - 1) * m * (m + 1) * (m + 2))
+            self._smooth = self._series - self._corner * self.a * np.concatenate([[2 * np.log(2) - 1], known])
+
+    def psi(self, t: FloatArray) -> FloatArray:
+        """psi [m] at t <= a [m]."""
+        return np.asarray(even_legendre(t / self.a, self._series.size) @ self._series)
+
+    def density(self, t: FloatArray) -> FloatArray:
+        """phi [m] at t <= a [m]."""
+        return np.asarray(self.depth - self.tip.quick(t) + self.psi(t))
+
+    def _spectrum(self, k: FloatArray) -> FloatArray:
+        """phi^(k) = int_0^a phi cos kt dt [m^2] at k [1/m]."""
+        alternating = self._phi * (-1.0) ** np.arange(self._phi.size)
+        return np.asarray(self.a * alternating @ even_bessel(k * self.a, self._phi.size))
+
+    def _image(self, u: FloatArray) -> FloatArray:
+        """Abel image of psi but for its edge value, at a u = sqrt(a^2 - r^2)."""
+        n = np.arange(1, self._smooth.size)
+        at_zero = np.concatenate([[1.0], np.cumprod(-(2 * n - 1) / (2 * n))])  # P_2n(0)
+        return np.asarray((even_legendre(u, self._smooth.size) / at_zero - 1) @ self._smooth / (self.a * u))
+
+    def _slope(self, t: FloatArray) -> FloatArray:
+        """-phi' that is integrated numerically, without the singular terms of kinks."""
+        if self._corner == 0:
+            return self.tip.transform_slope(t)
+        to_edge = np.maximum(self.a - t, 1e-17 * self.a)
+        return np.asarray(self.tip.transform_slope(t) - self._corner * np.log((self.a + t) / to_edge))
+
+    def pressure(self, radius: FloatArray) -> FloatArray:
+        """p(r) [Pa] at radii [m], shape (n,), zero outside the contact.
+
+        Raises:
+            InvalidInput: Where the pressure is infinite: at a sharp rim, at a cone's tip, at the edge of a flat punch.
+        """
+        inside = radius < self.a
+        self._refuse_infinite(radius, inside | ((radius == self.a) & (self.edge != 0)))
+        pressure = np.zeros_like(radius)
+        pressure[inside] = self._inside(radius[inside])
+        return pressure
+
+    def _inside(self, r: FloatArray) -> FloatArray:
+        """p(r) [Pa] at r < a, where t^2 = low^2 + (high^2 - low^2) v^2 between two breaks of the profile."""
+        a, tip = self.a, self.tip
+        u = np.sqrt((a - r) * (a + r)) / a
+        p = self.edge / (a * u) + self._image(u)
+        v, w = graded(16 + self.sizes.extra + self._degree // 4)
+        ends = [0.0, *(b for b in tip.breaks if b < a), a]
+        for begin, high in pairwise(ends):
+            i = np.flatnonzero(r < high)
+            if not i.size or high <= begin:
+                continue
+            low = np.maximum(r[i], begin)[:, None]
+            span = (high - low) * (high + low)
+            t = np.sqrt(low * low + span * v * v)
+            slope = self._slope(t)
+            for b, jump in tip.kinks:
+                above = np.maximum((low - b) * (low + b) + span * v * v, 1e-300)  # t^2 - b^2 without cancellation
+                slope = slope + np.where(low >= b, jump * b / np.sqrt(above), 0.0)
+            near = r[i, None]
+            to_r = np.maximum((low - near) * (low + near) + span * v * v, 1e-300)
+            p[i] += (span * v * w * slope / (t * np.sqrt(to_r))).sum(axis=1)
+        return np.asarray(self.springs.modulus / np.pi * p)
+
+    def _refuse_infinite(self, radius: FloatArray, asked: FloatArray) -> None:
+        profile = self.tip.profile
+        singular = [0.0] if float(profile.slope_at(0.0)) > 0 else []
+        singular += [b for b in profile.kinks if b < self.a]
+        if self.edge != 0:
+            singular.append(self.a)
+        infinite = radius[np.asarray(asked, dtype=bool) & np.isin(radius, singular)]
+        if infinite.size:
+            raise InvalidInput(f"radius = {infinite[0]:g} m: the pressure is infinite at this sharp rim; ask beside it")
+
+    def displacement(self, radius: FloatArray) -> FloatArray:
+        """w(r) [m] at radii [m], shape (n,): depth - f inside, Eq. (1); Eq. (13) outside."""
+        inside = radius <= self.a
+        w = np.empty_like(radius)
+        w[inside] = self.depth - self.tip.height(radius[inside])
+        if not inside.all():
+            w[~inside] = self._outside(radius[~inside])
+        return w
+
+    def _outside(self, r: FloatArray) -> FloatArray:
+        far, a = r[:, None], self.a
+        v, w = gauss(2 * self._phi.size + 16 + self.sizes.extra)
+        breaks = [b for b in self.tip.breaks if b < a]
+        ends = np.arcsin(np.minimum(np.array([0.0, *breaks, a]) / far, 1.0))
+        total = np.zeros_like(r)
+        for low, high in zip(ends.T[:-1, :, None], ends.T[1:, :, None], strict=True):
+            t = np.minimum(far * np.sin(low + (high - low) * v * v), a)
+            total = total + (2 * (high - low) * v * w * self.density(t)).sum(axis=1)
+        return np.asarray(2 / np.pi * (total - self._softening(far)))
+
+    def _softening(self, far: FloatArray) -> FloatArray | float:
+        """int_0^inf (1 - chi) phi^(k) J_0(kr) dk [m]: panels of four periods, octaves towards k = 0."""
+        if self.kernel.is_uniform:
+            return 0.0
+        top = self.sizes.reach / self.springs.unit * (_SLOW_DECAY if self.kernel.tail else 1.0)
+        width = 8 * np.pi / (self.a + far.max())
+        octaves = top * 2.0 ** np.arange(-60.0, 1.0)
+        octaves = octaves[octaves < width]
+        even = np.linspace(octaves[-1], top, 1 + int(np.ceil((top - octaves[-1]) / width)))
+        k, w = panels(np.concatenate([[0.0], octaves, even[1:]]), self.sizes.nodes)
+        total = np.zeros(far.shape[0])
+        for part in range(0, k.size, _CHUNK):
+            some = k[part : part + _CHUNK]
+            weight = w[part : part + _CHUNK] * self.kernel.one_minus_chi(some * self.springs.unit)
+            total = total + j0(far * some) @ (weight * self._spectrum(some))
+        return total
+
+
+class Patched(Surface):
+    """Fields of one contact, psi a series of Legendre polynomials on each patch between kinks of the profile."""
+
+    def _solve(self) -> None:
+        a, sizes, unit = self.a, self.sizes, self.springs.unit
+        x = a / unit
+        self._ends = np.array([0.0, *(b for b in self.tip.breaks if _CENTRE * a < b < a), a]) / a
+        self._patches = []  # middle, half width, degrees; the first patch is even about 0
+        for low, high in zip(self._ends[:-1], self._ends[1:], strict=True):
+            middle, half = (0.0, high) if low == 0 else ((low + high) / 2, (high - low) / 2)
+            top = 2 * (sizes.least + int(1.25 * sizes.rate * np.sqrt(x * half)))
+            self._patches.append((middle, half, np.arange(0, top, 2 if low == 0 else 1)))
+        self._degree = max(int(n[-1]) for *_, n in self._patches)
+        kappa, w = self.springs.radius(a).waves
+        table = self._transforms(kappa)
+        smooth = (table * (2 / np.pi * w * self.kernel.one_minus_chi(kappa / x))) @ table.T
+        load = np.concatenate([self._load(*patch) for patch in self._patches])
+        phi = cho_solve(cho_factor(np.eye(load.size) - smooth), load)
+        cuts = np.cumsum([n.size for *_, n in self._patches])[:-1]
+        self._phi, self._parts = phi, []
+        for (middle, half, n), part in zip(self._patches, np.split(phi - load, cuts), strict=True):
+            full = np.zeros(n[-1] + 1)
+            full[n] = part * self._norm(middle, half, n)
+            self._parts.append(full)
+
+    def _norm(self, middle: float, half: float, n: NDArray[np.integer]) -> FloatArray:
+        return np.asarray(np.sqrt((2 * n + 1) / (half if middle == 0 else 2 * half)))
+
+    def _transforms(self, kappa: FloatArray) -> FloatArray:
+        """int b_n(s) cos(kappa s) ds over its patch, for all orthonormal b_n."""
+        rows = []
+        for middle, half, n in self._patches:
+            step = int(n[1] - n[0])
+            bessel = spherical_bessel(kappa * half, n.size, step)
+            size = self._norm(middle, half, n) * half * (1 if middle == 0 else 2)
+            rows.append(size[:, None] * bessel * np.cos(kappa * middle + n[:, None] * np.pi / 2))
+        return np.vstack(rows)
+
+    def _load(self, middle: float, half: float, n: NDArray[np.integer]) -> FloatArray:
+        """Moments of W = depth - g_hs over one patch."""
+        if middle == 0:
+            load = -self.tip.moments(np.array([self.a * half]), n.size, self.sizes.extra)[0] * np.sqrt(half)
+            load[0] += self.depth * np.sqrt(half)
+            return np.asarray(load)
+        v, w = gauss(2 * n.size + 20 + self.sizes.extra)
+        y = 2 * v * v - 1  # crowds at the kink, where y = -1
+        weight = self.depth - self.tip.transform(self.a * (middle + half * y))
+        moments = (weight * 4 * v * w * half) @ legendre.legvander(y, int(n[-1]))
+        return np.asarray(moments * self._norm(middle, half, n))
+
+    def _on_patches(self, t: FloatArray, derivative: int) -> FloatArray:
+        s, total = t / self.a, np.zeros_like(t)
+        which = np.clip(np.searchsorted(self._ends, s, "right") - 1, 0, len(self._patches) - 1)
+        for i, ((middle, half, _), part) in enumerate(zip(self._patches, self._parts, strict=True)):
+            value = legendre.legval(np.clip((s - middle) / half, -1, 1), legendre.legder(part, derivative))
+            total += np.where(which == i, value, 0.0) / (half * self.a) ** derivative
+        return total
+
+    def psi(self, t: FloatArray) -> FloatArray:
+        """psi [m] at t <= a [m]."""
+        return self._on_patches(t, 0)
+
+    def _spectrum(self, k: FloatArray) -> FloatArray:
+        return np.asarray(self.a * self._phi @ self._transforms(k * self.a))
+
+    def _image(self, u: FloatArray) -> FloatArray:
+        """Nothing: psi' is integrated with g_hs'."""
+        return np.zeros_like(u)
+
+    def _slope(self, t: FloatArray) -> FloatArray:
+        return np.asarray(self.tip.transform_slope(t) - self._on_patches(t, 1))

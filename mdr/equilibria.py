@@ -1,0 +1,356 @@
+"""Elastic contact without effects: equilibria under prescribed radii, depths or forces, with stated errors.
+
+By radius: depth g(a), Eq. (3). By depth or force: the radius by search, then the prescribed value is inserted as it is.
+Errors: the same states on finer springs (`contact.stated`), and rounding errors times the condition of the equation.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bem.equation import USUAL, Sizes
+from bem.layer_equation.flat_punch_source import IntegralEquation
+from bem.layer_equation.protocol import FlatPunchSource
+from bem.numerics import EPS, gauss
+from contact import (
+    ContactPath,
+    ContactRadii,
+    FlatPunch,
+    IndentationDepths,
+    InvalidInput,
+    NormalForces,
+    Profile,
+    Scene,
+    StageLog,
+    UnsupportedSceneError,
+)
+from contact.answer.friction import told_of_friction
+from contact.answer.inside import InteriorFields, KnownContact
+from contact.answer.solution import Setting
+from contact.records.validation import FloatArray
+from contact.stated import stated_error
+from mdr.admissible import refuse_pulling, refuse_touching_outside
+from mdr.contact_surface import Surface, is_hard, surface_of
+from mdr.radius_search import Quantity, RadiusSearch, refuse_too_wide
+from mdr.spring_bed import Springs, SpringValues, State
+
+# States of a path at which errors are computed and contacts are checked; the largest change counts for all of them.
+_COMPARED, _CHECKED = 3, 12
+# Radii inside, and radii outside over the contact radius, at which fields are compared.
+_INSIDE, _OUTSIDE = 8, np.array([1.02, 1.5])
+# Relative rounding error of pressure and displacement by their quadratures.
+_FIELD_ROUNDING = 2e-13
+
+
+def sizes_of(source: IntegralEquation) -> Sizes:
+    """Resolution that belongs to the settings of a flat-punch source."""
+    return USUAL.scaled(source.nodes / 24 / source.panel_width)
+
+
+def solve_elastic(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[str, Setting]) -> ContactPath:
+    """Contact radius, depth, force and stiffness, with pressure and displacement on demand.
+
+    Raises:
+        InvalidInput: If a prescribed value is out of reach of the indenter, or the contact becomes too wide.
+        SeveralContacts: If the contact would not be one circle.
+        UnsupportedSceneError: If the surfaces would pull inside, or the indenter would touch outside.
+    """
+    if not isinstance(flat_punch, IntegralEquation):
+        from mdr.elastic import solve_elastic as solve_by_table  # noqa: PLC0415 - loaded with tables only
+
+        return solve_by_table(scene, flat_punch, settings)
+    log = StageLog()
+    springs = _springs(scene, flat_punch, log)
+    with log.stage("mdr_profile"):
+        radius = _radii(scene, springs)
+    with log.stage("force"):
+        values = springs.at(radius)
+        state = _states(scene, springs, radius, values)
+        _refuse_inadmissible(scene, springs, state)
+        errors = ElasticErrors(scene, springs, state, values).stated()
+    return ContactPath(
+        scene=scene,
+        method="mdr",
+        settings=settings,
+        contact_radius=state.radius,
+        indentation_depth=state.depth,
+        normal_force=state.force,
+        contact_stiffness=state.stiffness,
+        error_estimate=errors,
+        cost=log.cost(unknowns=springs.punches.unknowns(float(radius.max()) / springs.unit)),
+        stages=log.records,
+        notes=told_of_friction(scene.layer, state.radius),
+        fields=PathFields(scene, springs, state.radius, state.depth, flat_punch, settings),
+    )
+
+
+def _springs(scene: Scene, flat_punch: IntegralEquation, log: StageLog) -> Springs:
+    """Springs of a scene; those of a layer are solutions of its equation."""
+    springs = Springs.of(scene.layer, scene.indenter, sizes_of(flat_punch))
+    if not scene.layer.is_half_space:
+        with log.stage("flat_punch_data"):
+            log.count("flat_punch_solutions")
+            springs.punches.at(np.ones(1))
+    return springs
+
+
+def is_simple(scene: Scene) -> bool:
+    """Whether g rises and no contact pulls or is touched outside: one layer under a convex profile."""
+    return scene.layer.is_uniform and scene.indenter.is_convex
+
+
+def _radii(scene: Scene, springs: Springs) -> FloatArray:
+    """Contact radii [m] of what is prescribed."""
+    loading, indenter = scene.loading, scene.indenter
+    if not isinstance(loading, ContactRadii | IndentationDepths | NormalForces):
+        raise UnsupportedSceneError(f"loading {type(loading).__name__} prescribes no radii, depths or forces")
+    if isinstance(indenter, FlatPunch):
+        refuse_too_wide(springs, indenter.radius)
+        return np.full(loading.values.size, indenter.radius)
+    _refuse_unrisen(indenter)
+    search = RadiusSearch(springs, may_fall=not is_simple(scene))
+    if isinstance(loading, ContactRadii):
+        largest = float(loading.values.max())
+        refuse_too_wide(springs, largest)
+        if scene.layer.is_uniform:
+            search.refuse_falls(largest)
+        return loading.values
+    quantity: Quantity = "depth" if isinstance(loading, IndentationDepths) else "force"
+    return search.radii(quantity, loading.values, lambda a: _refuse_circle(scene, springs, a))
+
+
+def _refuse_unrisen(indenter: Profile) -> None:
+    """Refuse a table that begins flat.
+
+    Raises:
+        InvalidInput: With the radius up to which it does.
+    """
+    if not isinstance(indenter, FlatPunch) and not indenter.flat_radius and indenter.breakpoints:
+        first = indenter.breakpoints[0]
+        if float(indenter.height(first)) == 0.0:
+            message = f"indenter: does not rise within {first:g} m of first touch; give it a flat end or a first height"
+            raise InvalidInput(message)
+
+
+def _states(scene: Scene, springs: Springs, radius: FloatArray, values: SpringValues) -> State:
+    """Equilibria at radii [m]; what is prescribed is inserted as it is."""
+    loading = scene.loading
+    if isinstance(loading, IndentationDepths):
+        return springs.state(radius, values, loading.values)
+    if isinstance(loading, NormalForces):
+        depth = springs.depth_of(loading.values, values)
+        return springs.state(radius, values, depth)._replace(force=loading.values)
+    return springs.state(radius, values)
+
+
+def is_singular(scene: Scene, radius: float) -> bool:
+    """Whether the pressure is infinite at the edge: under a flat punch, and a flat end that the contact fills."""
+    return isinstance(scene.indenter, FlatPunch) or radius <= scene.indenter.flat_radius
+
+
+def _refuse_circle(scene: Scene, springs: Springs, radius: float) -> None:
+    state = springs.states(np.array([radius]))
+    surface = surface_of(springs, radius, float(state.depth[0]), is_singular=is_singular(scene, radius))
+    refuse_pulling(surface, float(state.force[0]))
+    refuse_touching_outside(scene, surface)
+
+
+def _refuse_inadmissible(scene: Scene, springs: Springs, state: State) -> None:
+    """Refuse paths of which some contact pulls or is touched outside.
+
+    Where g rises the widest contact has the smallest gaps of all, so it alone is looked at for those.
+    """
+    if is_simple(scene):
+        return
+    some = _spread(state.radius, _CHECKED).tolist()
+    for i in reversed(some):
+        a, widest = float(state.radius[i]), i == some[-1]
+        if scene.layer.is_uniform and not widest:
+            continue
+        surface = surface_of(springs, a, float(state.depth[i]), is_singular=is_singular(scene, a))
+        if widest:
+            refuse_touching_outside(scene, surface)
+        if not scene.layer.is_uniform:
+            refuse_pulling(surface, float(state.force[i]))
+
+
+def _spread(radius: FloatArray, count: int) -> NDArray[np.intp]:
+    """Indices of at most so many radii, from the smallest to the widest."""
+    order = np.argsort(radius)
+    return order[sorted(set(np.linspace(0, order.size - 1, min(order.size, count)).astype(int).tolist()))]
+
+
+@dataclass(frozen=True, eq=False)
+class ElasticErrors:
+    """Stated errors of a path.
+
+    Attributes:
+        scene: The problem.
+        springs: Its springs.
+        state: Its equilibria.
+        values: Springs at their radii.
+    """
+
+    scene: Scene
+    springs: Springs
+    state: State
+    values: SpringValues
+
+    def stated(self) -> dict[str, FloatArray]:
+        """Relative errors of what was not prescribed, each of shape (n,)."""
+        loading, count = self.scene.loading, self.state.radius.size
+        some = _spread(self.state.radius, _COMPARED)
+        seen = State(*(one[some] for one in self.state))
+        finer = self.springs.finer
+        values = finer.at(seen.radius)
+        by_radius, by_depth = (isinstance(loading, kind) for kind in (ContactRadii, IndentationDepths))
+        companion = finer.state(seen.radius, values, None if by_radius else seen.depth)
+        floor, whole = self.springs.floor(self.state.radius)
+        floor = floor + self._position_rounding()
+        is_punch = isinstance(self.scene.indenter, FlatPunch)
+        depth = _largest(self.values.g[some], values.g, seen.depth) + floor
+        force = _largest(seen.force, companion.force, seen.force) + whole + floor
+        stiffness = _largest(seen.stiffness, companion.stiffness, seen.stiffness) + whole
+        moved = np.zeros(count) if by_radius or is_punch else depth * self._sensitivity(seen)
+        zero = np.zeros(count)
+        pressure, displacement = self._fields(seen)
+        of_depth, of_force = force if is_punch else force + depth, force + (depth if by_radius else 0.0)
+        return {
+            "contact_radius": moved,
+            "indentation_depth": zero if by_depth else of_depth,
+            "normal_force": of_force if by_radius or by_depth else zero,
+            "contact_stiffness": stiffness + moved * self._growth(),
+            # Between the rim of a flat end and the edge pressures go with a - b.
+            "pressure": pressure + whole + moved / np.maximum(1 - self.springs.tip.flat / self.state.radius, 1e-12),
+            # Outside thin layers w is a small difference of terms of the size of phi, K/a times the depth.
+            "surface_displacement": displacement + depth + moved + EPS * self.values.K / self.state.radius,
+        }
+
+    def _position_rounding(self) -> FloatArray | float:
+        """Relative error of g by the last digit of a, where the indenter is upright at its end."""
+        if not self.scene.indenter.ends_upright:
+            return 0.0
+        a, tip = self.state.radius, self.springs.tip
+        return np.asarray(EPS * a * tip.transform_slope(a) / tip.transform(a))
+
+    def _sensitivity(self, seen: State) -> float:
+        """d(ln a)/d(ln g), one at most where g rises faster than a."""
+        if is_simple(self.scene):
+            return 1.0
+        step = 1e-4
+        inner = np.maximum(seen.radius * (1 - step), self.springs.tip.flat)
+        before = self.springs.at(inner).g
+        rise = (
+            (seen.depth - before) / np.where(seen.depth == 0, 1, seen.depth) / np.maximum(1 - inner / seen.radius, EPS)
+        )
+        return float(np.max(1 / np.maximum(rise, 1e-3), initial=1.0))
+
+    def _growth(self) -> FloatArray:
+        """d(ln k_N)/d(ln a) = a y_1^2/K."""
+        return np.asarray(self.state.radius * self.values.y1**2 / self.values.K)
+
+    def _fields(self, seen: State) -> tuple[float, float]:
+        """Errors of pressure, relative to its mean, and of displacement, relative to the depth.
+
+        Pressures are compared in the smallest and the widest contact, the slower displacements in the widest.
+        """
+        pressure = displacement = 0.0
+        for step in sorted({0, seen.radius.size - 1}):
+            a, depth, force = (float(one[step]) for one in seen[:3])
+            singular = is_singular(self.scene, a)
+            pair = surface_pair(self.springs, a, depth, is_singular=singular)
+            pressure = max(pressure, compared_pressure(pair, force / (np.pi * a**2)))
+            displacement = compared_displacement(pair)
+        return pressure, displacement
+
+
+def surface_pair(springs: Springs, a: float, depth: float, *, is_singular: bool) -> list[Surface]:
+    """One contact at two resolutions: that of the answer, and a finer one.
+
+    Where patches would take long, the whole series is compared with one of half its resolution. Its error falls like a
+    power, so that this change exceeds what the patches of the answer err.
+    """
+    if is_hard(springs, a):
+        coarse = springs.at_sizes(springs.sizes.scaled(0.5))
+        return [Surface(s, a, depth, is_singular=is_singular) for s in (springs, coarse)]
+    return [surface_of(s, a, depth, is_singular=is_singular) for s in (springs, springs.finer)]
+
+
+def compared_pressure(pair: list[Surface], scale: float) -> float:
+    """Stated error of a contact's pressure over a pressure [Pa], by two resolutions."""
+    inside = pair[0].a * np.sin(np.pi / 2 * gauss(_INSIDE)[0])
+    values = [surface.pressure(inside) for surface in pair]
+    return float(stated_error(values[0], values[1], scale=scale, floor=_FIELD_ROUNDING).max())
+
+
+def compared_displacement(pair: list[Surface]) -> float:
+    """Stated error of the displacement outside a contact over the depth, by two resolutions."""
+    outside = pair[0].a * _OUTSIDE
+    outside = outside[outside < pair[0].tip.end]
+    if not outside.size:
+        return _FIELD_ROUNDING
+    values = [surface.displacement(outside) for surface in pair]
+    return float(stated_error(values[0], values[1], scale=pair[0].depth, floor=_FIELD_ROUNDING).max())
+
+
+def _largest(answer: FloatArray, other: FloatArray, scale: FloatArray) -> float:
+    """Largest relative change between two resolutions, times the safety."""
+    return float(stated_error(answer, other, scale=scale).max())
+
+
+@dataclass(frozen=True, eq=False)
+class PathFields:
+    """Surface fields of every step of a path, each contact solved when it is first asked for.
+
+    Attributes:
+        scene: The problem.
+        springs: Its springs.
+        radius: a [m], shape (n,).
+        depth: delta [m], shape (n,).
+        flat_punch: Settings of the answer.
+        settings: The same as they are written down.
+        adheres: Whether the edge is held by adhesion.
+    """
+
+    scene: Scene
+    springs: Springs
+    radius: FloatArray
+    depth: FloatArray
+    flat_punch: FlatPunchSource
+    settings: Mapping[str, Setting]
+    adheres: bool = False
+    _surfaces: dict[int, Surface] = field(default_factory=dict)
+
+    def surface(self, step: int) -> Surface:
+        """One step's contact."""
+        if step not in self._surfaces:
+            a = float(self.radius[step])
+            singular = self.adheres or is_singular(self.scene, a)
+            self._surfaces[step] = surface_of(self.springs, a, float(self.depth[step]), is_singular=singular)
+        return self._surfaces[step]
+
+    def pressure(self, radius: FloatArray, step: int) -> FloatArray:
+        """p(r) [Pa], zero outside the contact."""
+        return self.surface(step).pressure(radius)
+
+    def surface_displacement(self, radius: FloatArray, step: int) -> FloatArray:
+        """w(r) [m]."""
+        return self.surface(step).displacement(radius)
+
+    def inside(self, step: int, known: KnownContact) -> InteriorFields:
+        """The body under one step, by the panels' density of the same contact."""
+        # Only those who look inside load it.
+        if self.adheres:
+            from mdr.adhesion.solver import solve_adhesive as solve  # noqa: PLC0415
+        else:
+            from mdr.elastic import solve_elastic as solve  # noqa: PLC0415
+        by_depth = isinstance(self.scene.indenter, FlatPunch)
+        loading = IndentationDepths(self.depth[[step]]) if by_depth else ContactRadii(self.radius[[step]])
+        path = solve(self.scene.replace(loading=loading), self.flat_punch, self.settings)
+        assert path.fields is not None
+        found: InteriorFields = path.fields.inside(0, known)  # type: ignore[attr-defined]
+        return found

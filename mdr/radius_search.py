@@ -1,0 +1,266 @@
+"""Contact radii under prescribed depths or forces.
+
+The depth g(a) and the force F(a) are tabulated roughly over ln(a - b), b the radius of the flat end. The table gives
+start and slope of a few secant steps on the accurate springs. On stacks g may fall over a stretch of radii: then
+several radii have one depth, and the caller says which of them is a contact.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Literal
+
+import numpy as np
+
+from bem.numerics import EPS
+from contact import InvalidInput, UnsupportedSceneError
+from contact.records.validation import FloatArray
+from mdr.spring_bed import Springs
+
+Quantity = Literal["depth", "force"]
+
+# Contact radius over the thickness of the surface material up to which contacts are answered.
+LARGEST_RATIO = 1000.0
+# Radii per e-fold of the rough table. Half as many cost one more secant step.
+_DENSITY = 6
+# Secant steps before a search gives up; four are usual.
+_MOST_STEPS = 12
+# ln(a/h) below which the layers under the first change g too little to let it fall.
+_WITHIN_LAYER = -5.0
+# Breaks of a profile between which a table is refined; more are measured points, whose steps are small.
+_PER_BREAK = 4
+
+
+class SeveralContacts(UnsupportedSceneError):
+    """The indenter would touch outside its circle of contact.
+
+    Args:
+        radius: Largest contact radius [m] that is one circle.
+    """
+
+    def __init__(self, radius: float) -> None:
+        self.radius = radius
+        message = f"the MDR profile stops rising at a contact radius of {radius:g} m: the contact is no single circle"
+        super().__init__(f"{message} beyond; keep radii, depths or forces below")
+
+
+def largest_radius(springs: Springs) -> float:
+    """Largest contact radius [m] that is answered: the indenter's end, or `LARGEST_RATIO` thicknesses."""
+    thickest = np.inf if springs.kernel.is_uniform else springs.unit * springs.kernel.units
+    return min(springs.tip.end, LARGEST_RATIO * thickest)
+
+
+def refuse_too_wide(springs: Springs, radius: float) -> None:
+    """Refuse contact radii [m] beyond `LARGEST_RATIO` thicknesses, or an upright end of the indenter.
+
+    Raises:
+        InvalidInput: With the ratio or the radius.
+    """
+    thickness = springs.unit * springs.kernel.units
+    if not springs.kernel.is_uniform and radius > LARGEST_RATIO * thickness * (1 + 1e-9):
+        raise InvalidInput(
+            f"a/h = {radius / thickness:g}: contacts are answered up to {LARGEST_RATIO:g} times the thickness "
+            f"{thickness:g} m of the material at the surface; ask for smaller contacts"
+        )
+    profile = springs.tip.profile
+    if profile.ends_upright and radius * (1 + 4 * EPS) >= profile.max_radius:
+        raise InvalidInput(f"contact radius = {radius:g} m: {profile.upright_end}; stay a little below")
+
+
+class RadiusSearch:
+    """Contact radii of one scene without adhesion.
+
+    Args:
+        springs: Springs of the scene.
+        may_fall: Whether g may fall: on stacks, and under profiles that are not convex.
+    """
+
+    def __init__(self, springs: Springs, *, may_fall: bool) -> None:
+        self.springs, self.may_fall = springs, may_fall
+
+    def place(self, z: FloatArray) -> FloatArray:
+        """Contact radii [m] on a scale without ends: flat + unit e^z, bent to stay within the indenter."""
+        tip = self.springs.tip
+        grown, room = self.springs.unit * np.exp(z), tip.end - tip.flat
+        return np.asarray(tip.flat + grown / (1 + grown / room))
+
+    def _scale(self, radius: FloatArray) -> FloatArray:
+        """z of contact radii [m], the inverse of `place`."""
+        tip = self.springs.tip
+        grown = np.maximum(radius - tip.flat, 1e-300)
+        return np.asarray(np.log(grown / np.maximum(1 - grown / (tip.end - tip.flat), EPS) / self.springs.unit))
+
+    def _logarithm(self, springs: Springs, quantity: Quantity, z: FloatArray) -> FloatArray:
+        """ln(depth or force) at z."""
+        state = springs.states(self.place(np.atleast_1d(z)))
+        return np.asarray(np.log(np.maximum(getattr(state, quantity), 1e-300)))
+
+    def refuse_falls(self, largest: float) -> None:
+        """Refuse profiles whose g falls before a contact radius [m].
+
+        Raises:
+            SeveralContacts: With the radius up to which it rises.
+        """
+        if not self.may_fall:
+            return
+        top = float(self._scale(np.array([largest]))[0])
+        z = self._grid(min(self._least(), top - 1.0), top)
+        fall = self._fall(z, self._logarithm(self.springs.coarse, "depth", z))
+        if fall is not None:
+            raise SeveralContacts(fall)
+
+    def _grid(self, low: float, high: float) -> FloatArray:
+        """Places of a table, denser where a profile has breaks if g may fall."""
+        z = np.linspace(low, high, 2 + int(_DENSITY * (high - low)))
+        if not self.may_fall or not self.springs.tip.breaks:
+            return z
+        breaks = np.array([self.springs.tip.flat, *self.springs.tip.breaks])
+        share = np.arange(1, _PER_BREAK + 1) / _PER_BREAK
+        more = self._scale((breaks[:-1, None] + share * np.diff(breaks)[:, None]).ravel())
+        return np.array(sorted({*z.tolist(), *more[(more > low) & (more < high)].tolist()}))
+
+    def _fall(self, z: FloatArray, logarithm: FloatArray) -> float | None:
+        """Radius [m] at which a table of ln g stops rising, computed again by the accurate springs; None if never."""
+        radius = self.place(z)
+        apart = radius > self.springs.tip.flat * (1 + 1e-12)
+        if (np.diff(logarithm[apart]) > 0).all():
+            return None
+        exact = self._logarithm(self.springs, "depth", z[apart])
+        falls = np.flatnonzero(np.diff(exact) <= 0)
+        return float(radius[apart][falls[0]]) if falls.size else None
+
+    def _table(self, quantity: Quantity, least: float, most: float) -> tuple[FloatArray, FloatArray]:
+        """z and ln(depth or force) between these logarithms and a little beyond, by the coarse springs."""
+        coarse = self.springs.coarse
+        last = self._last()
+        top, step = min(0.0, last), 1.0
+        while (reached := float(self._logarithm(coarse, quantity, np.array([top]))[0])) < most + 1e-2:
+            if top >= last:
+                if reached < most:
+                    self._refuse_reach(quantity, most, top)
+                break
+            top, step = min(top + step, last), step * (2.0 if self.springs.kernel.is_uniform else 1.0)
+        low, step = top - 1.0, 1.0
+        while self._logarithm(coarse, quantity, np.array([low]))[0] > least - 1e-2:
+            low, step = low - step, 2 * step
+        z = self._grid(min(low, self._least()), top)
+        return z, self._logarithm(coarse, quantity, z)
+
+    def _least(self) -> float:
+        """Place below which g surely rises: small contacts within the first layer and the first break."""
+        if not self.may_fall:
+            return float("inf")
+        inner = [b for b in self.springs.tip.breaks if b > self.springs.tip.flat][:1]
+        return (
+            min(_WITHIN_LAYER, *(float(self._scale(np.array([b]))[0]) - 1.0 for b in inner)) if inner else _WITHIN_LAYER
+        )
+
+    def _last(self) -> float:
+        """Place beyond which contacts are too wide, or rounded to the indenter's end."""
+        largest = largest_radius(self.springs)
+        if not np.isfinite(largest):
+            return float("inf")
+        rounded = 36.0 + np.log(largest / self.springs.unit)
+        return min(float(self._scale(np.array([largest]))[0]), float(rounded))
+
+    def _refuse_reach(self, quantity: Quantity, most: float, top: float) -> None:
+        """Refuse a depth [m] or force [N] that the last place does not reach, by the accurate springs.
+
+        Raises:
+            InvalidInput: With what is reached there.
+        """
+        radius = self.place(np.array([top]))
+        reached = float(getattr(self.springs.states(radius), quantity)[0])
+        if np.log(reached) >= most:
+            return
+        wanted, profile = float(np.exp(most)), self.springs.tip.profile
+        if radius[0] < profile.max_radius * (1 - 1e-9):
+            raise InvalidInput(
+                f"loading.values = {wanted:g}: only {reached:g} is reached at a/h = {LARGEST_RATIO:g}, up to which "
+                "contacts are answered; press less"
+            )
+        if profile.ends_upright:
+            raise InvalidInput(f"loading.values = {wanted:g}: {profile.upright_end}; press less")
+        raise InvalidInput(
+            f"loading.values = {wanted:g}: the indenter ends at a radius of {profile.max_radius:g} m, where "
+            f"{reached:g} is reached; ask for less or describe the indenter further out"
+        )
+
+    def radii(self, quantity: Quantity, targets: FloatArray, is_contact: Callable[[float], None]) -> FloatArray:
+        """Contact radii [m] with these depths [m] or forces [N], shape (n,).
+
+        Args:
+            quantity: What the targets are.
+            targets: Positive, shape (n,).
+            is_contact: Raises UnsupportedSceneError at radii [m] that are no contact; asked where g falls before.
+
+        Raises:
+            InvalidInput: If the indenter ends before, or the contact becomes too wide.
+            SeveralContacts: If no single circle is an answer.
+        """
+        y = np.log(targets)
+        z, table = self._table(quantity, float(y.min()), float(y.max()))
+        if self.may_fall:
+            depth = table if quantity == "depth" else self._logarithm(self.springs.coarse, "depth", z)
+            fall = self._fall(z, depth)
+            if fall is not None and self.springs.kernel.is_single:
+                before = self.place(z) < fall
+                z, table = z[before], table[before]
+                if not z.size or table.max() < y.max():
+                    raise SeveralContacts(fall)
+            elif fall is not None:
+                return self._beyond_falls(quantity, y, (z, table), is_contact, SeveralContacts(fall))
+        table = np.maximum.accumulate(table)
+        return self._refined(quantity, y, np.interp(y, table, z), np.interp(y, table, np.gradient(table, z)))
+
+    def _beyond_falls(
+        self,
+        quantity: Quantity,
+        y: FloatArray,
+        rough: tuple[FloatArray, FloatArray],
+        is_contact: Callable[[float], None],
+        ring: SeveralContacts,
+    ) -> FloatArray:
+        """Of all radii with one depth or force the one that is a contact; the contact problem has one solution only."""
+        (z, table), found = rough, np.empty_like(y)
+        for i, target in enumerate(y.tolist()):
+            rises = np.flatnonzero((table[:-1] < target) & (table[1:] >= target))[::-1]
+            slope = (table[rises + 1] - table[rises]) / (z[rises + 1] - z[rises])
+            start = z[rises] + (target - table[rises]) / slope
+            radii = [
+                float(self._refined(quantity, np.array([target]), s, k)[0])
+                for s, k in zip(start[:, None], slope[:, None], strict=True)
+            ]
+            found[i] = self._only_contact(radii, is_contact, ring)
+        return found
+
+    def _only_contact(self, radii: list[float], is_contact: Callable[[float], None], ring: SeveralContacts) -> float:
+        objection: UnsupportedSceneError = ring
+        for radius in radii:
+            try:
+                is_contact(radius)
+            except UnsupportedSceneError as own:
+                # A circle short of the falling stretch has its own reason.
+                objection = own if radius < ring.radius else objection
+                continue
+            return radius
+        raise objection
+
+    def _refined(self, quantity: Quantity, y: FloatArray, z: FloatArray, slope: FloatArray) -> FloatArray:
+        """Radii [m] with these logarithms by secants from a start and its slope."""
+        tip = self.springs.tip
+        slope = np.maximum(slope, 1e-3)
+        least, most, missed = 0.5 * slope, 2 * slope, np.inf
+        new, old, f_old = z, z, z
+        for number in range(_MOST_STEPS):
+            f = self._logarithm(self.springs, quantity, new) - y
+            worst = float(np.abs(f).max())
+            if worst < 16 * EPS or (worst < 1e-12 and worst > 0.5 * missed):
+                break
+            if number > 0:
+                with np.errstate(all="ignore"):
+                    secant = np.nan_to_num((f - f_old) / (new - old), nan=1.0)
+                slope = np.where(np.abs(new - old) > 1e-8, np.clip(secant, least, most), slope)
+            missed, old, f_old, new = worst, new, f, new - f / slope
+        found = self.place(new)  # what doubles cannot tell from the flat end is put there
+        return np.where(found - tip.flat < 8 * EPS * tip.flat, tip.flat, found)

@@ -1,0 +1,177 @@
+"""The equivalent bed of springs: MDR profile g(x), stiffness c_N(x) = E* y_1^2, and their integrals up to a radius.
+
+    K(a) = int_0^a y_1^2 dx,   k_N = 2 E* K              Eqs. (5), (6), (10)
+    M(a) = int_0^a y_1^2 g dx, F = 2 E* (depth K - M)    Eq. (4)
+
+`Springs.at(radii) -> y_1, g, K, M` is all that elastic contact, adhesion, impacts, histories and fits ask.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bem.equation import COARSE, USUAL, FlatPunches, Radius, Sizes, flat_punches
+from bem.kernels.moduli import contact_modulus
+from bem.kernels.of_contact import ContactKernel, contact_kernel, unit_of
+from bem.numerics import EPS, graded
+from contact import ElasticLayer, Profile
+from contact.records.validation import FloatArray
+from mdr.profiles import Tip, tip_of
+
+# Rounding errors of depth and force, in units of eps times their condition. Half of it is exceeded by one scene in
+# twenty.
+_ROUNDINGS = 16.0
+# Relative error of a graded layer's tabulated kernel, which both resolutions share: 6e-13 of k_N at most was seen.
+_GRADED_KERNEL = 2e-12
+# Radii that are answered at a time: their rows stay in the cache.
+_BLOCK = 2048
+
+
+class SpringValues(NamedTuple):
+    """Springs at some radii.
+
+    Attributes:
+        y1: Root of c_N/E* [-], shape (n,).
+        g: MDR profile [m].
+        K: int_0^a y_1^2 dx [m].
+        M: int_0^a y_1^2 g dx [m^2].
+    """
+
+    y1: FloatArray
+    g: FloatArray
+    K: FloatArray
+    M: FloatArray
+
+
+class State(NamedTuple):
+    """Equilibria: contact radius [m], depth [m], force [N] and contact stiffness [N/m], each of shape (n,)."""
+
+    radius: FloatArray
+    depth: FloatArray
+    force: FloatArray
+    stiffness: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class Springs:
+    """Springs and MDR profile of one layer under one profile, for any radius.
+
+    Attributes:
+        kernel: 1 - chi of the layer.
+        unit: Length [m] in which the kernel counts.
+        modulus: E* [Pa].
+        tip: The profile.
+        sizes: Resolution.
+    """
+
+    kernel: ContactKernel
+    unit: float
+    modulus: float
+    tip: Tip
+    sizes: Sizes = USUAL
+
+    @classmethod
+    def of(cls, layer: ElasticLayer, indenter: Profile, sizes: Sizes = USUAL) -> Springs:
+        """Springs of a layer, stack, graded layer or half-space under an indenter.
+
+        Raises:
+            UnsupportedSceneError: If no kernel is known of this kind of layer.
+        """
+        return cls(contact_kernel(layer), unit_of(layer), contact_modulus(layer), tip_of(indenter), sizes)
+
+    def at_sizes(self, sizes: Sizes) -> Springs:
+        """The same springs at another resolution."""
+        return Springs(self.kernel, self.unit, self.modulus, self.tip, sizes)
+
+    @cached_property
+    def finer(self) -> Springs:
+        """The companion whose change states errors."""
+        return self.at_sizes(self.sizes.finer)
+
+    @cached_property
+    def coarse(self) -> Springs:
+        """Springs for searching radii, to 1e-4."""
+        return self.at_sizes(COARSE)
+
+    @cached_property
+    def punches(self) -> FlatPunches:
+        """Flat punches of all radii on this layer."""
+        return flat_punches(self.kernel, self.sizes, kinked=bool(self.tip.breaks))
+
+    def radius(self, a: float) -> Radius:
+        """The equation of one contact radius a [m]."""
+        return self.punches.radius(a / self.unit)
+
+    def at(self, radii: ArrayLike, excess: FloatArray | None = None) -> SpringValues:
+        """y_1, g, K, M at radii > 0 [m], shape (n,); an excess a - b [m] has digits that a loses beside a flat end."""
+        x = np.atleast_1d(np.asarray(radii, dtype=np.float64))
+        if x.size > _BLOCK:
+            count = -(-x.size // _BLOCK)
+            beyond = [None] * count if excess is None else np.array_split(excess, count)
+            blocks = [self.at(*block) for block in zip(np.array_split(x, count), beyond, strict=True)]
+            return SpringValues(*(np.concatenate(one) for one in zip(*blocks, strict=True)))
+        found = SpringValues(*np.empty((4, x.size)))
+        for index, punch, resolvent, _ in self.punches.at(x / self.unit):
+            a = x[index]
+            moments = self.tip.moments(a, punch.shape[1], self.sizes.extra)
+            y1 = 1 + resolvent[:, 0]
+            alone = self.tip.transform(a) if excess is None else self.tip.transform_beyond(excess[index])
+            transform = alone + (resolvent * moments).sum(axis=1) + self._beyond_polynomials(a, moments)
+            found.y1[index], found.g[index] = y1, transform / y1
+            found.K[index], found.M[index] = a * punch[:, 0], a * (punch * moments).sum(axis=1)
+        return found
+
+    def _beyond_polynomials(self, a: FloatArray, moments: FloatArray) -> FloatArray | float:
+        """What polynomials miss of int B(a, t) g_hs dt on graded layers under kinked profiles.
+
+        At the edge B ~ -(c_1/pi) ln(a^2 - t^2), and int_0^1 b_n ln(1 - s^2) ds = -sqrt(4n + 1)/(n (2n + 1)).
+        """
+        if not (self.kernel.tail and self.tip.breaks):
+            return 0.0
+        v, w = graded(16 + self.sizes.extra, 12)
+        n = np.arange(1, moments.shape[1])
+        missed = -moments @ np.concatenate([[2 * np.log(2) - 2], -np.sqrt(4 * n + 1) / (n * (2 * n + 1))])
+        inner = [self.tip.flat, *(b for b in self.tip.breaks if b > self.tip.flat), np.inf]
+        ends = np.minimum(np.array(inner), a[:, None])
+        for low, high in zip(ends.T[:-1, :, None], ends.T[1:, :, None], strict=True):
+            t = low + (high - low) * v
+            rest = (a[:, None] - high + (high - low) * (1 - v)) * (a[:, None] + t) / a[:, None] ** 2
+            logarithm = np.log(np.maximum(rest, 1e-300))
+            missed = missed + (w * (high - low) * self.tip.quick(t) * logarithm).sum(axis=1) / a
+        return np.asarray(-self.kernel.tail[0] * (a / self.unit) / np.pi * missed)
+
+    def floor(self, radii: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Relative rounding errors of depth, and of force and stiffness, at radii [m], shape (n,)."""
+        if radii.size > _BLOCK:
+            blocks = [self.floor(block) for block in np.array_split(radii, -(-radii.size // _BLOCK))]
+            edge, whole = (np.concatenate(one) for one in zip(*blocks, strict=True))
+            return edge, whole
+        floor = np.empty((2, radii.size))
+        for index, *_, noise in self.punches.at(radii / self.unit):
+            floor[:, index] = _ROUNDINGS * EPS * (1 + noise.T)
+        if self.kernel.is_graded:
+            floor += _GRADED_KERNEL
+        return floor[0], floor[1]
+
+    def state(self, radii: FloatArray, values: SpringValues, depth: FloatArray | None = None) -> State:
+        """Equilibria at radii [m] whose springs are known, without a depth [m] those without adhesion.
+
+        The force is stationary in the radius at the depth of the equilibrium: a radius that is a little off moves it by
+        its square only. So prescribed depths are inserted as they are.
+        """
+        depth = values.g if depth is None else depth
+        force = 2 * self.modulus * (depth * values.K - values.M)
+        return State(radii, depth, force, 2 * self.modulus * values.K)
+
+    def states(self, radii: FloatArray) -> State:
+        """Equilibria without adhesion at radii [m]."""
+        return self.state(radii, self.at(radii))
+
+    def depth_of(self, force: FloatArray, values: SpringValues) -> FloatArray:
+        """Depth [m] under a force [N] where springs up to the edge are known, Eq. (4)."""
+        return np.asarray((force / (2 * self.modulus) + values.M) / values.K)
