@@ -18,7 +18,6 @@ import numpy as np
 
 from bem.adhesion.equilibrium_branch import DEPTH, FORCE, EquilibriumBranch
 from bem.adhesion.withdrawal import CONTROLS, Route
-from bem.layer_equation.flat_punch_source import IntegralEquation
 from bem.layer_equation.protocol import FlatPunchSource
 from contact import (
     ContactPath,
@@ -37,8 +36,6 @@ from contact.answer.solution import Setting
 from contact.records.validation import BoolArray, FloatArray
 from contact.stated import stated_error
 from mdr.adhesion.solver import POINTS, balance_radius, work_of_adhesion
-from mdr.adhesion.solver import solve_adhesive as adhesive_by_table
-from mdr.adhesion.solver import solve_detachment as detachment_by_table
 from mdr.admissible import is_touched_nowhere, refuse_touching_outside
 from mdr.contact_surface import surface_of
 from mdr.equilibria import (
@@ -46,12 +43,12 @@ from mdr.equilibria import (
     compared_displacement,
     compared_pressure,
     is_simple,
-    sizes_of,
     solve_elastic,
+    springs_of,
     surface_pair,
 )
 from mdr.profiles import FlatTip
-from mdr.radius_search import LARGEST_RATIO, RadiusSearch, refuse_too_wide
+from mdr.radius_search import RadiusSearch, refuse_too_wide
 from mdr.spring_bed import Springs
 from mdr.springs.shared_tables import growing_radii
 
@@ -148,11 +145,15 @@ class Adhesive:
     def _first_radius(self) -> float:
         flat, thickness = self.scene.indenter.flat_radius, self.scene.layer.surface.thickness
         first = flat + self.longer * _FIRST_WAY * (balance_radius(self.scene) - flat)
-        return first if first <= LARGEST_RATIO / 6 * thickness else self.longer * max(_THIN * thickness, 2 * flat)
+        return (
+            first
+            if first <= self.springs.largest_ratio / 6 * thickness
+            else self.longer * max(_THIN * thickness, 2 * flat)
+        )
 
 
-def _adhesive(scene: Scene, flat_punch: IntegralEquation) -> Adhesive:
-    return Adhesive(scene, Springs.of(scene.layer, scene.indenter, sizes_of(flat_punch)))
+def _adhesive(scene: Scene, flat_punch: FlatPunchSource) -> Adhesive:
+    return Adhesive(scene, springs_of(scene.layer, scene.indenter, flat_punch))
 
 
 @dataclass(frozen=True, eq=False)
@@ -221,8 +222,6 @@ def solve_detachment(scene: Scene, flat_punch: FlatPunchSource, settings: Mappin
         InvalidInput: If there is nothing to detach, or the indenter ends too early.
         UnsupportedSceneError: If the indenter would touch outside its circle of contact.
     """
-    if not isinstance(flat_punch, IntegralEquation):
-        return detachment_by_table(scene, flat_punch, settings)
     log, loading = StageLog(), scene.loading
     if not isinstance(loading, Detachment):
         raise UnsupportedSceneError(f"loading = {type(loading).__name__}: a detachment path needs Detachment")
@@ -285,8 +284,6 @@ def solve_adhesive(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[
     """
     if work_of_adhesion(scene) == 0.0:
         return replace(solve_elastic(scene.replace(effects=()), flat_punch, settings), scene=scene)
-    if not isinstance(flat_punch, IntegralEquation):
-        return adhesive_by_table(scene, flat_punch, settings)
     log = StageLog()
     with log.stage("adhesion"):
         contacts = _adhesive(scene, flat_punch)

@@ -19,6 +19,7 @@ from bem.numerics import EPS, gauss
 from contact import (
     ContactPath,
     ContactRadii,
+    ElasticLayer,
     FlatPunch,
     IndentationDepths,
     InvalidInput,
@@ -59,10 +60,6 @@ def solve_elastic(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
         SeveralContacts: If the contact would not be one circle.
         UnsupportedSceneError: If the surfaces would pull inside, or the indenter would touch outside.
     """
-    if not isinstance(flat_punch, IntegralEquation):
-        from mdr.elastic import solve_elastic as solve_by_table  # noqa: PLC0415 - loaded with tables only
-
-        return solve_by_table(scene, flat_punch, settings)
     log = StageLog()
     springs = _springs(scene, flat_punch, log)
     with log.stage("mdr_profile"):
@@ -88,9 +85,25 @@ def solve_elastic(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
     )
 
 
-def _springs(scene: Scene, flat_punch: IntegralEquation, log: StageLog) -> Springs:
-    """Springs of a scene; those of a layer are solutions of its equation."""
-    springs = Springs.of(scene.layer, scene.indenter, sizes_of(flat_punch))
+def springs_of(layer: ElasticLayer, indenter: Profile, source: FlatPunchSource) -> Springs:
+    """Springs of a layer under an indenter, by the equation of contact or by a table of flat punches.
+
+    Raises:
+        UnsupportedSceneError: If a table is asked for of a layer that is not uniform.
+        InvalidInput: If a stored table is of another layer.
+    """
+    if isinstance(source, IntegralEquation):
+        return Springs.of(layer, indenter, sizes_of(source))
+    if layer.is_half_space:
+        return Springs.of(layer, indenter)
+    from mdr.table_bed import TableSprings  # noqa: PLC0415 - loads the boundary elements
+
+    return TableSprings.of_table(layer, indenter, source)
+
+
+def _springs(scene: Scene, flat_punch: FlatPunchSource, log: StageLog) -> Springs:
+    """Springs of a scene; those of a layer are solutions of its equation, or of a table."""
+    springs = springs_of(scene.layer, scene.indenter, flat_punch)
     if not scene.layer.is_half_space:
         with log.stage("flat_punch_data"):
             log.count("flat_punch_solutions")
@@ -227,7 +240,10 @@ class ElasticErrors:
             # Between the rim of a flat end and the edge pressures go with a - b.
             "pressure": pressure + whole + moved / np.maximum(1 - self.springs.tip.flat / self.state.radius, 1e-12),
             # Outside thin layers w is a small difference of terms of the size of phi, K/a times the depth.
-            "surface_displacement": displacement + depth + moved + EPS * self.values.K / self.state.radius,
+            "surface_displacement": displacement
+            + (force if is_punch else depth)
+            + moved
+            + EPS * self.values.K / self.state.radius,
         }
 
     def _position_rounding(self) -> FloatArray | float:

@@ -13,7 +13,6 @@ from bem.layer_equation.any_layer.graded_solution import GradedSolution
 from bem.layer_equation.half_space import HalfSpaceFlatPunch
 from bem.layer_equation.protocol import FlatPunchSolution
 from bem.layer_equation.thin_layers import LargeRatioSolution
-from bem.tables.table import FlatPunchTable
 from contact import Layer, Paraboloid
 from mdr import equivalent_system
 from mdr.springs.assembly import contact_fields
@@ -75,7 +74,7 @@ def test_a_new_flat_punch_solution_makes_springs_and_fields():
 def test_springs_and_effects_ask_for_no_class_of_flat_punch_solutions():
     """Neither by isinstance nor by type(...) nor by match: what a solution can do it says by its interface."""
     kinds = _subclasses(FlatPunchSolution)
-    assert {GradedSolution, HalfSpaceFlatPunch, LargeRatioSolution, FlatPunchTable} < set(kinds)
+    assert {GradedSolution, HalfSpaceFlatPunch, LargeRatioSolution} < set(kinds)
     names = {cls.__name__ for cls in kinds}
     for path in Path(mdr.__file__).parent.rglob("*.py"):
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
