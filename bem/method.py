@@ -172,11 +172,17 @@ class Bem(Record):
                 raise InvalidInput("effects: without work of adhesion there is nothing to detach; give a positive one")
             return dataclasses.replace(_Solving(self, scene.replace(effects=()), StageLog()).pressed(), scene=scene)
         if self.adhesion == "cells":
-            from bem.cells import AdheringCells  # noqa: PLC0415 - only listed effects load
-
-            return AdheringCells(scene, self.points, self.threads, self.settings(), StageLog()).solve()
+            return self._by_cells(scene)
         solving = _Solving(self, scene, StageLog())
         return solving.detachment() if isinstance(scene.loading, Detachment) else solving.adhering()
+
+    def _by_cells(self, scene: Scene) -> ContactPath | DetachmentPath:
+        from bem.cells import solve_cells  # noqa: PLC0415 - only listed effects load
+
+        if not scene.indenter.is_convex:
+            # Discs refuse an indenter that touches outside the contact.
+            dataclasses.replace(self, adhesion="discs", points=min(self.points, 128)).solve(scene)
+        return solve_cells(scene, self.points, self.threads, self.settings())
 
     def settings(self) -> dict[str, Setting]:
         """As an answer reports them; an accuracy only where one was asked for."""

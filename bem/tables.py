@@ -147,8 +147,9 @@ class FlatPunchTable:
     @classmethod
     def of_tree(cls, tree: dict[str, Any]) -> Self:
         """The inverse of `tree`."""
-        names = ("support", "poissons_ratio", "ratios", "radii", "k_bar", "p_bar", "cells")
-        return cls(*(tree[name] for name in names), cls.of_tree(tree["coarser"]) if "coarser" in tree else None)
+        fields = {name: tree[name] for name in ("support", "poissons_ratio", "ratios", "radii", "cells")}
+        coarser = cls.of_tree(tree["coarser"]) if "coarser" in tree else None
+        return cls(**fields, stiffness=tree["k_bar"], pressure=tree["p_bar"], coarser=coarser)
 
 
 def refuse_beyond(ratio: float, largest: float) -> None:

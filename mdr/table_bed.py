@@ -22,9 +22,10 @@ import numpy as np
 from bem.equation import Radius, Rows, Sizes
 from bem.grid.discs import shared_error
 from bem.kernels.of_contact import contact_kernel
+from bem.layer_equation.protocol import FlatPunchSource
 from bem.numerics import even_legendre, gauss
-from bem.tables import RUNGS, FftTable, FlatPunchTable, TableFile
-from contact import ElasticLayer, Profile
+from bem.tables import RUNGS, SMALLEST_RATIO, FftTable, FlatPunchTable, TableFile
+from contact import ElasticLayer, InvalidInput, Profile
 from contact.records.validation import FloatArray
 from mdr.spring_bed import Springs
 
@@ -116,14 +117,16 @@ class TableSprings(Springs):
     is_tabulated: ClassVar[bool] = True
 
     @classmethod
-    def of_table(cls, layer: ElasticLayer, indenter: Profile, source: TableSource) -> TableSprings:
+    def of_table(cls, layer: ElasticLayer, indenter: Profile, source: FlatPunchSource) -> TableSprings:
         """Springs of a uniform layer.
 
         Raises:
             UnsupportedSceneError: If the layer is not uniform.
-            InvalidInput: If a stored table is of another layer.
+            InvalidInput: If a stored table is of another layer, or the source no table.
         """
-        source.solution(layer)
+        if not isinstance(source, FftTable | TableFile):
+            raise InvalidInput(f"flat_punch = {type(source).__name__}: give an IntegralEquation, FftTable or TableFile")
+        source.solution(layer, SMALLEST_RATIO)
         springs = Springs.of(layer, indenter)
         return cls(springs.kernel, springs.unit, springs.modulus, springs.tip, measured=TablePunches(source, layer))
 
@@ -137,7 +140,7 @@ class TableSprings(Springs):
         return replace(self, sizes=self.sizes.finer, measured=replace(self.measured, is_coarser=True))
 
     @property
-    def coarse(self) -> Springs:  # type: ignore[override]
+    def coarse(self) -> Springs:
         """The same springs, which cost little."""
         return self
 
