@@ -28,7 +28,7 @@ _SAMPLED = 2e-14
 # The companion's branch is so much longer, so that its polynomials have other nodes.
 _LONGER = 1.03
 # First trial radius over the flat end, in units of where height and elongation are equal on the half-space.
-_FIRST_WAY = 2.0
+FIRST_WAY = 2.0
 # a/h from which the half-space is no guide to the first trial radius.
 _THIN = 10.0
 # Largest number of contacts of a path that are checked for touching outside.
@@ -116,7 +116,7 @@ class Adhesive:
 
     def _first_radius(self) -> float:
         flat, thickness = self.scene.indenter.flat_radius, self.scene.layer.surface.thickness
-        first = flat + self.longer * _FIRST_WAY * (balance_radius(self.scene) - flat)
+        first = flat + self.longer * FIRST_WAY * (balance_radius(self.scene) - flat)
         return first if first <= LARGEST_RATIO / 6 * thickness else self.longer * max(_THIN * thickness, 2 * flat)
 
 
