@@ -35,8 +35,9 @@ from contact.records.validation import FloatArray
 # a/h beyond which A is factored by QR of its square root. Below 4 Cholesky is as good and faster; beyond 16 Cholesky
 # loses a digit of k_N at nu = 1/2.
 _ROOT_FROM = 8.0
-# Radius over a up to which tables of displacements outside are kept. Errors are compared at 1.5 a.
-_FAR = 2.0
+# Radius over a up to which tables of displacements outside are kept, and orders times largest wave number from which
+# on they are made anew: at 2e5 (a/h = 100) they take 10 MB.
+_FAR, _LARGEST_TABLE = 2.0, 2e5
 # Radii that are remembered per layer: a search asks for the same ones again. Half as many make searches slower.
 _REMEMBERED = 400
 
@@ -170,8 +171,8 @@ class Radius:
             reach: Larger than one where 1 - chi falls like a power.
         """
         waves = self._waves._replace(farthest=farthest, top=reach * self._waves.top)
-        # Tables for far points are large and asked for once.
-        kappa, w, table = (_transforms if farthest <= _FAR else _transforms.__wrapped__)(waves)
+        is_kept = farthest <= _FAR and waves.orders * waves.top < _LARGEST_TABLE
+        kappa, w, table = (_transforms if is_kept else _transforms.__wrapped__)(waves)
         use = int(np.searchsorted(kappa, reach * self.sizes.reach * self.a)) + self.sizes.nodes
         return kappa[:use], w[:use], table[:, :use]
 
