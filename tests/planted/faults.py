@@ -469,7 +469,7 @@ TIME_STEPPING = [
     Fault(
         "last scene of each full chunk of pull-offs left out",
         "mdr",
-        swap("mdr.adhesion.batch:pull_off_groups", without_the_last_of_a_full_chunk),
+        swap("mdr.pull_offs:pull_off_groups", without_the_last_of_a_full_chunk),
         Test("mdr.test_batch_sizes:test_pull_offs_of_every_size", (513,)),
     ),
     Fault(

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 from bem.layer_equation.protocol import FlatPunchSource
 from contact import Layer, Paraboloid
 from contact.records.validation import FloatArray
-from mdr.springs.assembly import equivalent_system
+from tests.bed import bed_of
 
 
 def stiffness_exponent(layer: Layer, ratio: ArrayLike, flat_punch: FlatPunchSource) -> FloatArray:
@@ -23,7 +23,7 @@ def stiffness_exponent(layer: Layer, ratio: ArrayLike, flat_punch: FlatPunchSour
     """
     xi = np.asarray(ratio, dtype=float)
     unit = layer.replace(thickness=1.0)
-    system = equivalent_system(unit, Paraboloid(radius_of_curvature=1.0), float(xi.max()), flat_punch)
+    system = bed_of(unit, Paraboloid(radius_of_curvature=1.0), flat_punch)
     exponent: FloatArray = xi**2 / system.mdr_profile(xi) - 1  # Eq. (34)
     return exponent
 

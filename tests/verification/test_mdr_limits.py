@@ -6,9 +6,9 @@ import pytest
 from bem.layer_equation.flat_punch_source import IntegralEquation
 from bem.layer_equation.fredholm_kernel import FredholmKernel
 from contact import Cone, InvalidInput, Layer, Paraboloid, TruncatedCone
-from mdr import equivalent_system
 from mdr.closed_forms.asymptotic import foundation_modulus, is_film, thin_profile, thin_spring_stiffness
 from mdr.closed_forms.truncated_cone import thin_cone_force, thin_cone_pressure, thin_cone_profile
+from tests.bed import bed_of
 from tests.verification.power_law import stiffness_exponent, stiffness_prefactor
 
 SOURCE = IntegralEquation(nodes=16)  # 2e-9 by its own estimate, far below what a limit at finite a/h can show
@@ -106,7 +106,7 @@ def test_spring_stiffness_of_thin_layers_is_half_the_derivative(name):
 def test_paraboloid_depth_of_thin_layers(name):
     """Table 1: a^2/(2R), or a^2/(4R) for the bonded incompressible layer; first order in h/a."""
     layer = LAYERS[name]
-    system = equivalent_system(layer, Paraboloid(radius_of_curvature=1.0), 80.0, SOURCE)
+    system = bed_of(layer, Paraboloid(radius_of_curvature=1.0), SOURCE)
     limit = RATIOS**2 / (4 if name == "bonded 0.5" else 2)
     np.testing.assert_allclose(thin_profile(layer, Paraboloid(radius_of_curvature=1.0), RATIOS), limit, rtol=1e-14)
     errors = system.mdr_profile(RATIOS) / limit - 1
@@ -120,7 +120,7 @@ def test_truncated_cone_on_thin_layers(name):
     layer, depth_errors, force_errors = LAYERS[name], [], []
     for a in RATIOS:
         cone = TruncatedCone(flat_radius=a / 2, slope=0.1)
-        system = equivalent_system(layer, cone, float(a), SOURCE)
+        system = bed_of(layer, cone, SOURCE)
         depth_errors.append(float(system.mdr_profile(a) / thin_cone_profile(layer, cone, a)) - 1)
         force_errors.append(float(system.elastic_force(a) / thin_cone_force(layer, cone, a)) - 1)
     for errors in (np.array(depth_errors), np.array(force_errors)):

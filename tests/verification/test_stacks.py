@@ -33,9 +33,10 @@ from contact import (
 )
 from fem_reference import Fem
 from mdr import Mdr
+from mdr.admissible import PullingContact
 from mdr.batches import equilibria
-from mdr.springs.assembly import SeveralContacts, equivalent_system
-from mdr.springs.pulling import PullingContact
+from mdr.radius_search import RadiusSearch, SeveralContacts
+from mdr.spring_bed import Springs
 
 PARABOLOID = Paraboloid(radius_of_curvature=1.0)
 
@@ -329,7 +330,7 @@ def test_wide_contacts_beyond_a_falling_profile_are_answered_where_they_press():
     radius, layer = 5.0, stack((0.2, 100.0, 0.2), (0.8, 1.0, 0.49))
     indenter = TruncatedCone(flat_radius=2.3, slope=0.1)
     with pytest.raises(SeveralContacts):
-        equivalent_system(layer, indenter, radius, IntegralEquation())
+        RadiusSearch(Springs.of(layer, indenter), may_fall=True).refuse_falls(radius)
     direct = IntegralEquationMethod().solve(Scene(layer=layer, indenter=indenter, loading=ContactRadii([radius])))
     depth, force = direct.indentation_depth, direct.normal_force
     for loading in (IndentationDepths(depth), NormalForces(force), ContactRadii([radius])):
