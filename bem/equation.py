@@ -37,7 +37,7 @@ from contact.records.validation import FloatArray
 _ROOT_FROM = 8.0
 # Radius over a up to which tables of displacements outside are kept, and orders times largest wave number from which
 # on they are made anew: at 2e5 (a/h = 100) they take 10 MB.
-_FAR, _LARGEST_TABLE = 2.0, 2e5
+_FAR, _LARGEST_TABLE = 4.0, 2e5
 # Radii that are remembered per layer: a search asks for the same ones again. Half as many make searches slower.
 _REMEMBERED = 400
 

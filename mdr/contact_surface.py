@@ -33,6 +33,8 @@ _HARD = 60.0
 _MOST_KINKS = 8
 # Share of the contact radius within which kinks make no patch of their own: around the axis there is nothing left.
 _CENTRE = 1e-3
+# Radius over a up to which all displacements outside share one table of wave numbers.
+_NEAR = 4.0
 # Wave numbers that are summed at a time.
 _CHUNK = 20_000
 # A graded layer's 1 - chi falls like 1/k: the displacement outside takes so many times more wave numbers.
@@ -87,7 +89,7 @@ class Surface:
         if self.kernel.is_uniform:
             self._phi = self._series = self._smooth = np.zeros(1)
             return
-        if self.kernel.tail and self.edge != 0:
+        if self.kernel.tail:  # phi' is smooth enough for pressures with many polynomials only
             self._radius = Radius(self.kernel, self.a / self.springs.unit, self.sizes, kinked=True)
         radius = self._radius
         load = -self.tip.moments(np.array([self.a]), radius.count, self.sizes.extra)[0]
@@ -205,7 +207,7 @@ class Surface:
         """int_0^inf (1 - chi) phi^(k) J_0(kr) dk [m]."""
         if self.kernel.is_uniform:
             return 0.0
-        kappa, weighted = self._weighted_spectrum(2.0 ** np.ceil(np.log2(max(float(far.max()) / self.a, 2.0))))
+        kappa, weighted = self._weighted_spectrum(2.0 ** np.ceil(np.log2(max(float(far.max()) / self.a, _NEAR))))
         total = np.zeros(far.shape[0])
         for part in range(0, kappa.size, _CHUNK):
             total = total + j0(far / self.a * kappa[part : part + _CHUNK]) @ weighted[part : part + _CHUNK]
@@ -238,7 +240,7 @@ class Patched(Surface):
             top = 2 * (sizes.least + int(1.25 * sizes.rate * np.sqrt(x * half)))
             self._patches.append((middle, half, np.arange(0, top, 2 if low == 0 else 1)))
         self._degree = max(int(n[-1]) for *_, n in self._patches)
-        kappa, w, _ = self._radius.waves(2.0)
+        kappa, w, _ = self._radius.waves(_NEAR)
         self._table = self._transforms(kappa)
         table = self._table
         smooth = (table * (2 / np.pi * w * self.kernel.one_minus_chi(kappa / x))) @ table.T

@@ -260,8 +260,8 @@ class RadiusSearch:
             try:
                 is_contact(radius)
             except UnsupportedSceneError as own:
-                # A circle short of the falling stretch has its own reason.
-                objection = own if radius < ring.radius else objection
+                # A circle short of the falling stretch, known to one step of the table, has its own reason.
+                objection = own if radius < ring.radius * np.exp(1 / _DENSITY) else objection
                 continue
             return radius
         raise objection

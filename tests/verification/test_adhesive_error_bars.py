@@ -20,7 +20,7 @@ from contact import (
     TruncatedParaboloid,
 )
 from mdr import Mdr
-from mdr.adhesion import solver as adhesion
+from mdr.adhesive_branch import Adhesive
 from tests.drawn_scenes import random_scene, random_scenes
 from tests.referees.pressure import reference_pressure
 from tests.referees.second_opinion import CHEAP_RATIO, adhesive_states
@@ -85,12 +85,8 @@ def test_what_is_prescribed_is_exact_and_a_difference_of_equals_says_so():
 
 
 def test_an_error_without_its_condition_number_would_be_seen(monkeypatch):
-    """The planted fault is what once was stated: the error of the springs alone."""
-
-    def bare(system, radius, depth):
-        return np.stack([np.abs(depth), np.abs(system.force(radius, depth))]) * 1e-16
-
-    monkeypatch.setattr(adhesion, "errors_at_radius", bare)
+    """The planted fault is what once was stated: the rounding error of the springs alone."""
+    monkeypatch.setattr(Adhesive, "rounding", lambda self, radius: 1e-16 * np.abs(self.states(radius)))
     with pytest.raises(AssertionError):
         test_stated_errors_cover_those_against_forty_digits(ContactRadii)
 
