@@ -12,7 +12,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bem.layer_equation.flat_punch_source import IntegralEquation
+from bem.flat_punch import IntegralEquation
 from bem.layer_equation.protocol import FlatPunchSolution
 from cases.results.records.figure import Figure, Series
 from contact import Layer

@@ -63,7 +63,7 @@ def seconds_of(call):
 def test_time_grows_at_most_linearly_with_the_number_of_relaxation_times():
     import numpy as np
 
-    from bem.layer_equation.flat_punch_source import IntegralEquation
+    from bem.flat_punch import IntegralEquation
     from contact import PronySeries
     from mdr.impact.solver import impact_batch
     from tests.mdr.viscoelastic_scenes import GLASSY_BRANCH, LONG_TERM

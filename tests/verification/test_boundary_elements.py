@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from bem.flat_punch import IntegralEquation
 from bem.layer_equation.contact_density import ContactDensity
-from bem.layer_equation.flat_punch_source import IntegralEquation
 from bem.method import Bem
 from bem.polynomials.mapped import MappedFunction, MappedGrid
 from bem.tables.from_grid import FftTable

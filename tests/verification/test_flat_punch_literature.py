@@ -7,7 +7,7 @@ the literature are used within their own accuracy.
 import numpy as np
 import pytest
 
-from bem.layer_equation.flat_punch_source import IntegralEquation
+from bem.flat_punch import IntegralEquation
 from contact import Layer
 
 SOURCE = IntegralEquation()

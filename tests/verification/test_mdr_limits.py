@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bem.layer_equation.flat_punch_source import IntegralEquation
+from bem.flat_punch import IntegralEquation
 from bem.layer_equation.fredholm_kernel import FredholmKernel
 from contact import Cone, InvalidInput, Layer, Paraboloid, TruncatedCone
 from mdr.closed_forms.asymptotic import foundation_modulus, is_film, thin_profile, thin_spring_stiffness
