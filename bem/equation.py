@@ -35,6 +35,8 @@ from contact.records.validation import FloatArray
 # a/h beyond which A is factored by QR of its square root. Below 4 Cholesky is as good and faster; beyond 16 Cholesky
 # loses a digit of k_N at nu = 1/2.
 _ROOT_FROM = 8.0
+# Radius over a up to which tables of displacements outside are kept. Errors are compared at 1.5 a.
+_FAR = 2.0
 # Radii that are remembered per layer: a search asks for the same ones again. Half as many make searches slower.
 _REMEMBERED = 400
 
@@ -92,21 +94,25 @@ COARSE = Sizes(5, 3.0, 10, 8.0, 6, -6)
 
 
 class _Waves(NamedTuple):
-    """Table of wave numbers kappa = k a: panels from 2^lowest to `top`, `orders` polynomials, `nodes` per panel."""
+    """Table of wave numbers kappa = k a: panels from 2^lowest to `top`, `orders` polynomials, `nodes` per panel.
+
+    Panels are at most four periods of cos(kappa) cos(`farthest` kappa) wide.
+    """
 
     lowest: int
     top: float
     orders: int
     nodes: int
+    farthest: float = 1.0
 
     @property
     def ends(self) -> FloatArray:
-        """Octaves up to 16, then panels of two periods."""
-        octaves = np.concatenate([[0.0], 2.0 ** np.arange(self.lowest, min(4, np.ceil(np.log2(self.top))) + 1)])
-        if self.top <= 16:
-            return octaves
-        even = 16 + 4 * np.pi * np.arange(1, np.ceil((self.top - 16) / (4 * np.pi)) + 1)
-        return np.concatenate([octaves, even])
+        """Octaves as long as they are narrow enough, then panels of equal width."""
+        last = int(5 - np.log2(1 + self.farthest))
+        octaves = 2.0 ** np.arange(min(self.lowest, last), min(last, np.ceil(np.log2(self.top))) + 1)
+        octaves = np.append(0.0, octaves)
+        first, width = octaves[-1], 8 * np.pi / (1 + self.farthest)
+        return np.append(octaves, first + width * np.arange(1, max(0, np.ceil((self.top - first) / width)) + 1))
 
 
 @lru_cache(maxsize=64)
@@ -156,12 +162,18 @@ class Radius:
         deepest = octave - 4 - int(np.ceil(np.log2(self.kernel.longest)))
         return min(deepest if self.a > 2.0 ** (octave - 2) else deepest - 20, 3)
 
-    @property
-    def waves(self) -> tuple[FloatArray, FloatArray]:
-        """Wave numbers k a and their weights, up to where 1 - chi is rounding."""
-        kappa, w, _ = _transforms(self._waves)
-        use = int(np.searchsorted(kappa, self.sizes.reach * self.a)) + self.sizes.nodes
-        return kappa[:use], w[:use]
+    def waves(self, farthest: float = 1.0, reach: float = 1.0) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Wave numbers k a, weights and c_n, up to `reach` times where 1 - chi is rounding.
+
+        Args:
+            farthest: Farthest radius over a at which a field is computed; a power of two, so that tables are shared.
+            reach: Larger than one where 1 - chi falls like a power.
+        """
+        waves = self._waves._replace(farthest=farthest, top=reach * self._waves.top)
+        # Tables for far points are large and asked for once.
+        kappa, w, table = (_transforms if farthest <= _FAR else _transforms.__wrapped__)(waves)
+        use = int(np.searchsorted(kappa, reach * self.sizes.reach * self.a)) + self.sizes.nodes
+        return kappa[:use], w[:use], table[:, :use]
 
     @property
     def is_rooted(self) -> bool:

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from mdr.method import Mdr
-    from mdr.springs.assembly import SeveralContacts, equivalent_system
+    from mdr.radius_search import SeveralContacts
+    from mdr.springs.assembly import equivalent_system
     from mdr.springs.equivalent_system import EquivalentSystem
 
 __all__ = ["EquivalentSystem", "Mdr", "SeveralContacts", "equivalent_system"]
@@ -19,7 +20,7 @@ __all__ = ["EquivalentSystem", "Mdr", "SeveralContacts", "equivalent_system"]
 _HOME = {
     "EquivalentSystem": "mdr.springs.equivalent_system",
     "Mdr": "mdr.method",
-    "SeveralContacts": "mdr.springs.assembly",
+    "SeveralContacts": "mdr.radius_search",
     "equivalent_system": "mdr.springs.assembly",
 }
 

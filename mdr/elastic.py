@@ -27,7 +27,8 @@ from contact.answer.friction import told_of_friction
 from contact.answer.inside import InteriorFields, KnownContact
 from contact.answer.solution import Setting
 from contact.records.validation import FloatArray
-from mdr.springs.assembly import SeveralContacts, contact_fields
+from mdr.radius_search import SeveralContacts
+from mdr.springs.assembly import contact_fields
 from mdr.springs.beside_contact import refuse_touching_beside
 from mdr.springs.equivalent_system import EquivalentSystem
 from mdr.springs.error_model import PRESSURE_ROUNDING, SAMPLED_ROUNDING

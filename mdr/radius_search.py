@@ -7,13 +7,14 @@ several radii have one depth, and the caller says which of them is a contact.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Iterator
 from typing import Literal
 
 import numpy as np
 
 from bem.numerics import EPS
-from contact import InvalidInput, UnsupportedSceneError
+from contact import InvalidInput, Profile, UnsupportedSceneError
 from contact.records.validation import FloatArray
 from mdr.spring_bed import Springs
 
@@ -21,6 +22,8 @@ Quantity = Literal["depth", "force"]
 
 # Contact radius over the thickness of the surface material up to which contacts are answered.
 LARGEST_RATIO = 1000.0
+# Trial radii double up to this share of an upright end's radius, and come closer to it by these shares.
+_NEAR_END, _CLOSER = 0.7, (0.2, 0.05, 0.01, 1e-3, 1e-6)
 # Radii per e-fold of the rough table. Half as many cost one more secant step.
 _DENSITY = 6
 # Secant steps before a search gives up; four are usual.
@@ -48,6 +51,22 @@ def largest_radius(springs: Springs) -> float:
     """Largest contact radius [m] that is answered: the indenter's end, or `LARGEST_RATIO` thicknesses."""
     thickest = np.inf if springs.kernel.is_uniform else springs.unit * springs.kernel.units
     return min(springs.tip.end, LARGEST_RATIO * thickest)
+
+
+def growing_radii(indenter: Profile, first: float) -> Iterator[float]:
+    """Trial radii [m], each way from the flat end twice the one before, up to the end.
+
+    A end where the flank is upright is approached, not reached.
+    """
+    flat, end = indenter.flat_radius, indenter.max_radius
+    way = first - flat
+    while math.isinf(end) or flat + way < _NEAR_END * end:
+        yield flat + way
+        way *= 2.0
+    upright = not np.isfinite(indenter.slope_at(end))
+    yield from (end * (1.0 - share) for share in _CLOSER if upright)
+    if not upright:
+        yield end
 
 
 def refuse_too_wide(springs: Springs, radius: float) -> None:

@@ -6,24 +6,17 @@ import pytest
 from bem.layer_equation.flat_punch_source import IntegralEquation
 from contact import (
     Cone,
-    ContactRadii,
     FlatPunch,
-    IndentationDepths,
     InvalidInput,
     Layer,
-    LayerStack,
     Paraboloid,
     PowerLaw,
-    Scene,
     Sphere,
-    Sublayer,
     Tabulated,
     TruncatedCone,
     TruncatedParaboloid,
     UnsupportedSceneError,
 )
-from mdr import Mdr
-from mdr.springs import assembly
 from mdr.springs.assembly import equivalent_system
 
 LAYER = Layer(thickness=2e-3, youngs_modulus=1e6, poissons_ratio=0.5)
@@ -97,23 +90,6 @@ def test_a_thick_layer_is_a_half_space_to_first_order_in_the_ratio(indenter):
     assert errors[1] < 2e-4
 
 
-@pytest.mark.parametrize("nodes", [6, 8, 12])
-@pytest.mark.parametrize("indenter", INDENTERS, ids=lambda i: type(i).__name__)
-def test_a_profile_is_resolved_as_finely_as_its_flat_punch(indenter, nodes):
-    """Coarse panels once cut the profile of a truncated cone into thousands of pieces, and took half a minute."""
-    coarse = equivalent_system(LAYER, indenter, 7e-3, IntegralEquation(nodes=nodes))
-    exact = system_of(LAYER, indenter)
-    assert coarse.profile.grid.left.size <= 2 * exact.profile.grid.left.size
-    radii = np.linspace(indenter.flat_radius, 7e-3, 23)[1:]
-    stated = coarse.relative_errors(radii)["indentation_depth"]
-    error = np.abs(coarse.mdr_profile(radii) / exact.mdr_profile(radii) - 1)
-    assert np.all(error <= stated)
-    scene = Scene(layer=LAYER, indenter=indenter, loading=ContactRadii(radii))
-    path = Mdr(flat_punch=IntegralEquation(nodes=nodes)).solve(scene)
-    error = np.abs(path.normal_force / exact.elastic_force(radii) - 1)
-    assert np.all(error <= path.error_estimate["normal_force"])
-
-
 def test_the_flat_punch_has_no_profile():
     system = system_of(LAYER, FlatPunch(radius=4e-3), 4e-3)
     assert system.mdr_profile(4e-3) == 0.0
@@ -144,28 +120,3 @@ def test_beyond_the_range_is_refused_with_the_value():
         system.excess_at_depth(1.0)
     with pytest.raises(InvalidInput, match="normal_force"):
         system.excess_at_force(-1.0)
-
-
-def test_contacts_with_a_stack_share_the_pieces_of_one_load(monkeypatch):
-    """Each contact had its own before, which took a tenth of an answer."""
-    layer = LayerStack(
-        sublayers=tuple(Sublayer(thickness=0.5, youngs_modulus=E, poissons_ratio=0.3) for E in (2.0, 1.0)),
-        interfaces=("bonded",),
-    )
-    indenter = TruncatedCone(flat_radius=0.3, slope=0.1)
-    scene = Scene(layer=layer, indenter=indenter, loading=IndentationDepths([0.05]))
-    whole = Mdr().solve(scene)
-    made, loads = [], assembly.half_space_function
-    monkeypatch.setattr(assembly, "half_space_function", lambda *args: made.append(args) or loads(*args))
-    path = Mdr().solve(scene)
-    assert len(made) == 1
-    radius = np.array([0.1, 0.5, 0.95]) * float(path.contact_radius[0])
-    alone = assembly.contact_fields(
-        layer,
-        indenter,
-        path.fields.flat_punch,
-        excess=float(path.fields.excess[0]),
-        depth=0.05,
-        edge=False,
-    )
-    np.testing.assert_allclose(whole.pressure(radius), alone.pressure(radius), rtol=1e-12, atol=0)

@@ -33,9 +33,10 @@ from contact import (
 )
 from fem_reference import Fem
 from mdr import Mdr
+from mdr.admissible import PullingContact
 from mdr.batches import equilibria
-from mdr.springs.assembly import SeveralContacts, equivalent_system
-from mdr.springs.pulling import PullingContact
+from mdr.radius_search import SeveralContacts
+from mdr.springs.assembly import equivalent_system
 
 PARABOLOID = Paraboloid(radius_of_curvature=1.0)
 
