@@ -20,7 +20,7 @@ from scipy.linalg import cho_factor, cho_solve
 from scipy.special import j0
 
 from bem.equation import Radius
-from bem.numerics import even_legendre, gauss, graded, spherical_bessel
+from bem.numerics import even_bessel, even_legendre, gauss, graded, spherical_bessel
 from contact import InvalidInput
 from contact.records.validation import FloatArray
 from mdr.spring_bed import Springs

@@ -28,7 +28,7 @@ from scipy.special import j0, j1
 from bem.equation import Sizes
 from bem.kernels.of_layer import surface_kernel
 from bem.kernels.stack import Material, Transfer, half_space_at
-from bem.numerics import even_bessel, gauss, panels
+from bem.numerics import EPS, even_bessel, gauss, panels
 from contact import ElasticLayer, InvalidInput
 from contact.answer.inside import InsideFields, KnownContact
 from contact.records.validation import FloatArray
@@ -51,7 +51,8 @@ _POINTS, _WAVES = 1000, 1 << 18
 # Contact radii from the contact of which stresses on a half-space, which fall like 1/r^2, are below all roundings; and
 # contact radii and thicknesses by which those on a layer, which fall exponentially, have vanished long ago.
 _FARTHEST, _FARTHEST_OF_WAVES = 1e8, 1e3
-# Roundings, in those of the contact's force, over the sum of the sizes of the terms; half of it is exceeded at times.
+# Roundings of the sum of the sizes of all terms, in those of the contact's force, and of the distance to its edge;
+# half of it is exceeded at times.
 _ROUNDINGS = 4.0
 
 
@@ -286,7 +287,13 @@ class Interior:
         surface = self.contacts[0][1][0]
         floor = _ROUNDINGS * float(surface.springs.floor(np.array([surface.a]))[1][0])
         near = np.hypot(radius - self.known.radius, np.maximum(z, _NEAREST * self.known.radius))
-        errors = SAFETY * np.abs(values - other) + floor * (1 + self.known.radius / near) * sizes
+        errors = SAFETY * np.abs(values - other) + (floor + _ROUNDINGS * EPS * self.known.radius / near) * sizes
+        rises = 1 / min(
+            1.0, max(getattr(surface.tip, "exponent", 2.0) - 1, 0.1)
+        )  # stress at a tip r^n goes with z^(n-1)
+        raised = 2 * rises * np.maximum(_NEAREST * self.known.radius - z, 0.0)
+        errors[:2] += raised * np.abs(values[2:6]).max(axis=0) / self.layer.contact_modulus
+        errors[2:7] += raised * np.abs(values[7:]).max(axis=0)
         return InsideFields(**Fields(*values)._asdict(), error_estimate=self._stated(values, errors))
 
     def _sum(self, which: int, r: FloatArray, z: FloatArray) -> tuple[FloatArray, FloatArray]:
