@@ -38,6 +38,7 @@ from contact.records.validation import FloatArray
 from contact.stated import stated_error
 from mdr.admissible import refuse_pulling, refuse_touching_outside
 from mdr.contact_surface import Surface, is_hard, surface_of
+from mdr.profiles import FlatTip
 from mdr.radius_search import Quantity, RadiusSearch, refuse_too_wide
 from mdr.spring_bed import Springs, SpringValues, State
 
@@ -308,7 +309,8 @@ def compared_pressure(pair: list[Surface], scale: float) -> float:
 def compared_displacement(pair: list[Surface]) -> float:
     """Stated error of the displacement outside a contact over the depth, by two resolutions."""
     outside = pair[0].a * _OUTSIDE
-    outside = outside[outside < pair[0].tip.end]
+    if not isinstance(pair[0].tip, FlatTip):  # a punch's flank is upright
+        outside = outside[outside < pair[0].tip.end]
     if not outside.size:
         return _FIELD_ROUNDING
     values = [surface.displacement(outside) for surface in pair]
