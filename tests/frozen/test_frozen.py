@@ -1,4 +1,8 @@
-"""Random scenes are answered as the code did when they were frozen, within the sum of both stated errors."""
+"""Random scenes are answered as the code did when they were frozen, within the sum of both stated errors.
+
+Three frozen values were wrong, and independent ones stand in their place: pressures of thin layers 1 and 4 by the
+direct equation, and the displacement far from the contact of thin layer 9, which vanishes.
+"""
 
 import json
 
