@@ -1,7 +1,7 @@
 """Random scenes are answered as the code did when they were frozen, within the sum of both stated errors.
 
-Three frozen values were wrong, and independent ones stand in their place: pressures of thin layers 1 and 4 by the
-direct equation, and the displacement far from the contact of thin layer 9, which vanishes.
+Some frozen values were wrong, and independent ones stand in their place: pressures of thin layers 1 and 4 and depths
+and forces of graded layer 19 by the direct equation, and the displacement outside of thin layer 9, which vanishes.
 """
 
 import json
