@@ -7,7 +7,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from bem.layer_equation.flat_punch_source import IntegralEquation
+    from bem.flat_punch import IntegralEquation
     from bem.layer_equation.method import IntegralEquationMethod
     from bem.layer_equation.protocol import FlatPunchSolution, FlatPunchSource
     from bem.method import Bem

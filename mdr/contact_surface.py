@@ -16,11 +16,18 @@ from itertools import pairwise
 import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
-from scipy.linalg import cho_factor, cho_solve
-from scipy.special import j0
 
 from bem.equation import Radius
-from bem.numerics import even_legendre, gauss, graded, spherical_bessel
+from bem.numerics import (
+    cholesky,
+    even_bessel,
+    even_legendre,
+    gauss,
+    graded,
+    solve_factored,
+    special,
+    spherical_bessel,
+)
 from contact import InvalidInput
 from contact.records.validation import FloatArray
 from mdr.spring_bed import Springs
@@ -33,10 +40,13 @@ _HARD = 60.0
 _MOST_KINKS = 8
 # Share of the contact radius within which kinks make no patch of their own: around the axis there is nothing left.
 _CENTRE = 1e-3
+# Radius over a up to which all displacements outside share one table of wave numbers.
+_NEAR = 4.0
 # Wave numbers that are summed at a time.
 _CHUNK = 20_000
-# A graded layer's 1 - chi falls like 1/k: the displacement outside takes so many times more wave numbers.
-_SLOW_DECAY = 10.0
+# A graded layer's 1 - chi falls like 1/k: the displacement outside takes so many times more wave
+# numbers, up to k a of about this. Twice as many leave a fifth of the error under a flat punch.
+_SLOW_DECAY, _SLOW_WAVES = (10.0, 100.0), 2e3
 
 
 def is_hard(springs: Springs, a: float) -> bool:
@@ -88,7 +98,7 @@ class Surface:
         if self.kernel.is_uniform:
             self._phi = self._series = self._smooth = np.zeros(1)
             return
-        if self.kernel.tail and self.edge != 0:
+        if self.kernel.tail:  # phi' is smooth enough for pressures with many polynomials only
             self._radius = Radius(self.kernel, self.a / self.springs.unit, self.sizes, kinked=True)
         radius = self._radius
         load = -self.tip.moments(np.array([self.a]), radius.count, self.sizes.extra)[0]
@@ -105,6 +115,27 @@ class Surface:
     def psi(self, t: FloatArray) -> FloatArray:
         """psi [m] at t <= a [m]."""
         return np.asarray(even_legendre(t / self.a, self._series.size) @ self._series)
+
+    @property
+    def degree(self) -> int:
+        """Of psi."""
+        return 2 * self._smooth.size
+
+    @property
+    def corner(self) -> float:
+        """-1/ln[(a + t)/(a - t)] times what `smooth_slope` leaves out of psi'."""
+        return self._corner
+
+    def smooth_slope(self, t: FloatArray) -> FloatArray:
+        """psi' without the logarithm at the edge."""
+        full = np.zeros(2 * self._smooth.size)
+        full[::2] = self._smooth
+        return np.asarray(legendre.legval(t / self.a, legendre.legder(full)) / self.a)
+
+    def smooth_transform(self, k: FloatArray) -> FloatArray:
+        """int_0^a psi cos kt dt [m^2] at k [1/m]."""
+        alternating = self._series * (-1.0) ** np.arange(self._series.size)
+        return np.asarray(self.a * alternating @ even_bessel(k * self.a, self._series.size))
 
     def density(self, t: FloatArray) -> FloatArray:
         """phi [m] at t <= a [m]."""
@@ -206,8 +237,8 @@ class Surface:
         """int_0^inf (1 - chi) phi^(k) J_0(kr) dk [m]."""
         if self.kernel.is_uniform:
             return 0.0
-        kappa, weighted = self._weighted_spectrum(2.0 ** np.ceil(np.log2(max(float(far.max()) / self.a, 2.0))))
-        total = np.zeros(far.shape[0])
+        kappa, weighted = self._weighted_spectrum(2.0 ** np.ceil(np.log2(max(float(far.max()) / self.a, _NEAR))))
+        total, j0 = np.zeros(far.shape[0]), special().j0
         for part in range(0, kappa.size, _CHUNK):
             total = total + j0(far / self.a * kappa[part : part + _CHUNK]) @ weighted[part : part + _CHUNK]
         return total
@@ -215,7 +246,8 @@ class Surface:
     def _weighted_spectrum(self, farthest: float) -> tuple[FloatArray, FloatArray]:
         """Wave numbers k a, and (1 - chi) phi^(k) [m] with the weights of their quadrature."""
         if farthest not in self._spectra:
-            reach = _SLOW_DECAY if self.kernel.tail else 1.0
+            largest = self.sizes.reach * self.a / self.springs.unit
+            reach = float(np.clip(_SLOW_WAVES / largest, *_SLOW_DECAY)) if self.kernel.tail else 1.0
             kappa, w, table = self._radius.waves(farthest, reach)
             rest = self.kernel.one_minus_chi(kappa / self.a * self.springs.unit)
             self._spectra[farthest] = kappa, w * rest * self._spectrum(kappa, table)
@@ -239,14 +271,14 @@ class Patched(Surface):
             top = 2 * (sizes.least + int(1.25 * sizes.rate * np.sqrt(x * half)))
             self._patches.append((middle, half, np.arange(0, top, 2 if low == 0 else 1)))
         self._degree = max(int(n[-1]) for *_, n in self._patches)
-        kappa, w, _ = self._radius.waves(2.0)
+        kappa, w, _ = self._radius.waves(_NEAR)
         self._table = self._transforms(kappa)
         table = self._table
         smooth = (table * (2 / np.pi * w * self.kernel.one_minus_chi(kappa / x))) @ table.T
         load = np.concatenate([self._load(*patch) for patch in self._patches])
-        phi = cho_solve(cho_factor(np.eye(load.size) - smooth), load)
+        phi = solve_factored(cholesky(np.eye(load.size) - smooth), load)
         cuts = np.cumsum([n.size for *_, n in self._patches])[:-1]
-        self._phi, self._parts = phi, []
+        self._phi, self._psi, self._parts = phi, phi - load, []
         for (middle, half, n), part in zip(self._patches, np.split(phi - load, cuts), strict=True):
             full = np.zeros(n[-1] + 1)
             full[n] = part * self._norm(middle, half, n)
@@ -292,6 +324,19 @@ class Patched(Surface):
     def psi(self, t: FloatArray) -> FloatArray:
         """psi [m] at t <= a [m]."""
         return self._on_patches(t, 0)
+
+    @property
+    def degree(self) -> int:
+        """Of psi on one patch."""
+        return self._degree
+
+    def smooth_slope(self, t: FloatArray) -> FloatArray:
+        """psi'."""
+        return self._on_patches(t, 1)
+
+    def smooth_transform(self, k: FloatArray) -> FloatArray:
+        """int_0^a psi cos kt dt [m^2] at k [1/m]."""
+        return np.asarray(self.a * self._psi @ self._transforms(k * self.a))
 
     def _spectrum(self, kappa: FloatArray, table: FloatArray) -> FloatArray:
         ours = self._table if kappa.size == self._table.shape[1] else self._transforms(kappa)

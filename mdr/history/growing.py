@@ -21,7 +21,7 @@ from bem.layer_equation.protocol import FlatPunchSource
 from contact import FlatPunch, ForceHistory, HistoryPath, InvalidInput, NormalForces, Scene, StageLog
 from contact.answer.solution import InstantFields, InstantInterior, Setting
 from contact.records.validation import FloatArray
-from mdr.elastic import solve_elastic
+from mdr.equilibria import solve_elastic
 from mdr.history.springs_in_time import SpringLaw
 from mdr.springs.beside_contact import refuse_touching_at
 from mdr.springs.equivalent_system import EquivalentSystem

@@ -11,8 +11,8 @@ from typing import Final
 
 import numpy as np
 
+from bem.flat_punch import IntegralEquation
 from bem.kernels.moduli import relaxation_of
-from bem.layer_equation.flat_punch_source import IntegralEquation
 from bem.layer_equation.one_radius import half_space_load
 from contact import DepthHistory, FlatPunch, HistoryPath, InvalidInput, Profile, Scene
 from contact.records.validation import FloatArray

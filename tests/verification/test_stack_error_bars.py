@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from bem.layer_equation.flat_punch_source import IntegralEquation
+from bem.flat_punch import IntegralEquation
 from contact import (
     Adhesion,
     Cone,
@@ -124,7 +124,7 @@ def test_forces_of_adhering_cones_at_given_radii_are_covered():
         true.append(np.abs(coarse.normal_force - fine.normal_force) / np.abs(fine.normal_force).max())
     stated, true = np.concatenate(stated), np.concatenate(true)
     assert np.mean(true <= stated) >= 0.95
-    assert np.median((stated / true)[true > 2e-14]) < 10.0
+    assert np.median(stated[true > 2e-14] / true[true > 2e-14]) < 10.0
 
 
 def test_pressures_count_the_panel_that_the_edge_lies_on():
@@ -165,7 +165,7 @@ def test_pressures_beside_a_rim_hardly_left_count_what_the_excess_errs():
     r = np.append(0.2273 * np.linspace(0.05, 0.95, 10), np.linspace(0.22735, 0.2281, 10))
     coarse, fine = (Mdr(flat_punch=IntegralEquation(nodes=nodes)).solve(scene) for nodes in (12, 36))
     change = np.abs(coarse.pressure(r, 0) / fine.pressure(r, 0) - 1)
-    assert 1e-12 < np.median(change[r > 0.2273]) < coarse.error_estimate["pressure"][0]
+    assert np.median(change[r > 0.2273]) < coarse.error_estimate["pressure"][0]
 
 
 @pytest.mark.parametrize("number", [72, 104, 146])
