@@ -2,14 +2,15 @@
 
     CONTACT_REFEREES_PYTHON=PYTHON python -m benchmarks.outside_grids
 
-Each outside code answers a paraboloid at one depth, under a half-space and a bonded layer, on finer and finer grids; our
-boundary elements answer on the coarsest grid whose force is as exact. Times of outside codes are
-those of their processes less that of a grid of 16 points: the start of an interpreter does not count.
+Each outside code answers a paraboloid at one depth, under a half-space and a bonded layer, on finer and finer grids. Our
+boundary elements answer on the coarsest grid whose force is as exact. Times of outside codes are those of their
+processes less that of a grid of 16 points: the start of an interpreter does not count.
 """
 
 import os
 import sys
 import time
+from typing import Any
 
 import numpy as np
 
@@ -28,12 +29,13 @@ BODIES = {
 def measured(method: Method, scene: Scene, exact: float) -> tuple[float, float]:
     """Processor seconds with child processes, and the relative error of the force."""
     before = os.times()
-    path = method.solve(scene)
+    path: Any = method.solve(scene)
     after = os.times()
     seconds = sum(
         getattr(after, k) - getattr(before, k) for k in ("user", "system", "children_user", "children_system")
     )
-    return seconds, abs(float(path.normal_force[0]) / exact - 1.0)
+    force = float(np.asarray(path.normal_force)[0])
+    return seconds, abs(force / exact - 1.0)
 
 
 def ours(scene: Scene, exact: float, error: float) -> tuple[int, float, float]:
