@@ -2,7 +2,7 @@
 
     CONTACT_REFEREES_PYTHON=PYTHON python -m benchmarks.outside_grids
 
-Each outside code answers a paraboloid at one depth, under a half-space and a bonded layer, on finer and finer grids. Our
+Each outside code answers a paraboloid at one depth, under a half-space and a bonded layer, on finer grids. Our
 boundary elements answer on the coarsest grid whose force is as exact. Times of outside codes are those of their
 processes less that of a grid of 16 points: the start of an interpreter does not count.
 """
