@@ -6,8 +6,9 @@ import dataclasses
 
 import numpy as np
 
-from contact.files.units import prefix_for, unit_of
-from contact.records.record import Record, shown
+from contact.records.errors import shown
+from contact.records.record import Record, unit_of
+from contact.records.units import prefix_for
 from contact.records.validation import FloatArray
 from contact.scene.scene import Scene
 
