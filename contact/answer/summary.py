@@ -48,7 +48,7 @@ def _ends(values: FloatArray, form: str) -> str:
 
 
 def _call(item: Record) -> str:
-    fields = dataclasses.fields(item)  # type: ignore[arg-type]  # every record is a dataclass
+    fields = dataclasses.fields(item)
     parts = ((field.name, getattr(item, field.name)) for field in fields)
     shown_fields = (f"{name}={_value(value, unit_of(type(item), name))}" for name, value in parts if value is not None)
     return f"{type(item).__name__}({', '.join(shown_fields)})"

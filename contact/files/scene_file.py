@@ -19,6 +19,7 @@ from contact.records.units import MEASURES
 from contact.records.validation import COLUMN, RANGE
 from contact.scene.depth_functions import DEPTH_FUNCTIONS
 from contact.scene.effects import EFFECTS, Viscoelasticity
+from contact.scene.elastic_layer import ElasticLayer
 from contact.scene.graded_layer import GradedLayer
 from contact.scene.layer import Layer
 from contact.scene.layer_stack import ElasticBase, LayerStack, Sublayer
@@ -119,6 +120,16 @@ def scene_to_mapping(scene: AnyScene) -> dict[str, Any]:
         "loading": table_of(scene.loading),
         "effects": [table_of(effect) for effect in scene.effects],
     }
+
+
+def layer_of(table: Mapping[str, Any]) -> ElasticLayer:
+    """The layer that `table_of` wrote.
+
+    Raises:
+        InvalidInput: With the path of the offending entry, its value and the remedy.
+    """
+    kinds: dict[object, type[ElasticLayer]] = {cls.kind(): cls for cls in (LayerStack, GradedLayer)}
+    return read(kinds.get(table.get("kind"), Layer), table, "layer")
 
 
 def table_of(item: Record) -> dict[str, Any]:

@@ -21,7 +21,7 @@ from contact.records.errors import OF_PARTS, SHOWN, InvalidInput, printable, ref
 from contact.records.units import Unit
 
 # Validators are built when the first record of a class is made: scenes use few of the classes.
-_CONFIG = pydantic.ConfigDict(arbitrary_types_allowed=True, extra="forbid", defer_build=True)
+_CONFIG = pydantic.ConfigDict(arbitrary_types_allowed=True, extra="forbid", strict=True, defer_build=True)
 # Fields by other names that books and users give them.
 _MEANT = {
     "base": "support",
@@ -75,7 +75,7 @@ class Record:
             return given
         if not isinstance(given, ArgsKwargs) and fields.get("kind") == cls.kind():
             given = fields = {name: value for name, value in fields.items() if name != "kind"}
-        known = [field.name for field in dataclasses.fields(cls)]  # type: ignore[arg-type]  # a record is one
+        known = [field.name for field in dataclasses.fields(cls)]
         unknown = [name for name in fields or () if name not in known]
         if unknown:
             raise refused(*(f"{_key(name)} = {shown(fields[name])}: {_no_such(name, known)}" for name in unknown))
@@ -91,9 +91,8 @@ class Record:
             lines = [line for line in text.splitlines() if line.strip().startswith(f"{name}: ")]
             field["description"] = lines[0].partition(": ")[2] if lines else ""
         further = dict(cls.WRITTEN)
-        schema["properties"] = (
-            {"kind": {"const": cls.kind()}} | schema.get("properties", {}) | further.pop("properties", {})
-        )
+        own = {"kind": {"const": cls.kind()}} if cls.NAMED else {}
+        schema["properties"] = own | schema.get("properties", {}) | further.pop("properties", {})
         replaced = further.pop("replaced", ())
         required = [name for name in schema.get("required", ()) if name not in replaced]
         return schema | further | {"required": [*(["kind"] if cls.NAMED else []), *required]}
@@ -191,20 +190,20 @@ def read(cls: type[R], table: Mapping[str, Any], name: str, context: object = No
         InvalidInput: One line for each problem, with its place in the tables; the record itself is called by the name.
     """
     try:
-        return TypeAdapter(cls).validate_python(table, context=context)
+        return TypeAdapter(cls).validate_python(table, strict=False, context=context)
     except pydantic.ValidationError as error:
         raise InvalidInput(describe(error, "", top=name)) from None
 
 
 def unit_of(cls: type[Record], field: str) -> str | None:
     """SI unit of a field of a record; None where it is a pure number or no number."""
-    found = [part for part in _parts(_hints(cls).get(field)) if isinstance(part, Unit)]
-    return found[0].name if found else None
+    return _units(cls).get(field)  # type: ignore[arg-type]  # a class is hashable, whatever its instances are
 
 
 @functools.cache
-def _hints(cls: type[Record]) -> dict[str, Any]:
-    return get_type_hints(cls, include_extras=True)
+def _units(cls: type[Record]) -> dict[str, str]:
+    parts = {name: _parts(hint) for name, hint in get_type_hints(cls, include_extras=True).items()}
+    return {name: part.name for name, found in parts.items() for part in found if isinstance(part, Unit)}
 
 
 def _parts(annotation: Any) -> Iterable[Any]:

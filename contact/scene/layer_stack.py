@@ -75,8 +75,8 @@ class LayerStack(ElasticLayer):
 
     NAMED: ClassVar[bool] = True
 
-    sublayers: Annotated[tuple[Sublayer, ...], Field(max_length=MAX_SUBLAYERS)]
-    interfaces: tuple[Interface, ...] = ()
+    sublayers: Annotated[tuple[Sublayer, ...], Field(max_length=MAX_SUBLAYERS, strict=False)]
+    interfaces: Annotated[tuple[Interface, ...], Field(strict=False)] = ()
     support: Supported = "bonded"
 
     @model_validator(mode="after")

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 # Half angles beyond these are no indenter: in radians, a needle and a plane.
 _NARROWEST, _WIDEST = 1e-3, math.pi / 2 - 1e-6
-_SLOPED: Mapping[str, Any] = {
+_SLOPED: dict[str, Any] = {
     "properties": {"half_angle": {"type": "string", "description": 'from the axis to the flank, as in "35 deg"'}},
     "replaced": ("slope",),
     "oneOf": [{"required": ["slope"]}, {"required": ["half_angle"]}],

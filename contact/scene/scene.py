@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Annotated, Any, Generic, Self, TypeAlias, overload
 
 import numpy as np
-from pydantic import AfterValidator, BeforeValidator, Strict, field_validator, model_validator
+from pydantic import AfterValidator, BeforeValidator, field_validator, model_validator
 from typing_extensions import TypeVar
 
 from contact.records.record import OneOf, Record, record
@@ -30,6 +30,12 @@ L = TypeVar("L", bound=Loading)
 LoadingT_co = TypeVar("LoadingT_co", bound=Loading, default=Loading, covariant=True)
 # Likewise the layer; `Scene` alone has a plain one.
 LayerT_co = TypeVar("LayerT_co", bound=ElasticLayer, default=Layer, covariant=True)
+
+
+def _truth(value: object) -> object:
+    if not isinstance(value, bool):
+        raise ValueError("must be true or false")
+    return value
 
 
 def _listed(effects: Any) -> Any:
@@ -71,7 +77,7 @@ class Scene(Record, Generic[LoadingT_co, LayerT_co]):
         indenter: Annotated[Profile, OneOf(*PROFILES, pyramid=Cone)]
         loading: Annotated[Loading, OneOf(*LOADINGS)]
         effects: Annotated[tuple[Annotated[Effect, OneOf(*EFFECTS)], ...], BeforeValidator(_listed)] = ()
-    beyond_small_strains: Annotated[bool, Strict()] = False
+    beyond_small_strains: Annotated[bool, BeforeValidator(_truth)] = False
 
     def effect(self, kind: type[E]) -> E | None:
         """The listed effect of this kind, or None."""
