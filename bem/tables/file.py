@@ -23,7 +23,7 @@ from bem.grid.influence import kernel_of, point_response
 from bem.tables.table import FlatPunchTable
 from bem.tables.tabulated_layer import Tabulable, described, same_kernel, tabulable
 from contact import ElasticLayer, InvalidInput, Layer, LayerStack
-from contact.files.layer_table import layer_mapping, layer_of
+from contact.files.scene_file import layer_of, table_of
 from contact.files.storage import read_tree, write_tree
 from contact.records.record import Record, record
 from contact.records.validation import FloatArray
@@ -46,7 +46,7 @@ def write_table(path: str | Path, table: FlatPunchTable) -> None:
             "poissons_ratio": table.poissons_ratio,
             "sha256": _digest(table),
             "provenance": table.provenance | {f"{name} version": version(name) for name in NUMERICAL_LIBRARIES},
-            **({"stack": json.dumps(layer_mapping(table.stack))} if table.stack else {}),
+            **({"stack": json.dumps(table_of(table.stack))} if table.stack else {}),
             **_arrays(table),
         },
     )
@@ -170,7 +170,7 @@ def _arrays(table: FlatPunchTable) -> dict[str, FloatArray]:
 
 
 def _digest(table: FlatPunchTable) -> str:
-    stack = json.dumps(layer_mapping(table.stack)) if table.stack else ""
+    stack = json.dumps(table_of(table.stack)) if table.stack else ""
     header = f"{table.support} {table.poissons_ratio!r}{stack}".encode()
     return hashlib.sha256(header + b"".join(a.astype("<f8").tobytes() for a in _arrays(table).values())).hexdigest()
 
