@@ -20,7 +20,7 @@ from contact.scene.extent import radius_of_elongation
 from mdr.admissible import is_touched_nowhere, refuse_touching_outside
 from mdr.contact_surface import surface_of
 from mdr.equilibria import is_simple
-from mdr.radius_search import LARGEST_RATIO, RadiusSearch, growing_radii, refuse_too_wide
+from mdr.radius_search import RadiusSearch, growing_radii, refuse_too_wide
 from mdr.spring_bed import Springs
 
 # Relative error down to which branches are sampled. A tenth of it meets rounding.
@@ -117,7 +117,8 @@ class Adhesive:
     def _first_radius(self) -> float:
         flat, thickness = self.scene.indenter.flat_radius, self.scene.layer.surface.thickness
         first = flat + self.longer * FIRST_WAY * (balance_radius(self.scene) - flat)
-        return first if first <= LARGEST_RATIO / 6 * thickness else self.longer * max(_THIN * thickness, 2 * flat)
+        is_guided = first <= self.springs.largest_ratio / 6 * thickness
+        return first if is_guided else self.longer * max(_THIN * thickness, 2 * flat)
 
 
 def refuse_touching(contacts: Adhesive, radius: FloatArray, depth: FloatArray) -> None:

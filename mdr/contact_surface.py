@@ -50,6 +50,7 @@ def surface_of(springs: Springs, a: float, depth: float, *, is_singular: bool = 
     """Fields of the contact of radius a [m] at a depth [m]; p is singular at the edge if phi(a) is not zero."""
     inner = [b for b in springs.tip.breaks if _CENTRE * a < b < a]
     is_wide = not springs.kernel.is_uniform and a > _WIDE * springs.unit and not springs.kernel.tail
+    is_wide = is_wide and not springs.is_tabulated
     return (Patched if is_wide and 0 < len(inner) < _MOST_KINKS else Surface)(
         springs, a, depth, is_singular=is_singular
     )

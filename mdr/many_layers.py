@@ -17,8 +17,8 @@ from bem.kernels.of_contact import ContactKernel
 from contact import ContactRadii, FlatPunch, IndentationDepths, Layer, NormalForces, Scene
 from contact.records.validation import FloatArray
 from mdr.equilibria import is_simple
-from mdr.radius_search import LARGEST_RATIO, Quantity, RadiusSearch
-from mdr.spring_bed import Springs
+from mdr.radius_search import Quantity, RadiusSearch
+from mdr.spring_bed import LARGEST_RATIO, Springs
 
 # ln of radii [m] beside a flat end at which the half-space's answer is tabulated for first guesses.
 _TABLE = np.linspace(-60.0, 40.0, 400)

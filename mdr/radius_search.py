@@ -20,8 +20,6 @@ from mdr.spring_bed import Springs
 
 Quantity = Literal["depth", "force"]
 
-# Contact radius over the thickness of the surface material up to which contacts are answered.
-LARGEST_RATIO = 1000.0
 # Trial radii double up to this share of an upright end's radius, and come closer to it by these shares.
 _NEAR_END, _CLOSER = 0.7, (0.2, 0.05, 0.01, 1e-3, 1e-6)
 # Radii per e-fold of the rough table. Half as many cost one more secant step.
@@ -48,9 +46,9 @@ class SeveralContacts(UnsupportedSceneError):
 
 
 def largest_radius(springs: Springs) -> float:
-    """Largest contact radius [m] that is answered: the indenter's end, or `LARGEST_RATIO` thicknesses."""
+    """Largest contact radius [m] that is answered: the indenter's end, or the largest ratio of the springs."""
     thickest = np.inf if springs.kernel.is_uniform else springs.unit * springs.kernel.units
-    return min(springs.tip.end, LARGEST_RATIO * thickest)
+    return min(springs.tip.end, springs.largest_ratio * thickest)
 
 
 def growing_radii(indenter: Profile, first: float) -> Iterator[float]:
@@ -70,15 +68,15 @@ def growing_radii(indenter: Profile, first: float) -> Iterator[float]:
 
 
 def refuse_too_wide(springs: Springs, radius: float) -> None:
-    """Refuse contact radii [m] beyond `LARGEST_RATIO` thicknesses, or an upright end of the indenter.
+    """Refuse contact radii [m] beyond the largest ratio of the springs, or an upright end of the indenter.
 
     Raises:
         InvalidInput: With the ratio or the radius.
     """
     thickness = springs.unit * springs.kernel.units
-    if not springs.kernel.is_uniform and radius > LARGEST_RATIO * thickness * (1 + 1e-9):
+    if not springs.kernel.is_uniform and radius > springs.largest_ratio * thickness * (1 + 1e-9):
         raise InvalidInput(
-            f"a/h = {radius / thickness:g}: contacts are answered up to {LARGEST_RATIO:g} times the thickness "
+            f"a/h = {radius / thickness:g}: contacts are answered up to {springs.largest_ratio:g} times the thickness "
             f"{thickness:g} m of the material at the surface; ask for smaller contacts"
         )
     profile = springs.tip.profile
@@ -196,8 +194,8 @@ class RadiusSearch:
         wanted, profile = float(np.exp(most)), self.springs.tip.profile
         if radius[0] < profile.max_radius * (1 - 1e-9):
             raise InvalidInput(
-                f"loading.values = {wanted:g}: only {reached:g} is reached at a/h = {LARGEST_RATIO:g}, up to which "
-                "contacts are answered; press less"
+                f"loading.values = {wanted:g}: only {reached:g} is reached at a/h = {self.springs.largest_ratio:g}, "
+                "up to which contacts are answered; press less"
             )
         if profile.ends_upright:
             raise InvalidInput(f"loading.values = {wanted:g}: {profile.upright_end}; press less")

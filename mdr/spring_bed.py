@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -29,6 +29,8 @@ from mdr.profiles import Tip, tip_of
 _ROUNDINGS = 16.0
 # Relative error of a graded layer's tabulated kernel, which both resolutions share: 6e-13 of k_N at most was seen.
 _GRADED_KERNEL = 2e-12
+# Contact radius over the thickness of the surface material up to which contacts are answered.
+LARGEST_RATIO = 1000.0
 # Radii that are answered at a time: their rows stay in the cache.
 _BLOCK = 2048
 
@@ -78,6 +80,12 @@ class Springs:
     tip: Tip
     sizes: Sizes = USUAL
     thickness: FloatArray | float = 1.0
+    is_tabulated: ClassVar[bool] = False
+
+    @property
+    def largest_ratio(self) -> float:
+        """Contact radius over the thickness of the surface material up to which contacts are answered."""
+        return LARGEST_RATIO
 
     @classmethod
     def of(cls, layer: ElasticLayer, indenter: Profile, sizes: Sizes = USUAL) -> Springs:
