@@ -17,7 +17,7 @@ from __future__ import annotations
 
 from functools import lru_cache
 from itertools import pairwise
-from math import inf, pi, sqrt
+from math import gamma, inf, pi, sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -26,22 +26,24 @@ from scipy.special import k0, k1
 
 from bem.kernels.of_contact import contact_kernel
 from bem.numerics import gauss, graded, panels
-from contact import ElasticLayer, NotConvergedError, PowerLaw, Profile, Sphere, Spheroconical
+from contact import ElasticLayer, PowerLaw, Profile, Sphere, Spheroconical
 from contact.records.validation import FloatArray
 
 # Largest phase of a cosine on a panel of wave numbers: 40 Gauss nodes integrate it to the last digit.
 _PHASE = 48.0
 # Wave numbers that are summed at a time: memory only.
 _CHUNK = 4000
+# Share of the contact radius below which the pressure is that of this radius. Half of it doubles roundings there.
+_AXIS = 1e-8
 # Share of the contact radius on which the first panel under a power law r^n ends: 0.02 leaves 1e-13 for n = 1.07.
 _TIP = 0.02
-# Panels of a graded layer are halved towards kinks and edge until they are this share of a thickness: 1e-3 leaves 1e-9.
-_CORNER = 2.0**-10
-# B times the thickness. With half of it d_j lose digits, with twice of it panels must be narrower.
+# B times the thickness. Half or twice of it leave a hundred times more.
 _DECAY = 10.0
-# Largest wave number of a graded layer over that of a uniform one: at least, times the depth of the first break, and
-# at most. Half of them leave 1e-8.
-_GRADED, _BREAK, _MOST = 6.0, 0.8, 20.0
+# Largest wave number of a graded layer over that of a uniform one: at least, over the depth of the first break of its
+# constants, and at most. With half of them the rest is ten times larger.
+_GRADED, _BREAK, _MOST = 1.5, 0.3, 8.0
+# Largest panel of a graded layer over the depth of the first break: with twice of it panels do not resolve the rest.
+_LONGEST = 4.0
 
 
 class Sizes(NamedTuple):
@@ -53,6 +55,8 @@ class Sizes(NamedTuple):
         waves: Gauss nodes per panel of wave numbers.
         reach: Largest wave number times the thickness.
         slopes: Gauss nodes per panel of the profile's transform and of the Abel integrals.
+        terms: Number of d_j of a graded layer.
+        corner: Last panel towards kinks and edge of a graded layer, over the stretch or the largest panel.
         search: Tolerance of ln(a - b) in searches of the radius.
     """
 
@@ -61,12 +65,23 @@ class Sizes(NamedTuple):
     waves: int = 40
     reach: float = 21.0
     slopes: int = 14
+    terms: int = 8
+    corner: float = 2e-4
     search: float = 1e-13
 
     @property
     def finer(self) -> Sizes:
         """The companion that states errors."""
-        return Sizes(self.nodes + 4, 0.8 * self.width, self.waves + 6, self.reach + 3, self.slopes + 4, self.search)
+        return Sizes(
+            self.nodes + 4,
+            0.8 * self.width,
+            self.waves + 6,
+            self.reach + 3,
+            self.slopes + 4,
+            self.terms + 1,
+            self.corner / 4,
+            self.search,
+        )
 
 
 class Kernel:
@@ -75,13 +90,15 @@ class Kernel:
     def __init__(self, layer: ElasticLayer, sizes: Sizes) -> None:
         self.layer, self.sizes, self.thickness = layer, sizes, layer.surface.thickness
         self.is_uniform, self.is_graded = layer.is_half_space, contact_kernel(layer).is_graded
-        self.reach, self.decay, self.d = sizes.reach / self.thickness, _DECAY / self.thickness, np.zeros(4)
+        self.reach, self.decay, self.d = sizes.reach / self.thickness, _DECAY / self.thickness, np.zeros(1)
+        self.width = sizes.width * self.thickness
         if self.is_graded:
             first = min(getattr(layer, "breakpoints", ()), default=inf) / self.thickness
+            self.width *= min(1.0, _LONGEST * first)
             self.reach *= min(max(_GRADED, _BREAK / first), _MOST)
-            y = self.decay / np.hypot(self.reach, self.decay) * np.sin(pi / 2 * np.linspace(0.04, 1.0, 13))
+            y = self.decay / np.hypot(self.reach, self.decay) * np.sin(pi / 2 * np.linspace(0.04, 1.0, 3 * sizes.terms))
             values = self.one_minus_chi(self.decay * np.sqrt(1 / y**2 - 1))
-            self.d = np.linalg.lstsq(y[:, None] ** np.arange(4), values / y, rcond=None)[0]
+            self.d = np.linalg.lstsq(y[:, None] ** np.arange(sizes.terms), values / y, rcond=None)[0]
 
     def one_minus_chi(self, k: FloatArray) -> FloatArray:
         """1 - chi: all that is used of the other method."""
@@ -100,10 +117,17 @@ class Kernel:
         return k, 2 / pi * w * (self.one_minus_chi(k) - y * np.polynomial.polynomial.polyval(y, self.d))
 
     def tail(self, s: FloatArray) -> FloatArray:
-        """(1/pi) int_0^inf sum_j d_j y^j cos ks dk, by Bessel functions K_0, K_(1/2), K_1, K_(3/2) of z = B s."""
+        """(1/pi) int_0^inf sum_j d_j y^j cos ks dk = (B/sqrt(pi)) sum_j d_j (z/2)^v K_v(z)/Gamma(j/2).
+
+        z = B s, v = (j - 1)/2; K_v for v = 0, 1/2, 1, 3/2, the others by their recurrence.
+        """
         z = self.decay * np.maximum(s, 1e-300)
-        parts = k0(z), pi / 2 * np.exp(-z), z * k1(z), pi / 4 * (1 + z) * np.exp(-z)
-        return np.asarray(self.decay / pi * sum(d * part for d, part in zip(self.d, parts, strict=True)))
+        root = np.sqrt(pi) / 2 * np.exp(-z)
+        parts = [k0(z), root, z / 2 * k1(z), root * (1 + z) / 2]
+        while len(parts) < self.d.size:
+            parts.append(z * z / 4 * parts[-4] + (len(parts) / 2 - 1) * parts[-2])
+        terms = (d * part / gamma((j + 1) / 2) for j, (d, part) in enumerate(zip(self.d, parts, strict=True)))
+        return np.asarray(self.decay / np.sqrt(pi) * sum(terms))
 
 
 class Panels(NamedTuple):
@@ -167,36 +191,40 @@ def _one_sided(count: int) -> tuple[FloatArray, FloatArray]:
     return u * u, 2 * u * w
 
 
-def transform(profile: Profile, x: FloatArray, count: int) -> FloatArray:
-    """g_hs [m] at x > 0 [m], shape (n,), over stretches between breaks with panels that shrink towards their ends."""
-    total = np.zeros_like(x)
-    inner = (b for b in profile.breakpoints if profile.flat_radius < b < x.max())
-    for low, high in pairwise([profile.flat_radius, *inner, float(x.max())]):
-        at = x[x > low, None]
-        narrow = np.arctan2(np.sqrt(np.maximum((at - high) * (at + high), 0)), high)
-        span = np.arctan2(np.sqrt((at - low) * (at + low)), low) - narrow
-        v, w = gauss(count + 10) if low > 0 and low not in profile.kinks else graded(count)
-        slope = profile.slope_at(np.clip(at * np.cos(narrow + span * v), low, np.nextafter(high, 0)))
-        total[x > low] += span[:, 0] * (slope @ w)
-    return x * total
+def transform(profile: Profile, excess: FloatArray, count: int) -> FloatArray:
+    """g_hs [m] at x = b + excess > 0 [m], b the flat radius, shape (n,).
+
+    Stretches between breaks have panels that shrink towards their ends, but for those that begin smoothly.
+    """
+    total, flat, end = np.zeros_like(excess), profile.flat_radius, float(excess.max())
+    inner = (b - flat for b in profile.breakpoints if 0 < b - flat < end)
+    for low, high in pairwise([0.0, *inner, end]):
+        x = excess[excess > low, None]
+        far, near = (np.sqrt(np.maximum((x - e) * (x + e + 2 * flat), 0)) for e in (low, high))
+        narrow = np.arctan2(near, flat + high)
+        span = np.arctan2(far, flat + low) - narrow
+        v, w = gauss(count + 10) if low > 0 and flat + low not in profile.kinks else graded(count)
+        radius = np.clip((flat + x) * np.cos(narrow + span * v), flat + low, np.nextafter(flat + high, 0))
+        total[excess > low] += span[:, 0] * (profile.slope_at(radius) @ w)
+    return (flat + excess) * total
 
 
 def panels_of(profile: Profile, a: float, kernel: Kernel) -> Panels:
     """Panels of the contact of radius a [m], short against the distance of s from singularities of phi."""
-    width = kernel.sizes.width * (a if kernel.is_uniform else kernel.thickness)
+    width = kernel.sizes.width * a if kernel.is_uniform else kernel.width
     pole = profile.radius if isinstance(profile, Sphere | Spheroconical) else inf
     ends = np.unique([0.0, *(b for b in (profile.flat_radius, *profile.breakpoints) if b < a), a]).tolist()
     found = []
     for i, (start, stop) in enumerate(pairwise(ends)):
         gap = min(start - ends[i - 1], abs(pole - start)) if i else _TIP * a if isinstance(profile, PowerLaw) else inf
-        singular = stop if kernel.is_graded and (stop == a or stop in profile.kinks) else inf
-        singular = min(singular, pole if pole > stop else inf)
+        corner = stop if kernel.is_graded and (stop == a or stop in profile.kinks) else inf
+        upright, shortest = pole if pole > stop else inf, kernel.sizes.corner * min(width, stop - start)
         low, high = 0.0, sqrt(stop - start)
         while low < high:
-            room = singular - start - low**2
-            longest = max(room / 2, _CORNER * width)
-            end = min(low + sqrt(low**2 + gap), sqrt(low**2 + min(width, longest)), high)
-            found.append((start, low, high if end > high * (1 - 1e-9) else end))
+            t = start + low**2
+            longest = min(width, max((corner - t) / 2, shortest), (upright - t) / 3)
+            end = min(low + sqrt((low**2 + gap) / 2), sqrt(low**2 + longest))
+            found.append((start, low, end if end < high * (1 - 1e-9) else high))
             low = found[-1][-1]
     return Panels(*np.array(found).T, kernel.sizes.nodes)
 
@@ -208,24 +236,20 @@ class Density:
         kernel: Of the layer.
         profile: The indenter.
         a: Contact radius [m].
-
-    Raises:
-        NotConvergedError: If the matrix is singular to double precision.
     """
 
     def __init__(self, kernel: Kernel, profile: Profile, a: float) -> None:
         self.kernel, self.profile, self.a = kernel, profile, a
         self.panels = panels_of(profile, a, kernel)
         self.s, self.t, self.w = self.panels.rule
-        self.load = self._load(self.t)
+        # Beyond a flat end g_hs needs the digits of t - b.
+        self.load = self._load(np.repeat(self.panels.start - profile.flat_radius, kernel.sizes.nodes) + self.s**2)
         self.phi = self._solved()
         self.integrals = self.w @ self.phi
-        self.edge = (self._load(np.array([a])) + self.psi(np.array([a])))[0]
-        if not self.integrals[0] > 0:
-            raise NotConvergedError(f"the equation at a = {a:g} m is singular in double precision; take a smaller a")
+        self.edge = (self._load(np.array([a - profile.flat_radius])) + self.psi(np.array([a])))[0]
 
-    def _load(self, x: FloatArray) -> FloatArray:
-        return np.column_stack([np.ones(x.size), transform(self.profile, x, self.kernel.sizes.slopes)])
+    def _load(self, excess: FloatArray) -> FloatArray:
+        return np.column_stack([np.ones(excess.size), transform(self.profile, excess, self.kernel.sizes.slopes)])
 
     def _solved(self) -> FloatArray:
         """phi at the nodes: by a matrix of nodes or, where these are fewer, of wave numbers.
@@ -285,15 +309,17 @@ class Density:
     def pressure(self, r: FloatArray, depth: float, *, is_singular: bool) -> FloatArray:
         """pi p(r)/E* = phi(a)/sqrt(a^2 - r^2) - int_r^a phi'(t)/sqrt(t^2 - r^2) dt at r < a [m], Eq. (9)."""
         edge = self.edge @ [depth, -1.0] if is_singular else 0.0
-        smooth = self.panels.abel(self.slope(depth), r, self.kernel.sizes.slopes, beyond=True)
+        smooth = self.panels.abel(
+            self.slope(depth), np.maximum(r, _AXIS * self.a), self.kernel.sizes.slopes, beyond=True
+        )
         return np.asarray(edge / np.sqrt((self.a - r) * (self.a + r)) - smooth)
 
     def displacement(self, r: FloatArray, depth: float) -> FloatArray:
-        """w(r) = (2/pi) int_0^r W(t)/sqrt(r^2 - t^2) dt at r > a [m]: W = depth - g_hs inside, -psi outside, Eq. (13)."""
+        """w(r) = (2/pi) int_0^r W(t)/sqrt(r^2 - t^2) dt at r > a [m], W = depth - g_hs inside, -psi outside."""
         grid, count, under = self.panels, self.kernel.sizes.slopes, np.array([depth, -1.0])
         total = grid.abel(grid.series(2 * self.s * (self.load @ under)), r, count, beyond=False)
         if not self.kernel.is_uniform:
-            step, ends = sqrt(self.kernel.sizes.width * self.kernel.thickness), [0.0]
+            step, ends = sqrt(self.kernel.width), [0.0]
             while self.a + ends[-1] ** 2 < r.max():
                 ends.append(ends[-1] + max(step - ends[-1] / 2, ends[-1] / 2))
             grid = Panels(np.full(len(ends) - 1, self.a), np.array(ends[:-1]), np.array(ends[1:]), grid.nodes)

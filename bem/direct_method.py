@@ -1,91 +1,75 @@
 """The layer's integral equation solved directly for the profile, one contact radius at a time: a method of its own.
 
-Radii are found by a root search over solutions of `bem.direct`; the prescribed depth or force is then inserted as it
-is, since F(depth, a) is stationary in a. Only 1 - chi is shared with the method of dimensionality reduction, so that
-the two check each other. Errors: the same contacts by a finer discretisation (`contact.stated`).
+A prescribed depth or force is met by a root search over contact radii and then inserted as it is, since F(depth, a) is
+stationary in a. Errors: the same contacts by a finer discretisation (`contact.stated`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from functools import cache
-from math import exp, log, pi, sqrt
+from math import exp, inf, log, pi
 from typing import Annotated, ClassVar, NamedTuple, Self
 
 import numpy as np
 from pydantic import Field
 from scipy.optimize import toms748
 
-from bem.direct import Density, Equation, Sizes
+from bem.direct import Density, Kernel, Sizes
 from bem.kernels.moduli import contact_modulus
 from bem.numerics import EPS, gauss
-from contact import (
-    ContactPath,
-    ContactRadii,
-    FlatPunch,
-    IndentationDepths,
-    InvalidInput,
-    NormalForces,
-    Scene,
-    StageLog,
-    Supported,
-    Unsupported,
-    UnsupportedSceneError,
-)
+from contact.answer.method import Supported, Unsupported
 from contact.answer.no_contact import without_contact
 from contact.answer.one_circle import never_touches_beside, no_single_circle, refuse_touching_path
 from contact.answer.one_thread import one_thread
 from contact.answer.small_strains import within_small_strains
+from contact.answer.solution import ContactPath
+from contact.answer.stages import StageLog
+from contact.records.errors import InvalidInput, UnsupportedSceneError
 from contact.records.record import Record, record
 from contact.records.validation import FloatArray, positive
 from contact.scene.extent import radius_of_depth, radius_of_load
-from contact.stated import SAFETY, stated_error
+from contact.scene.loading import ContactRadii, IndentationDepths, NormalForces
+from contact.scene.profiles import FlatPunch
+from contact.scene.scene import Scene
+from contact.stated import stated_error
 
-# Largest a/h of uniform layers and stacks: two thousand unknowns and two seconds per radius; and of graded layers.
+# What a loading prescribes, as an index of `ContactPath.ARRAYS`.
+_PRESCRIBED = {ContactRadii: 0, IndentationDepths: 1, NormalForces: 2}
+# Largest a/h of uniform layers and stacks (two seconds per radius there) and of graded layers.
 LARGEST_RATIO, LARGEST_GRADED_RATIO = 100.0, 16.0
-# First guess of d ln(load)/d ln(a - b) of the bracket's secant steps, their longest step down, and their least slope.
-_SLOPE, _LONGEST_DOWN, _LEAST_SLOPE = 4.0, 8.0, 0.1
-# Factor of the secant's step in a bracket, so that the next sign differs.
-_LONGER = 1.1
-# Step of ln(a - b) that differentiates the load.
+# Quantities whose changes are errors.
+_COMPARED = (*ContactPath.ARRAYS[1:], "pressure", "surface_displacement")
+# Step of ln(a - b) for the derivative of the load. Its third digit enters an error only.
 _STEP = 1e-3
-# Relative rounding error of the equation, over its condition k_bar, and of pressure and displacement by quadrature.
+# Rounding error over the condition k_bar, and of pressure and displacement by quadrature.
 _ROUNDING, _FIELD_ROUNDING = 32 * EPS, 1e-12
-# d ln k_N/d ln a at most: thin incompressible layers.
+# Largest d ln k_N/d ln a, that of thin incompressible layers.
 _STIFFENING = 4.0
-# Radii inside, and radii outside over the contact radius, at which fields are compared.
+# Radii inside, and outside over the contact radius, at which fields are compared.
 _INSIDE, _OUTSIDE = 16, np.array([1.02, 1.5])
-# Places on each panel where the pressure is looked at. A contact pulls where it is below minus this share of the mean.
-_PLACES, _LEAST_TENSION = np.array([0.03, 0.2, 0.5, 0.8, 0.97]), 1e-6
+# A contact pulls where its pressure is below minus this share of the mean.
+_LEAST_TENSION = 1e-6
 
 
 class Contact(NamedTuple):
     """One contact.
 
     Attributes:
-        density: Of its radius.
-        depth: Indentation depth [m].
-        force: F_N [N].
-        stiffness: k_N [N/m].
-        slope: d ln(prescribed value)/d ln a.
+        density: Solution of its radius.
+        state: a [m], depth [m], F_N [N], k_N [N/m], the prescribed one inserted.
+        reached: Value of the prescribed quantity with which phi(a) = 0.
+        slope: d ln(reached)/d ln a.
     """
 
     density: Density
-    depth: float
-    force: float
-    stiffness: float
-    slope: float
-
-    @property
-    def radius(self) -> float:
-        """a [m]."""
-        return self.density.a
+    state: FloatArray
+    reached: float
+    slope: float = inf
 
     @property
     def mean_pressure(self) -> float:
         """F/(pi a^2) [Pa]."""
-        return self.force / (pi * self.radius**2)
+        return float(self.state[2] / (pi * self.state[0] ** 2))
 
 
 @record
@@ -104,23 +88,19 @@ class IntegralEquationMethod(Record):
 
     def supports(self, scene: Scene) -> Supported | Unsupported:
         """Elastic contact of any profile with layers and half-spaces."""
+        reason = ""
         if scene.effects:
             names = ", ".join(type(effect).__name__ for effect in scene.effects)
-            return Unsupported(f"the direct integral equation models elastic contact only, not {names}")
-        if not isinstance(scene.loading, ContactRadii | IndentationDepths | NormalForces):
-            return Unsupported(f"the direct integral equation does not model {type(scene.loading).__name__}")
-        if isinstance(scene.loading, ContactRadii) and (reason := _too_thin(scene, float(scene.loading.values.max()))):
-            return Unsupported(reason)
-        return Supported()
+            reason = f"the direct integral equation models elastic contact only, not {names}"
+        elif type(scene.loading) not in _PRESCRIBED:
+            reason = f"the direct integral equation does not model {type(scene.loading).__name__}"
+        elif isinstance(scene.loading, ContactRadii):
+            reason = _too_wide(scene, float(scene.loading.values.max()))
+        return Unsupported(reason) if reason else Supported()
 
     def refined(self) -> Self:
         """Panels half as wide."""
         return self.replace(panel_width=self.panel_width / 2)
-
-    @property
-    def sizes(self) -> Sizes:
-        """Resolution that belongs to the settings."""
-        return Sizes(nodes=self.nodes, width=self.panel_width)
 
     @one_thread
     @within_small_strains
@@ -129,170 +109,132 @@ class IntegralEquationMethod(Record):
         """Equilibria under prescribed radii, depths or forces, each radius solved by itself.
 
         Raises:
-            UnsupportedSceneError: If the scene has effects or a history, a/h is beyond `LARGEST_RATIO`, or the contact
-                is no single circle.
+            UnsupportedSceneError: If the scene has effects or a history, the contact is too wide, or no single circle.
             InvalidInput: If the indenter ends too early.
-            NotConvergedError: If the matrix is singular to double precision.
         """
         support = self.supports(scene)
         if isinstance(support, Unsupported):
             raise UnsupportedSceneError(support.reason)
-        log = StageLog()
-        solver = _Solver(scene, Equation(scene.layer, scene.indenter, self.sizes), log)
-        values = scene.loading.values  # type: ignore[attr-defined]
+        log, sizes = StageLog(), Sizes(nodes=self.nodes, width=self.panel_width)
         with log.stage("integral_equation"):
-            contacts = [solver.contact(float(value)) for value in values]
-        fields = DirectFields(scene, contacts)
+            solver = DirectSolver(scene, sizes, log)
+            contacts = [solver.contact(float(value)) for value in scene.loading.values]  # type: ignore[attr-defined]
         with log.stage("one_circle"):
             for contact in contacts:
-                _refuse_tension(scene, contact, fields)
+                solver.refuse_tension(contact)
         with log.stage("error_estimate"):
-            finer = _Solver(scene, Equation(scene.layer, scene.indenter, self.sizes.finer), log)
-            errors = _errors(scene, fields, finer)
+            errors = _errors(solver, contacts, DirectSolver(scene, sizes.finer, log))
+        states = zip(ContactPath.ARRAYS, np.array([contact.state for contact in contacts]).T, strict=True)
         path = ContactPath(
             scene=scene,
             method=self.name,
             settings={"nodes": self.nodes, "panel_width": self.panel_width},
-            contact_radius=np.array([contact.radius for contact in contacts]),
-            indentation_depth=np.array([contact.depth for contact in contacts]),
-            normal_force=np.array([contact.force for contact in contacts]),
-            contact_stiffness=np.array([contact.stiffness for contact in contacts]),
+            **dict(states),
             error_estimate=errors,
             cost=log.cost(unknowns=max(contact.density.t.size for contact in contacts)),
             stages=log.records,
-            fields=fields,
+            fields=DirectFields(solver, contacts),
         )
         return refuse_touching_path(path)
 
 
-def _too_thin(scene: Scene, a: float) -> str:
+def _too_wide(scene: Scene, a: float) -> str:
     """Why a contact radius [m] is refused, or nothing."""
     largest = LARGEST_RATIO if scene.layer.is_piecewise_uniform else LARGEST_GRADED_RATIO
     ratio = a / scene.layer.surface.thickness
     return f"a/h = {ratio:g}: the direct integral equation covers ratios up to {largest:g}" if ratio > largest else ""
 
 
-@dataclass(frozen=True)
-class _Solver:
-    """Finds the contact that belongs to a prescribed value.
+class DirectSolver:
+    """Finds the contacts of a scene."""
 
-    Attributes:
-        scene: The problem.
-        equation: Of its layer and profile.
-        log: Counts solutions.
-    """
-
-    scene: Scene
-    equation: Equation
-    log: StageLog
-
-    @property
-    def modulus(self) -> float:
-        """E* [Pa]."""
-        return contact_modulus(self.scene.layer)
+    def __init__(self, scene: Scene, sizes: Sizes, log: StageLog) -> None:
+        self.scene, self.sizes, self.log = scene, sizes, log
+        self.kernel, self.modulus = Kernel(scene.layer, sizes), contact_modulus(scene.layer)
+        self.prescribed = _PRESCRIBED[type(scene.loading)]
+        self.is_punch = isinstance(scene.indenter, FlatPunch)
 
     def contact(self, value: float) -> Contact:
         """The contact with this radius [m], depth [m] or force [N]."""
-        if isinstance(self.scene.indenter, FlatPunch):
-            return self.at(self.scene.indenter.radius, value)
-        return self.at(value, value) if isinstance(self.scene.loading, ContactRadii) else self._found(value)
+        if self.is_punch or self.prescribed == 0:
+            return self.at(self.scene.indenter.flat_radius if self.is_punch else value, value)
+        return self._found(value)
 
-    def at(self, a: float, value: float, slope: float = 1.0) -> Contact:
-        """The contact of radius a [m] under the prescribed depth [m] or force [N], which is inserted as it is."""
-        if reason := _too_thin(self.scene, a):
+    def at(self, a: float, value: float) -> Contact:
+        """The contact of radius a [m] with the prescribed value inserted."""
+        if reason := _too_wide(self.scene, a):
             raise UnsupportedSceneError(reason)
         self.log.count("factorisations", 0 if self.scene.layer.is_half_space else 1)
-        density = Density(self.equation, a)
-        punch, load = 2 * self.modulus * density.integrals
-        match self.scene.loading:
-            case IndentationDepths():
-                return Contact(density, value, value * punch - load, punch, slope)
-            case NormalForces():
-                return Contact(density, (value + load) / punch, value, punch, slope)
-            case _:
-                return Contact(density, density.depth, density.depth * punch - load, punch, slope)
-
-    def load_at(self, contact: Contact) -> float:
-        """Depth [m], or force [N], at which the pressure of a contact of this radius is not singular at its edge."""
-        depth = contact.density.depth
-        if isinstance(self.scene.loading, NormalForces):
-            return contact.force + contact.stiffness * (depth - contact.depth)
-        return depth
+        density = Density(self.kernel, self.scene.indenter, a)
+        stiffness, lacking = 2 * self.modulus * density.integrals
+        depth = (density.depth, value, (value + lacking) / stiffness)[self.prescribed]
+        state = np.array([a, depth, depth * stiffness - lacking, stiffness])
+        state[self.prescribed] = value
+        return Contact(density, state, (a, density.depth, density.depth * stiffness - lacking)[self.prescribed])
 
     def _found(self, value: float) -> Contact:
-        """The contact under this depth or force: TOMS 748 in z, a = b + e^z/(1 + e^z/(end - b))."""
-        flat, last = self.scene.indenter.flat_radius, float(np.nextafter(self.scene.indenter.max_radius, 0.0))
-        room = self.scene.indenter.max_radius - flat
+        """The contact under a depth or force: TOMS 748 in z, a = b + e^z/(1 + e^z/(end - b))."""
+        indenter, flat, end = self.scene.indenter, self.scene.indenter.flat_radius, self.scene.indenter.max_radius
+        last = float(np.nextafter(end, 0.0))
 
         def radius(z: float) -> float:
-            """a [m]; `last` is the largest number before the end of the indenter."""
-            return min(flat + exp(z) / (1 + exp(z) / room), last)
+            return min(flat + exp(z) / (1 + exp(z) / (end - flat)), last)
 
         @cache
         def contact(z: float) -> Contact:
-            """Solution at z."""
             return self.at(radius(z), value)
 
-        @cache
         def missed(z: float) -> float:
             """ln of the load that is reached over the prescribed one."""
-            reached = self.load_at(contact(z)) / value
-            if reached < 1 and radius(z) >= last:
-                raise InvalidInput(f"loading.values = {value:g}: the indenter ends at {last:g} m before it is reached")
+            reached = contact(z).reached / value
+            if reached < 1 and radius(z) == last:
+                raise InvalidInput(f"loading.values = {value:g}: the indenter ends at {end:g} m before it is reached")
             if reached > 1 and radius(z) - flat < EPS * flat:
                 message = f"loading.values = {value:g}: the contact is as wide as the flat end to the last digit"
                 raise InvalidInput(f"{message}; press more, or take a flat punch")
             return log(max(reached, np.finfo(float).tiny))
 
-        first = self._first(value)
-        z = toms748(missed, *_bracket(missed, log(first / (1 - first / room))), xtol=self.equation.sizes.search)
-        beside = z - _STEP
-        change = log(radius(z) / radius(beside))
-        slope = (missed(z) - missed(beside)) / change if change > 0 else 1.0
-        return contact(z)._replace(slope=max(abs(slope), EPS))
+        by_depth = self.prescribed == 1
+        first = radius_of_depth(indenter, value) if by_depth else radius_of_load(indenter, value / (2 * self.modulus))
+        low = high = log(min(first - flat, self.scene.layer.surface.thickness, (end - flat) / 2))
+        while missed(high) < 0:
+            low, high = high, high + log(2)
+        while missed(low) > 0:
+            low, high = 2 * low - high - 1, low
+        z = toms748(missed, low, high, xtol=self.sizes.search)
+        change = log(radius(z) / radius(z - _STEP))
+        return contact(z)._replace(slope=abs(missed(z) - missed(z - _STEP)) / change if change > 0 else inf)
 
-    def _first(self, value: float) -> float:
-        """a - b [m] where the profile is as high as the depth or force asks for."""
-        indenter, thickness = self.scene.indenter, self.scene.layer.surface.thickness
-        by_force = isinstance(self.scene.loading, NormalForces)
-        load = value / (2 * self.modulus)
-        radius = radius_of_load(indenter, load) if by_force else radius_of_depth(indenter, value)
-        largest = LARGEST_RATIO if self.scene.layer.is_piecewise_uniform else LARGEST_GRADED_RATIO
-        resolved = max(largest * thickness / 2 - indenter.flat_radius, thickness)
-        return float(min(radius - indenter.flat_radius, resolved, (indenter.max_radius - indenter.flat_radius) / 2))
+    def pressure(self, contact: Contact, radius: FloatArray) -> FloatArray:
+        """p(r) [Pa] at r < a [m]."""
+        return self.modulus / pi * contact.density.pressure(radius, contact.state[1], is_singular=self.is_punch)
+
+    def refuse_tension(self, contact: Contact) -> None:
+        """Refuse a contact that does not press everywhere.
+
+        Raises:
+            UnsupportedSceneError: With the radius at which it would be pulled.
+        """
+        if not never_touches_beside(self.scene):
+            radius = contact.density.t[::3]
+            pressure = self.pressure(contact, radius)
+            if pressure.min() < -_LEAST_TENSION * contact.mean_pressure:
+                raise no_single_circle(contact.state[0], f"would be pulled at r = {radius[pressure.argmin()]:g} m")
+
+    def numbers(self, contact: Contact, unit: Contact) -> list[FloatArray]:
+        """Depth, force, stiffness, pressures and displacements over those of another contact of the same radius."""
+        a, depth = unit.state[:2]
+        x = gauss(_INSIDE)[0]
+        pressure = self.pressure(contact, a * x) / unit.mean_pressure
+        moved = contact.density.displacement(a * _OUTSIDE, contact.state[1]) / depth
+        return [*(contact.state[1:] / unit.state[1:]), pressure * (np.sqrt(1 - x * x) if self.is_punch else 1.0), moved]
 
 
-def _bracket(missed: Callable[[float], float], z: float) -> tuple[float, float]:
-    """Two places between which a rising function changes its sign, by secant steps that are a little too long.
+class DirectFields(NamedTuple):
+    """Surface fields of the solved contacts."""
 
-    Steps upwards are at most ln 2: beyond lie contacts that the equation does not resolve.
-    """
-    slope = _SLOPE
-    while True:
-        step = float(np.clip(-_LONGER * missed(z) / slope, -_LONGEST_DOWN, log(2)))
-        step = float(np.copysign(max(abs(step), 1e-8), step))
-        if missed(z) * missed(z + step) <= 0:
-            return min(z, z + step), max(z, z + step)
-        slope = max((missed(z + step) - missed(z)) / step, _LEAST_SLOPE)
-        z += step
-
-
-@dataclass(frozen=True, eq=False)
-class DirectFields:
-    """Surface fields of the solved contacts.
-
-    Attributes:
-        scene: The problem.
-        contacts: Its solutions.
-    """
-
-    scene: Scene
+    solver: DirectSolver
     contacts: list[Contact]
-
-    @property
-    def is_singular(self) -> bool:
-        """Whether the pressure is infinite at the edge."""
-        return isinstance(self.scene.indenter, FlatPunch)
 
     def pressure(self, radius: FloatArray, step: int) -> FloatArray:
         """p(r) [Pa], zero outside the contact.
@@ -300,94 +242,41 @@ class DirectFields:
         Raises:
             InvalidInput: Where the pressure is infinite: at the tip of a cone, at kinks, at the edge of a flat punch.
         """
-        contact, indenter = self.contacts[step], self.scene.indenter
-        inside = radius < contact.radius
-        singular = [*indenter.kinks, *([0.0] if float(indenter.slope_at(0.0)) > 0 else [])]
-        at_edge = self.is_singular & (radius == contact.radius)
-        infinite = radius[(np.isin(radius, singular) & inside) | at_edge]
+        contact, indenter = self.contacts[step], self.solver.scene.indenter
+        inside, at_edge = radius < contact.state[0], radius == contact.state[0]
+        singular = np.isin(radius, [*indenter.kinks, *([0.0] if float(indenter.slope_at(0.0)) > 0 else [])])
+        infinite = radius[(singular & inside) | (self.solver.is_punch & at_edge)]
         if infinite.size:
             raise InvalidInput(f"radius = {infinite[0]:g} m: the pressure is infinite at this sharp rim; ask beside it")
         pressure = np.zeros_like(radius)
-        pressure[inside] = self.pressure_of(contact, radius[inside])
+        pressure[inside] = self.solver.pressure(contact, radius[inside])
         return pressure
-
-    def pressure_of(self, contact: Contact, radius: FloatArray) -> FloatArray:
-        """p(r) [Pa] of a contact at r < a [m]."""
-        modulus = contact_modulus(self.scene.layer)
-        return modulus / pi * contact.density.pressure(radius, contact.depth, singular=self.is_singular)
 
     def surface_displacement(self, radius: FloatArray, step: int) -> FloatArray:
         """w(r) [m]: depth - f(r) inside, Eq. (13) outside."""
-        contact = self.contacts[step]
-        inside = radius <= contact.radius
-        w = np.empty_like(radius)
-        w[inside] = contact.depth - self.scene.indenter.height(radius[inside])
-        if not inside.all():
-            w[~inside] = contact.density.displacement(radius[~inside], contact.depth)
+        (a, depth), outside = self.contacts[step].state[:2], radius > self.contacts[step].state[0]
+        w = np.asarray(depth - self.solver.scene.indenter.height(np.minimum(radius, a)))
+        w[outside] = self.contacts[step].density.displacement(radius[outside], depth)
         return w
 
 
-def _refuse_tension(scene: Scene, contact: Contact, fields: DirectFields) -> None:
-    """Refuse a contact that does not press everywhere; one whose surface is touched outside is refused later."""
-    if never_touches_beside(scene):
-        return
-    grid, a = contact.density.panels, contact.radius
-    radius = np.concatenate([grid.at(_PLACES, p)[0] for p in range(grid.low.size)])
-    lowest = int(fields.pressure_of(contact, radius).argmin())
-    around = radius[max(lowest - 1, 0) : lowest + 2]
-    close = np.append(radius[lowest], around[0] + np.ptp(around) * gauss(12)[0])
-    pressure = fields.pressure_of(contact, close[close < a])
-    if pressure.min() < -_LEAST_TENSION * contact.mean_pressure:
-        raise no_single_circle(a, f"would be pulled at r = {close[pressure.argmin()]:g} m")
-
-
-def _errors(scene: Scene, fields: DirectFields, finer: _Solver) -> Mapping[str, FloatArray]:
+def _errors(solver: DirectSolver, contacts: list[Contact], finer: DirectSolver) -> dict[str, FloatArray]:
     """Relative errors: the changes by a finer discretisation at the same radii, the search's last miss, roundings."""
-    contacts, loading = fields.contacts, scene.loading
-    others = [finer.at(one.radius, _prescribed(scene, one)) for one in contacts]
-    ours, theirs = (np.array([one[1:4] for one in side]).T for side in (contacts, others))
-    a = np.array([one.radius for one in contacts])
-    floor = _ROUNDING * (1 + np.array([one.density.integrals[0] for one in contacts]) / a)
-    radius, miss = np.zeros_like(a), np.zeros_like(a)
-    if not isinstance(loading, ContactRadii) and not fields.is_singular:
-        values = np.array([_prescribed(scene, one) for one in contacts])
-        miss = stated_error([finer.load_at(one) for one in others], values, scale=values)
-        radius = miss / np.array([one.slope for one in contacts]) + floor
-    depth, force, stiffness = (
-        stated_error(other, one, scale=one, floor=floor) for one, other in zip(ours, theirs, strict=True)
-    )
+    values = np.array([contact.state[solver.prescribed] for contact in contacts])
+    others = [finer.at(contact.state[0], value) for contact, value in zip(contacts, values, strict=True)]
+    pairs = list(zip(contacts, others, strict=True))
+    changes = [
+        [np.max(np.abs(x - y)) for x, y in zip(*(solver.numbers(c, one) for c in (one, other)), strict=True)]
+        for one, other in pairs
+    ]
+    floor = _ROUNDING * np.array([1 + contact.density.integrals[0] / contact.state[0] for contact in contacts])
+    radius, miss = np.zeros((2, floor.size))
+    if solver.prescribed and not solver.is_punch:
+        miss = stated_error([contact.reached for contact in others], values, scale=values)
+        radius = miss / np.array([contact.slope for contact in contacts]) + floor
     # Depth and force are stationary in the radius.
-    errors = {
-        "contact_radius": radius,
-        "indentation_depth": depth + miss**2,
-        "normal_force": force + miss**2,
-        "contact_stiffness": stiffness + _STIFFENING * radius,
-    }
-    for kind, name in ((IndentationDepths, "indentation_depth"), (NormalForces, "normal_force")):
-        if isinstance(loading, kind):
-            errors[name] = np.zeros_like(a)
-    # A rounded radius has fewer digits of its distances from the flat end and from an upright end.
-    room = np.full_like(a, np.inf) if isinstance(loading, ContactRadii) else a - scene.indenter.flat_radius
-    room = np.minimum(room, scene.indenter.max_radius - a) if scene.indenter.ends_upright else room
-    rounded = 0 * a if fields.is_singular else EPS * a / np.maximum(room, EPS * a)
-    moved = np.array([_field_changes(fields, *pair) for pair in zip(contacts, others, strict=True)]).T
-    errors["pressure"] = moved[0] + radius + rounded + errors["normal_force"]
-    errors["surface_displacement"] = moved[1] + floor + errors["indentation_depth"]
-    return errors
-
-
-def _prescribed(scene: Scene, contact: Contact) -> float:
-    """Radius [m], depth [m] or force [N], whichever the loading prescribes."""
-    if isinstance(scene.loading, NormalForces):
-        return contact.force
-    return contact.depth if isinstance(scene.loading, IndentationDepths) else contact.radius
-
-
-def _field_changes(fields: DirectFields, ours: Contact, other: Contact) -> tuple[float, float]:
-    """Errors of the pressure over its mean, and of the displacement over the depth."""
-    r = ours.radius * gauss(_INSIDE)[0]
-    change = fields.pressure_of(other, r) - fields.pressure_of(ours, r)
-    change *= np.sqrt(1 - (r / ours.radius) ** 2) if fields.is_singular else 1.0
-    outside = [one.density.displacement(ours.radius * _OUTSIDE, ours.depth) for one in (ours, other)]
-    moved = float(np.abs(outside[1] - outside[0]).max()) / ours.depth
-    return tuple(SAFETY * x + _FIELD_ROUNDING for x in (float(np.abs(change).max()) / ours.mean_pressure, moved))
+    more = miss**2, miss**2, _STIFFENING * radius, radius + _FIELD_ROUNDING, np.full_like(radius, _FIELD_ROUNDING)
+    errors = {"contact_radius": radius}
+    for name, change, extra in zip(_COMPARED, np.transpose(changes), more, strict=True):
+        errors[name] = stated_error(change, 0.0, floor=floor + extra)
+    return errors | {ContactPath.ARRAYS[solver.prescribed]: 0 * floor}
