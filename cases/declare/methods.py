@@ -50,7 +50,7 @@ BUILT_IN: Mapping[str, TableEntry] = {
     "mdr_table": TableEntry(module="cases.declare.mdr_variants", attribute="mdr_by_fft_table"),
     "fem": TableEntry(module="fem_reference", attribute="Fem"),
     "bem": TableEntry(module="bem.method", attribute="Bem"),
-    "integral_equation": TableEntry(module="bem.layer_equation.method", attribute="IntegralEquationMethod"),
+    "integral_equation": TableEntry(module="bem.direct_method", attribute="IntegralEquationMethod"),
 }
 
 

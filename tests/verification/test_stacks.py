@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from bem import Bem
+from bem.direct_method import IntegralEquationMethod
 from bem.layer_equation.flat_punch_source import IntegralEquation
-from bem.layer_equation.method import IntegralEquationMethod
 from contact import (
     Cone,
     ContactRadii,
