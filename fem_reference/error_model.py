@@ -72,11 +72,6 @@ class LoadCoefficients:
     Measured on random elastic scenes (`test_error_bars_at_a_load_are_sharp`).
     """
 
-    # Where errors cancel, only this share of the expected fall of a number's changes is believed: a smaller last change
-    # is an accident.  Measured on 269 loads (random elastic scenes of seeds 3, 5, 22, 23, 31 and 32 at the default
-    # settings and accuracies 1e-2 and 1e-3, 2026-11-22): with 0.3, 95 of 100 depths and forces at accuracy 1e-2 were
-    # covered but for what the outer edge adds, with 0.5, 97 to 98; stated errors grow by a tenth in the median.
-    fastest_share: float = 0.5
     # The stiffness changes at least by this share of what the change of the radius alone makes of it: a smaller one is
     # an accident.  Measured on 169 loads (109 random elastic scenes of seed 41 at the default settings and accuracies
     # 1e-2 to 1e-4, and 60 forces on a truncated cone, 2026-11-23): the two that were exceeded, 2.5 and 3.2 times, need

@@ -20,7 +20,7 @@ import numpy as np
 
 from contact.records.validation import FloatArray
 from fem_reference.adhesion.branch import InterpolatedBranch
-from fem_reference.error_model import AT_LOAD, FIXED_RADIUS, ON_BRANCH
+from fem_reference.error_model import FIXED_RADIUS, ON_BRANCH
 
 Numbers = Callable[[InterpolatedBranch], FloatArray]
 
@@ -30,8 +30,8 @@ def degree_error(branch: InterpolatedBranch, numbers: Numbers, rate: str = "rate
     contacts = branch.contacts
     values = [numbers(branch.at_degree(degree)) for degree in sorted(contacts[0].levels)]
     changes = [np.abs(high - low) for low, high in pairwise(values)]
-    share, fastest = (float(np.mean([getattr(c, name) for c in contacts])) for name in (rate, "fastest_rate"))
-    expected = [AT_LOAD.fastest_share * fastest * before for before in changes[-2:-1]]
+    share, least = (float(np.mean([getattr(c, name) for c in contacts])) for name in (rate, "least_fall"))
+    expected = [least * before for before in changes[-2:-1]]
     return np.asarray(FIXED_RADIUS.safety * share * np.max([changes[-1], *expected], axis=0))
 
 

@@ -132,7 +132,7 @@ def held_error(branch: InterpolatedBranch, radius: float, row: int) -> float:
         pulled = level.stiffness * elongation(answer), answer.stiffness * elongation(level)
         return np.array([level.smooth_force, *pulled])
 
-    changed = contact.rate_of_several * float(np.linalg.norm(contact.changes_of(terms))) * radius ** (1 + row)
+    changed = contact.rate * float(np.linalg.norm(contact.changes_of(terms))) * radius ** (1 + row)
     load = (InterpolatedBranch.depth, InterpolatedBranch.force)[row]
     edge = edge_error(branch, lambda other: load(other, here))[0]
     return float(changed + edge + branch.errors_far(here)[row, 0])
@@ -173,7 +173,7 @@ def pull_off_errors(
         return np.array([depth, strongest, shift, lost])
 
     slopes = np.array([abs(depth_slope), abs(force_slope), 1.0, abs(lost_slope)])
-    by_degree = degree_error(branch, numbers, "rate_of_several")
+    by_degree = degree_error(branch, numbers)
     # What the slower rate of single radii would add to the place is in the scatter.
     by_degree[2] = degree_error(branch, numbers, "rate_at_load")[2]
     interpolated = _interpolated(extremum, pull_off.control, there, slopes)

