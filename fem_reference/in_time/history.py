@@ -25,7 +25,7 @@ WINDOW = 6
 # Contact narrower than so many cells states the largest change while it is; the first cells err in every way.
 NARROW = 8.0
 # Least stated change over the mean of all instants.
-SHARE_OF_MEAN = 0.2
+SHARE_OF_MEAN = 0.5
 # Steps of each octave of a pilot.
 PILOT_STEPS = 4
 

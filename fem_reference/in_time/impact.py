@@ -79,8 +79,8 @@ class ImpactSolver:
             if finer > MOST and (is_fine or step < span / PILOT_STEPS):
                 raise NotConvergedError(
                     "a strong dashpot stops the body far sooner than contact ends: equal steps that follow its stop "
-                    f"are {finer:.3g} times as many as an elastic layer needs, {MOST} times at most are made; the method "
-                    "mdr adapts its steps",
+                    f"are {finer:.3g} times as many as an elastic layer needs, {MOST} times at most are made; the "
+                    "method mdr adapts its steps",
                     {"steps_over_usual": finer},
                 )
             if is_fine:
