@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
 from functools import partial
-from typing import ClassVar, Self, TypeAlias, TypeVar, overload
+from typing import ClassVar, Self, TypeAlias, overload
 
 from contact import (
     Adhesion,
@@ -51,8 +51,6 @@ from fem_reference.elastic.surface_fields import FemFields
 from fem_reference.stated import path_with_errors
 
 Answer: TypeAlias = ContactPath | DetachmentPath | ImpactHistory | HistoryPath
-S = TypeVar("S")
-T = TypeVar("T")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -235,13 +233,17 @@ class Fem:
         from fem_reference.in_time.setup import HistorySetup  # noqa: PLC0415
 
         def attempt(settings: Discretisation) -> ImpactHistory | HistoryPath:
-            """The answer with one number of cells and steps, and its companion with half of them."""
+            """The answer, and its companions with half the cells and with half the steps as well."""
             coarser, setup = (HistorySetup(scene, each, self.solver, log) for each in (settings.coarser(), settings))
+            cells = coarser.resolution
+            resolutions = (coarser, cells.half_the_steps()), (coarser, cells), (setup, setup.resolution)
             if isinstance(loading, Impact):
                 impact = ImpactSolver(loading, asdict(self))
-                return impact.with_errors(*_companion_first(impact.answer, setup, coarser), setup)
+                half_both, half_cells, fine = (impact.answer(*each) for each in resolutions)
+                return impact.with_errors(fine, half_cells, half_both, setup)
             history = HistorySolver(scene, loading, asdict(self))
-            return history.with_errors(*_companion_first(history.answer, setup, coarser), setup)
+            half_steps, half_strip, path = (history.answer(*each) for each in resolutions)
+            return history.with_errors(path, half_strip, half_steps, setup)
 
         return attempt
 
@@ -263,12 +265,6 @@ class Fem:
             return solve_contact(scene, radius, settings, log, backend=self.solver, kind=kind)
 
         return solve
-
-
-def _companion_first(answer: Callable[[T], S], setup: T, coarser: T) -> tuple[S, S]:
-    """Answer and companion, the latter solved first, since the answer begins where it found the contact."""
-    companion = answer(coarser)
-    return answer(setup), companion
 
 
 def _supports_friction(scene: Scene) -> Supported | Unsupported:

@@ -16,7 +16,7 @@ from fem_reference.discrete_layer.material import contact_modulus, shear_modulus
 from fem_reference.elastic.equilibria import refuse_touching_at
 from fem_reference.in_time.instants import segments
 from fem_reference.in_time.motions import CondensedLayer, Samples, simulate_prescribed
-from fem_reference.in_time.setup import HistorySetup
+from fem_reference.in_time.setup import HistorySetup, Resolution
 from fem_reference.stated import FLOOR, exact_names
 
 # Instants of the companion to either side, among which the largest change is stated. With two of them one history in
@@ -39,7 +39,7 @@ class HistorySolver:
         self._values: FloatArray = loading.depth if isinstance(loading, DepthHistory) else loading.force
         self._radius: float | None = None
 
-    def answer(self, setup: HistorySetup) -> HistoryPath:
+    def answer(self, setup: HistorySetup, resolution: Resolution) -> HistoryPath:
         """The response at the steps of this resolution; it states no errors yet.
 
         Raises:
@@ -53,8 +53,8 @@ class HistorySolver:
         if self._radius is None:
             guess = 1.6 * self._first_radius()
             self._radius, _ = setup.fitted_radius(guess, lambda layer: self._simulated(setup, layer, PILOT_STEPS))
-        condensed = setup.condensed(self._radius, setup.resolution.cells)
-        return self._in_si(setup, condensed, self._simulated(setup, condensed, setup.resolution.per_octave))
+        condensed = setup.condensed(self._radius, resolution.cells)
+        return self._in_si(setup, condensed, self._simulated(setup, condensed, resolution.per_octave))
 
     def _simulated(self, setup: HistorySetup, condensed: CondensedLayer, per_octave: int) -> Samples:
         unit = condensed.radius
@@ -94,16 +94,23 @@ class HistorySolver:
             contact_radius=np.where(force > 0, radius, 0.0),
         )
 
-    def with_errors(self, answer: HistoryPath, companion: HistoryPath, setup: HistorySetup) -> HistoryPath:
-        """The answer with stated errors for every instant, shape (n,)."""
+    def with_errors(
+        self, answer: HistoryPath, half_cells: HistoryPath, half_both: HistoryPath, setup: HistorySetup
+    ) -> HistoryPath:
+        """The answer with stated errors for every instant, shape (n,): what half the cells change, and half the steps.
+
+        Both at once may cancel.
+        """
         largest = float(answer.contact_radius.max())
         refuse_touching_at(self._scene, largest, setup.log)
         cell = self._radius / setup.resolution.cells if self._radius else 0.0
         exact, errors = exact_names(answer.scene), {}
         for name in (name for name in answer.ARRAYS if name != "time"):
             values = getattr(answer, name)
-            change = np.abs(np.interp(companion.time, answer.time, values) - getattr(companion, name))
-            near = _largest_near(change, companion, answer, NARROW * cell) + SHARE_OF_MEAN * change.mean()
+            near = np.zeros(len(answer))
+            for fine, coarse in ((answer, half_cells), (half_cells, half_both)):
+                change = np.abs(np.interp(coarse.time, fine.time, getattr(fine, name)) - getattr(coarse, name))
+                near += _largest_near(change, coarse, answer, NARROW * cell) + SHARE_OF_MEAN * change.mean()
             error = SAFETY * near / max(np.abs(values).max(), np.finfo(float).tiny) + FLOOR
             if name == "contact_radius":
                 # Pressures of a layer that relaxes do not end like sqrt(a - r): radii are known to a cell.

@@ -7,7 +7,7 @@ from functools import partial
 
 import numpy as np
 
-from contact import FlatPunch, Impact, ImpactHistory, NotConvergedError
+from contact import FlatPunch, Impact, ImpactHistory, KelvinVoigt, NotConvergedError, Viscoelasticity
 from contact.answer.solution import Setting
 from contact.records.validation import FloatArray
 from contact.scene.extent import first_radius
@@ -16,7 +16,7 @@ from fem_reference.discrete_layer.indenter import height
 from fem_reference.discrete_layer.material import contact_modulus, shear_modulus
 from fem_reference.elastic.equilibria import refuse_touching_at
 from fem_reference.in_time.motions import CondensedLayer, FallingBody, Samples, simulate_impact
-from fem_reference.in_time.setup import HistorySetup
+from fem_reference.in_time.setup import HistorySetup, Resolution
 from fem_reference.stated import FLOOR, exact_names, relative_change
 
 # Steps of a pilot in the time that contact is expected to take; more than half as many tell how long it lasts.
@@ -43,14 +43,13 @@ class ImpactSolver:
         self._loading, self._settings = loading, settings
         self._planned: tuple[float, float] | None = None
 
-    def answer(self, setup: HistorySetup) -> ImpactHistory:
+    def answer(self, setup: HistorySetup, resolution: Resolution) -> ImpactHistory:
         """From first touch to the loss of contact; it states no errors yet."""
         if self._planned is None:
             self._planned = self._pilot(setup)
         radius, span = self._planned
-        condensed = setup.condensed(radius, setup.resolution.cells)
-        record = self._simulated(setup, span / setup.resolution.steps, condensed)
-        return self._in_si(setup, condensed, record)
+        condensed = setup.condensed(radius, resolution.cells)
+        return self._in_si(setup, condensed, self._simulated(setup, span / resolution.steps, condensed))
 
     def _simulated(self, setup: HistorySetup, duration: float, condensed: CondensedLayer) -> Samples:
         """The motion with time steps of this duration [s]."""
@@ -130,19 +129,24 @@ class ImpactSolver:
             peak_contact_radius=peak(radius),
         )
 
-    def with_errors(self, answer: ImpactHistory, companion: ImpactHistory, setup: HistorySetup) -> ImpactHistory:
-        """The answer with its stated errors."""
+    def with_errors(
+        self, answer: ImpactHistory, half_cells: ImpactHistory, half_both: ImpactHistory, setup: HistorySetup
+    ) -> ImpactHistory:
+        """The answer with its stated errors: what half the cells change, and what half the steps change with them.
+
+        Both at once may cancel.
+        """
+        pairs = (answer, half_cells), (half_cells, half_both)
         refuse_touching_at(setup.scene, answer.peak_contact_radius, setup.log)
         exact = exact_names(answer.scene)
         channels = [name for name in answer.ARRAYS if name != "time"]
-        changes = {name: channel_change(answer, companion, name) for name in channels}
-        errors = {name: np.full(len(answer), SAFETY * change.max() + FLOOR) for name, change in changes.items()}
+        errors = {
+            name: np.full(len(answer), SAFETY * sum(channel_change(*pair, name).max() for pair in pairs) + FLOOR)
+            for name in channels
+        }
         for name in (*answer.SCALARS, "coefficient_of_restitution", "contact_time"):
-            change = float(relative_change(answer, companion, name).max())
-            if name in PEAKS:
-                values = getattr(companion, PEAKS[name])
-                change = max(change, float(changes[PEAKS[name]][values >= NEAR_PEAK * values.max()].max()))
-            errors[name] = np.array([SAFETY * change + FLOOR])
+            errors[name] = np.array([SAFETY * sum(_scalar_change(*pair, name) for pair in pairs) + FLOOR])
+        errors["coefficient_of_restitution"] += _energy_lost(answer)
         reading = self._reading(answer, setup)
         for name in ("contact_radius", "peak_contact_radius"):
             errors[name] = errors[name] + reading
@@ -154,6 +158,23 @@ class ImpactSolver:
         peak_radius = answer.peak_contact_radius
         at_kink = any(abs(peak_radius - kink) < 2 * cell for kink in answer.scene.indenter.kinks)
         return (1.0 if at_kink else EDGE_READING) * cell / peak_radius
+
+
+def _energy_lost(answer: ImpactHistory) -> float:
+    """Relative error of the restitution by the energy that motion, layer and dissipation lack in the end together."""
+    if isinstance(answer.scene.effect(Viscoelasticity), KelvinVoigt):
+        return 0.0  # a dashpot's dissipation is summed to first order in the steps
+    total = answer.kinetic_energy + answer.stored_energy + answer.dissipated_energy
+    return float(abs(total[-1] - total[0]) / (2.0 * answer.kinetic_energy[-1]))
+
+
+def _scalar_change(answer: ImpactHistory, companion: ImpactHistory, name: str) -> float:
+    """Relative change of a number; of a peak the largest one of its channel near the peak, where two may agree."""
+    change = float(relative_change(answer, companion, name).max())
+    if name not in PEAKS:
+        return change
+    values = getattr(companion, PEAKS[name])
+    return max(change, float(channel_change(answer, companion, PEAKS[name])[values >= NEAR_PEAK * values.max()].max()))
 
 
 def channel_change(answer: ImpactHistory, companion: ImpactHistory, name: str) -> FloatArray:

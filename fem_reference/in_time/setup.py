@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Self
 
 import numpy as np
 
@@ -17,7 +18,7 @@ from fem_reference.elastic.prescribed_radius import solve_contact
 from fem_reference.elastic.surface_compliance import condense, strip_mesh
 from fem_reference.in_time.motions import CondensedLayer, Samples
 from fem_reference.in_time.relaxation import relaxation_of
-from fem_reference.in_time.top import compressible_top, proportional_top
+from fem_reference.in_time.top import Modes, Top, compressible_modes, proportional_modes
 
 # Growth of cells away from a strip of 120 cells.  With a growth of one the mesh outside adds ten times as much to peak
 # depths as the strip, with half of this time grows by a half.
@@ -44,10 +45,14 @@ class Resolution:
 
     @classmethod
     def of(cls, settings: Discretisation) -> Resolution:
-        """Cells and steps shrink with the growth of the meshes; a companion has half of each."""
+        """Cells and steps shrink with the growth of the meshes; a companion has half of the cells."""
         growth, halves = settings.growth / settings.coarsening, 1 if settings.coarsening == 1.0 else 2
-        cells, steps = 2 * max(10, round(30 / growth)), 2 * max(20, round(100 / growth))
-        return cls(cells // halves, steps // halves, 2 * max(2, round(4 / growth)) // halves)
+        cells = 2 * max(10, round(30 / growth)) // halves
+        return cls(cells, 2 * max(20, round(100 / growth)), 2 * max(2, round(4 / growth)))
+
+    def half_the_steps(self) -> Self:
+        """The same cells with half the steps, whose instants are every other one of a history's."""
+        return replace(self, steps=self.steps // 2, per_octave=self.per_octave // 2)
 
 
 class HistorySetup:
@@ -59,25 +64,31 @@ class HistorySetup:
         self._settings = replace(settings, truncation=max(settings.truncation, TRUNCATION * settings.coarsening**6))
         self._backend = backend
         relaxes = bool(np.any(self.relaxation.moduli)) or self.relaxation.viscosity > 0
+        self._modes: dict[tuple[float, int], Modes] = {}
         self._needs_field = relaxes and scene.layer.poissons_ratio < 0.5
 
     def condensed(self, radius: float, cells: int) -> CondensedLayer:
         """The layer at rest with a strip of ``radius`` [m]."""
+        if (radius, cells) not in self._modes:
+            self._modes[radius, cells] = self._condense(radius, cells)
+        modes = self._modes[radius, cells]
+        is_punch = len(modes.radii) == 1
+        profile = np.zeros(1) if is_punch else self._profile(modes.radii, radius)
+        return CondensedLayer(Top(modes, self.relaxation), modes.radii, profile, radius, modes.unknowns)
+
+    def _condense(self, radius: float, cells: int) -> Modes:
         layer, per_shear = self.scene.layer, (1 - self.scene.layer.poissons_ratio) / 2  # E* = 2 G / (1 - nu)
         if self._needs_field:
             mesh = self._mesh(radius, cells)
             with self.log.stage("factor"):
-                top, radii, unknowns = compressible_top(layer, mesh, self.relaxation, self._backend)
-            return CondensedLayer(top, radii, self._profile(radii, radius), radius, unknowns)
+                return compressible_modes(layer, mesh, self._backend)
         if isinstance(self.scene.indenter, FlatPunch):
             # It moves as one: its force is the only unknown, 1 / k_N its compliance.
             contact = solve_contact(self.scene, radius, self._settings, self.log, backend=self._backend)
             compliance = np.array([[per_shear / contact.stiffness]])
-            surface = proportional_top(compliance, np.ones(1), self.relaxation)
-            return CondensedLayer(surface, np.ones(1), np.zeros(1), radius, contact.unknowns)
+            return proportional_modes(compliance, np.ones(1), np.ones(1), contact.unknowns)
         strip = condense(layer, self._mesh(radius, cells), self._backend, self.log)
-        surface = proportional_top(strip.matrix * per_shear, strip.resultants, self.relaxation)
-        return CondensedLayer(surface, strip.radii, self._profile(strip.radii, radius), radius, strip.unknowns)
+        return proportional_modes(strip.matrix * per_shear, strip.resultants, strip.radii, strip.unknowns)
 
     def _mesh(self, radius: float, cells: int) -> LayerMesh:
         layer, indenter = self.scene.layer, self.scene.indenter

@@ -19,6 +19,8 @@ Units: lengths by the strip's radius, stresses by the instantaneous shear modulu
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from contact import Layer
@@ -37,38 +39,48 @@ SPANNING_MODULI = (1e-2, 1e-1, 1.0, 10.0, 1e3)
 LEAST_MODE = 1e-13
 
 
+class Modes(NamedTuple):
+    """A layer condensed to its top.
+
+    Attributes:
+        displacements: M, shape (n, r).
+        volume: K, shape (r,).
+        shear: D, shape (r,).
+        resultants: force per pressure unknown, shape (n,).
+        radii: vertices of the pressures, shape (n,).
+        unknowns: size of the condensed system.
+    """
+
+    displacements: FloatArray
+    volume: FloatArray
+    shear: FloatArray
+    resultants: FloatArray
+    radii: FloatArray
+    unknowns: int
+
+
 class Top:
     """Modes x and branch stresses s_j of a layer that is at rest at first; it has a memory and serves one history.
 
     Args:
-        modes: M, shape (n, r).
-        volume: K, shape (r,).
-        shear: D, shape (r,).
-        resultants: force per pressure unknown, shape (n,).
+        modes: of the condensed layer.
         relaxation: of shear; branches without modulus are left out.
 
     Attributes:
-        resultants: as given.
+        resultants: force per pressure unknown, shape (n,).
         viscosity: eta over the instantaneous modulus [s].
         dissipated_energy: energy lost so far.
     """
 
-    def __init__(
-        self,
-        modes: FloatArray,
-        volume: FloatArray,
-        shear: FloatArray,
-        resultants: FloatArray,
-        relaxation: ShearRelaxation,
-    ) -> None:
+    def __init__(self, modes: Modes, relaxation: ShearRelaxation) -> None:
         unit, acts = relaxation.at_once, relaxation.moduli > 0
-        self.resultants, self.viscosity = resultants, relaxation.viscosity / unit
+        self.resultants, self.viscosity = modes.resultants, relaxation.viscosity / unit
         self.dissipated_energy = 0.0
-        self._modes, self._volume, self._shear = modes, volume, shear
+        self._modes, self._volume, self._shear = modes.displacements, modes.volume, modes.shear
         self._long_term = relaxation.long_term_modulus / unit
         self._moduli, self._times = relaxation.moduli[acts] / unit, relaxation.times[acts]
-        self._now = self._before = self._memory = np.zeros_like(volume)
-        self._branches = np.zeros((len(self._moduli), len(volume)))
+        self._now = self._before = self._memory = np.zeros_like(modes.volume)
+        self._branches = np.zeros((len(self._moduli), len(modes.volume)))
         self._duration = self._last = 0.0
         self._modulus, self._matrix = np.nan, np.empty((0, 0))
 
@@ -121,20 +133,15 @@ class Top:
         return lost
 
 
-def proportional_top(compliance: FloatArray, resultants: FloatArray, relaxation: ShearRelaxation) -> Top:
+def proportional_modes(compliance: FloatArray, resultants: FloatArray, radii: FloatArray, unknowns: int) -> Modes:
     """Of a layer whose moduli relax in proportion; compliance at unit shear modulus, shape (n, n)."""
     ones = np.ones_like(resultants)
-    return Top(np.asarray(np.linalg.cholesky(compliance), dtype=float), 0.0 * ones, ones, resultants, relaxation)
+    factor = np.asarray(np.linalg.cholesky(compliance), dtype=float)
+    return Modes(factor, 0.0 * ones, ones, resultants, radii, unknowns)
 
 
-def compressible_top(
-    layer: Layer, mesh: LayerMesh, relaxation: ShearRelaxation, backend: str
-) -> tuple[Top, FloatArray, int]:
-    """Of a layer with a constant bulk modulus on a section with a strip of radius one.
-
-    Returns:
-        The top, the vertices of the pressures, shape (n,), and the size of the condensed system.
-    """
+def compressible_modes(layer: Layer, mesh: LayerMesh, backend: str) -> Modes:
+    """Of a layer with a constant bulk modulus on a section with a strip of radius one."""
     nu = layer.poissons_ratio
     bulk = 2 * (1 + nu) / (3 * (1 - 2 * nu))
     displacements, volume_forces = [], []
@@ -150,8 +157,7 @@ def compressible_top(
     u, forces = np.hstack(displacements), np.hstack(volume_forces)
     modes, volume, shear = _energy_modes(u, u.T @ forces, u.T @ (deviator[:count, :count] @ u))
     radii = problem.positions[0, strip_vertices(problem)]
-    top = Top((u.T @ loads[:count]).T @ modes, volume, shear, loads.sum(axis=0), relaxation)
-    return top, radii, problem.space.size
+    return Modes((u.T @ loads[:count]).T @ modes, volume, shear, loads.sum(axis=0), radii, problem.space.size)
 
 
 def _energy_modes(u: FloatArray, volume: FloatArray, shear: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:

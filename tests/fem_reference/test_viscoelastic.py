@@ -27,7 +27,7 @@ from fem_reference.in_time.impact import peak
 from fem_reference.in_time.motions import MAX_STEPS, CondensedLayer, FallingBody, simulate_impact
 from fem_reference.in_time.relaxation import ShearRelaxation
 from fem_reference.in_time.setup import HistorySetup
-from fem_reference.in_time.top import proportional_top
+from fem_reference.in_time.top import Top, proportional_modes
 
 QUICK = Fem(growth=1.0, edge_cell=1e-6, truncation=1e-7)
 G1 = 7.5e6
@@ -91,7 +91,7 @@ def test_flat_punch_on_a_kelvin_voigt_layer(damping):
     history = Fem(growth=0.7, edge_cell=1e-6).solve(scene)
     error = history.coefficient_of_restitution / kelvin_voigt_restitution(damping) - 1
     assert abs(error) < 3e-4
-    assert abs(error) <= history.error_estimate["coefficient_of_restitution"][0] < 1e-3
+    assert abs(error) <= history.error_estimate["coefficient_of_restitution"][0] < 5e-3
 
 
 def own(effect):
@@ -102,8 +102,8 @@ def own(effect):
 
 def single_spring(relaxation, steps):
     """Restitution of one degree of freedom (unit compliance, mass and speed) with so many steps in a half period."""
-    surface = proportional_top(np.eye(1), np.ones(1), relaxation)
-    condensed = CondensedLayer(surface, np.ones(1), np.zeros(1), 1.0, 1)
+    modes = proportional_modes(np.eye(1), np.ones(1), np.ones(1), 1)
+    condensed = CondensedLayer(Top(modes, relaxation), np.ones(1), np.zeros(1), 1.0, 1)
     record = simulate_impact(condensed, FallingBody(mass=1.0, velocity=1.0), np.pi / steps)
     return -record.column("velocity")[-1], record
 
@@ -233,7 +233,7 @@ def test_force_history_reproduces_the_depth_history_it_came_from():
     layer = Layer.incompressible(thickness=1e-3, shear_modulus=G1 + G_INF)
     loading = DepthHistory(time=[0, 1e-3, 2e-3], depth=[0, 5e-5, 5e-5])
     there = QUICK.solve(Scene(layer=layer, indenter=BALL, loading=loading, effects=(SOLID,)))
-    some = np.unique([*range(0, len(there), 10), len(there) - 1])
+    some = np.unique([*range(0, len(there), 2), len(there) - 1])
     back_loading = ForceHistory(time=there.time[some], force=there.normal_force[some])
     back = QUICK.solve(Scene(layer=layer, indenter=BALL, loading=back_loading, effects=(SOLID,)))
     depth = np.interp(there.time, back.time, back.indentation_depth)
