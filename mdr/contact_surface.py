@@ -20,7 +20,7 @@ from scipy.linalg import cho_factor, cho_solve
 from scipy.special import j0
 
 from bem.equation import Radius
-from bem.numerics import even_legendre, gauss, graded, spherical_bessel
+from bem.numerics import even_bessel, even_legendre, gauss, graded, spherical_bessel
 from contact import InvalidInput
 from contact.records.validation import FloatArray
 from mdr.spring_bed import Springs
@@ -107,6 +107,27 @@ class Surface:
     def psi(self, t: FloatArray) -> FloatArray:
         """psi [m] at t <= a [m]."""
         return np.asarray(even_legendre(t / self.a, self._series.size) @ self._series)
+
+    @property
+    def degree(self) -> int:
+        """Of psi."""
+        return 2 * self._smooth.size
+
+    @property
+    def corner(self) -> float:
+        """-1/ln[(a + t)/(a - t)] times what `smooth_slope` leaves out of psi'."""
+        return self._corner
+
+    def smooth_slope(self, t: FloatArray) -> FloatArray:
+        """psi' without the logarithm at the edge."""
+        full = np.zeros(2 * self._smooth.size)
+        full[::2] = self._smooth
+        return np.asarray(legendre.legval(t / self.a, legendre.legder(full)) / self.a)
+
+    def smooth_transform(self, k: FloatArray) -> FloatArray:
+        """int_0^a psi cos kt dt [m^2] at k [1/m]."""
+        alternating = self._series * (-1.0) ** np.arange(self._series.size)
+        return np.asarray(self.a * alternating @ even_bessel(k * self.a, self._series.size))
 
     def density(self, t: FloatArray) -> FloatArray:
         """phi [m] at t <= a [m]."""
@@ -248,7 +269,7 @@ class Patched(Surface):
         load = np.concatenate([self._load(*patch) for patch in self._patches])
         phi = cho_solve(cho_factor(np.eye(load.size) - smooth), load)
         cuts = np.cumsum([n.size for *_, n in self._patches])[:-1]
-        self._phi, self._parts = phi, []
+        self._phi, self._psi, self._parts = phi, phi - load, []
         for (middle, half, n), part in zip(self._patches, np.split(phi - load, cuts), strict=True):
             full = np.zeros(n[-1] + 1)
             full[n] = part * self._norm(middle, half, n)
@@ -294,6 +315,19 @@ class Patched(Surface):
     def psi(self, t: FloatArray) -> FloatArray:
         """psi [m] at t <= a [m]."""
         return self._on_patches(t, 0)
+
+    @property
+    def degree(self) -> int:
+        """Of psi on one patch."""
+        return self._degree
+
+    def smooth_slope(self, t: FloatArray) -> FloatArray:
+        """psi'."""
+        return self._on_patches(t, 1)
+
+    def smooth_transform(self, k: FloatArray) -> FloatArray:
+        """int_0^a psi cos kt dt [m^2] at k [1/m]."""
+        return np.asarray(self.a * self._psi @ self._transforms(k * self.a))
 
     def _spectrum(self, kappa: FloatArray, table: FloatArray) -> FloatArray:
         ours = self._table if kappa.size == self._table.shape[1] else self._transforms(kappa)

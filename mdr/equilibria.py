@@ -360,15 +360,10 @@ class PathFields:
         return self.surface(step).displacement(radius)
 
     def inside(self, step: int, known: KnownContact) -> InteriorFields:
-        """The body under one step, by the panels' density of the same contact."""
-        # Only those who look inside load it.
-        if self.adheres:
-            from mdr.adhesion.solver import solve_adhesive as solve  # noqa: PLC0415
-        else:
-            from mdr.elastic import solve_elastic as solve  # noqa: PLC0415
-        by_depth = isinstance(self.scene.indenter, FlatPunch)
-        loading = IndentationDepths(self.depth[[step]]) if by_depth else ContactRadii(self.radius[[step]])
-        path = solve(self.scene.replace(loading=loading), self.flat_punch, self.settings)
-        assert path.fields is not None
-        found: InteriorFields = path.fields.inside(0, known)  # type: ignore[attr-defined]
-        return found
+        """The body under one step."""
+        from mdr.inside import interior  # noqa: PLC0415 - only those who look inside load it
+
+        singular = self.adheres or is_singular(self.scene, known.radius)
+        if not self.adheres:  # two resolutions of the contact itself tell more
+            known = known._replace(density_error=0.0)
+        return interior(self.springs, self.scene.layer, known, float(self.depth[step]), is_singular=singular)
