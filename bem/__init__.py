@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from bem.direct_method import IntegralEquationMethod
-    from bem.layer_equation.flat_punch_source import IntegralEquation
+    from bem.flat_punch import IntegralEquation
     from bem.layer_equation.protocol import FlatPunchSolution, FlatPunchSource
     from bem.method import Bem
     from bem.tables import FftTable, TableFile

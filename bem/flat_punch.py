@@ -91,12 +91,12 @@ class FlatPunchValues:
     @one_thread
     def normalized_contact_stiffness(self, ratio: ArrayLike) -> FloatArray:
         """k_bar = k_N/(2 E* a)."""
-        return self._values(ratio)[0].reshape(np.shape(ratio))
+        return np.asarray(self._values(ratio)[0].reshape(np.shape(ratio)))
 
     @one_thread
     def normalized_spring_stiffness(self, ratio: ArrayLike) -> FloatArray:
         """c_bar = c_N/E*."""
-        return self._values(ratio)[1].reshape(np.shape(ratio))
+        return np.asarray(self._values(ratio)[1].reshape(np.shape(ratio)))
 
     @one_thread
     def relative_error(self, ratio: ArrayLike) -> FloatArray:
@@ -104,7 +104,7 @@ class FlatPunchValues:
         own, finer = self._values(ratio), self._values(ratio, finer=True)
         floor = _ROUNDINGS * EPS * (1 + own[2:].max(axis=0))
         both = [stated_error(one, other, scale=one, floor=floor) for one, other in zip(own[:2], finer[:2], strict=True)]
-        return np.max(both, axis=0).reshape(np.shape(ratio))
+        return np.asarray(np.max(both, axis=0).reshape(np.shape(ratio)))
 
     @one_thread
     def smooth_pressure(self, rho: ArrayLike, ratio: ArrayLike) -> FloatArray:
@@ -117,7 +117,7 @@ class FlatPunchValues:
             at_zero = np.append(1.0, np.cumprod(-(2 * n - 1) / (2 * n)))  # P_2n(0)
             terms = even_legendre(u[rows.which], n.size + 1) * np.sqrt(4 * np.append(0, n) + 1) / at_zero
             found[rows.which] = (terms * rows.punch).sum(axis=1) / (2 * rows.punch[:, 0])
-        return found.reshape(shares.shape)
+        return np.asarray(found.reshape(shares.shape))
 
     def _rows(self, ratio: FloatArray) -> Iterator[Rows]:
         return self._own.at(ratio * self._kernel.units)

@@ -16,11 +16,9 @@ from itertools import pairwise
 import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
-from scipy.linalg import cho_factor, cho_solve
-from scipy.special import j0
 
 from bem.equation import Radius
-from bem.numerics import even_bessel, even_legendre, gauss, graded, spherical_bessel
+from bem.numerics import cholesky, even_bessel, even_legendre, gauss, graded, solve_factored, special, spherical_bessel
 from contact import InvalidInput
 from contact.records.validation import FloatArray
 from mdr.spring_bed import Springs
@@ -230,7 +228,7 @@ class Surface:
         if self.kernel.is_uniform:
             return 0.0
         kappa, weighted = self._weighted_spectrum(2.0 ** np.ceil(np.log2(max(float(far.max()) / self.a, _NEAR))))
-        total = np.zeros(far.shape[0])
+        total, j0 = np.zeros(far.shape[0]), special().j0
         for part in range(0, kappa.size, _CHUNK):
             total = total + j0(far / self.a * kappa[part : part + _CHUNK]) @ weighted[part : part + _CHUNK]
         return total
@@ -267,7 +265,7 @@ class Patched(Surface):
         table = self._table
         smooth = (table * (2 / np.pi * w * self.kernel.one_minus_chi(kappa / x))) @ table.T
         load = np.concatenate([self._load(*patch) for patch in self._patches])
-        phi = cho_solve(cho_factor(np.eye(load.size) - smooth), load)
+        phi = solve_factored(cholesky(np.eye(load.size) - smooth), load)
         cuts = np.cumsum([n.size for *_, n in self._patches])[:-1]
         self._phi, self._psi, self._parts = phi, phi - load, []
         for (middle, half, n), part in zip(self._patches, np.split(phi - load, cuts), strict=True):

@@ -7,7 +7,7 @@ from typing import Annotated, ClassVar, Self, overload
 
 from pydantic import Field
 
-from bem.layer_equation.flat_punch_source import IntegralEquation
+from bem.flat_punch import IntegralEquation
 from bem.layer_equation.protocol import FlatPunchSource
 from contact import (
     ContactPath,

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     from bem.layer_equation.any_layer.graded_panels_factor import AnyLayerSolution
     from bem.layer_equation.any_layer.graded_solution import GradedSolution
 
+__all__ = ["RUNGS", "IntegralEquation", "panel_solution"]
+
 # Ratios are rounded up to these, so that a larger cached factor never changes an answer's last digits.
 RUNGS: Final = (1.0, 2.0, 5.0, 10.0, 20.0, 40.0, 80.0, LARGEST_FACTORISED_RATIO)
 

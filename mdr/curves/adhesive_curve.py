@@ -11,7 +11,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from bem.layer_equation.flat_punch_source import IntegralEquation
+from bem.flat_punch import IntegralEquation
 from contact import IndentationDepths, InvalidInput, Scene
 from contact.records.validation import BoolArray, FloatArray
 from mdr.equilibria import solve_elastic

@@ -6,10 +6,10 @@ import mpmath
 import numpy as np
 import pytest
 
+from bem.flat_punch import IntegralEquation
 from bem.kernels.layer import one_minus_kernel
 from bem.kernels.of_layer import UniformKernel
 from bem.kernels.stack import Sheet, StackKernel
-from bem.layer_equation.flat_punch_source import IntegralEquation
 from bem.layer_equation.stick.adhered_fields import AdheredFields, tanh_sinh
 from bem.layer_equation.stick.adhered_punch import adhered_punch, basis_transforms
 from bem.layer_equation.stick.coulomb import coulomb_functions

@@ -5,7 +5,7 @@ import pytest
 
 import bem.layer_equation.fourier_energy
 import bem.layer_equation.thin_layers
-from bem.layer_equation.flat_punch_source import IntegralEquation
+from bem.flat_punch import IntegralEquation
 from bem.layer_equation.fredholm_kernel import FredholmKernel
 from bem.layer_equation.thin_layers import DENSITY_TRUNCATION, PANEL_WIDTH, LargeRatioSolution, _trial_densities
 from bem.polynomials.gauss_panels import gauss_nodes

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from bem.equation import USUAL
-from bem.layer_equation.flat_punch_source import IntegralEquation
+from bem.flat_punch import IntegralEquation
 from contact import (
     ContactRadii,
     IndentationDepths,

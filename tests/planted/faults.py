@@ -102,6 +102,7 @@ KERNELS = [
         "kernels",
         override("bem.equation:Sizes", "scaled", lambda f: lambda self, factor: f(self, factor)._replace(nodes=5)),
         cone(LAYER, "bonded nu=0.5 a/h=5", "mdr"),
+        Status.INCONCLUSIVE,  # the stated error grows with the true one
     ),
     Fault(
         "resolvent of the equation counted half",
@@ -116,7 +117,7 @@ KERNELS = [
 
 def cone_without_flat_end(transform):
     """g_hs = (pi/2) tan(theta) (x - b): the truncated cone as a cone that starts at b."""
-    return lambda self, x: np.pi / 2 * self.slope(np.asarray(self.end)) * (x - self.flat)
+    return lambda self, x: np.pi / 2 * self._pieces[0, 0] * (x - self.flat)
 
 
 def half_moment(at):

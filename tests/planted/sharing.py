@@ -90,6 +90,11 @@ def heavier(original):
     return wrong
 
 
+def steeper(made):
+    """Pieces of a slope one per cent too large."""
+    return lambda self, profile, knots, pieces: made(self, profile, knots, WRONG * pieces)
+
+
 def deeper(at):
     """MDR profiles one per cent too large."""
 
@@ -297,7 +302,11 @@ FAULTS = (
     SharedFault(
         "interpolation of tabulated profiles",
         "slopes between the points",
-        both(HEIGHTS, wrong_method(f"{PROFILES}:Tabulated", "slope_at")),
+        both(
+            HEIGHTS,
+            wrong_method(f"{PROFILES}:Tabulated", "slope_at"),
+            override("mdr.profiles:PiecewiseTip", "__init__", steeper),
+        ),
         ("table",),
     ),
     *(

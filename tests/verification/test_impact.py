@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.special import gamma
 
+from bem.flat_punch import IntegralEquation
 from bem.kernels.moduli import relaxation_of
-from bem.layer_equation.flat_punch_source import IntegralEquation
 from contact import (
     Cone,
     FlatPunch,

@@ -4,7 +4,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from bem.layer_equation.flat_punch_source import IntegralEquation
+from bem.flat_punch import IntegralEquation
 from contact import Layer, Paraboloid, TruncatedCone
 from tests.bed import bed_of
 

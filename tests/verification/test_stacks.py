@@ -7,7 +7,7 @@ import pytest
 
 from bem import Bem
 from bem.direct_method import IntegralEquationMethod
-from bem.layer_equation.flat_punch_source import IntegralEquation
+from bem.flat_punch import IntegralEquation
 from contact import (
     Cone,
     ContactRadii,
@@ -172,9 +172,7 @@ def test_unknowns_stay_few_for_stacks_and_thin_films():
 
 
 def test_a_contact_too_wide_for_its_first_sublayer_is_refused_with_both_lengths():
-    with pytest.raises(
-        InvalidInput, match=r"a/h = 1200: contacts are answered up to 1000 times the thickness 0\.0005 m"
-    ):
+    with pytest.raises(InvalidInput, match=r"a/h = 1200: .* up to 1000 times the thickness 0\.0005 m"):
         solve(film(0.5, thickness=5e-4), PARABOLOID, ContactRadii([0.6]))
 
 
