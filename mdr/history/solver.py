@@ -8,6 +8,7 @@ Errors: the same history on finer springs with more of them, and with other step
 from __future__ import annotations
 
 from collections.abc import Mapping
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -34,7 +35,7 @@ from mdr.admissible import refuse_pulling, refuse_touching_outside
 from mdr.contact_surface import surface_of
 from mdr.equilibria import is_simple, is_singular, sizes_of
 from mdr.history.fronts import Layout, fronts, layout, panel_ends, refuse_open_inside
-from mdr.history.force_control import March, never_larger, steps_of
+from mdr.history.force_control import March, Steps, extrapolated, never_larger, steps_of
 from mdr.history.spring_bed import Path, SpringBed, followed
 from mdr.history.spring_law import SpringLaw
 from mdr.radius_search import RadiusSearch, refuse_too_wide
@@ -44,12 +45,12 @@ from mdr.springs.error_model import DEFAULT_ACCURACY
 # Nodes per panel under a depth, and under a force, where panels are as many as instants. With half as many errors of
 # 1e-6 are stated.
 _NODES_OF_DEPTHS, _NODES = 12, 6
-# Substeps of a whole force history at the default accuracy, at least four in each interval. Twice as many err a
-# sixteenth. One digit more of accuracy doubles them, between the bounds below.
-_SUBSTEPS = 96
+# Substeps of a whole force history at the default accuracy, at least two in each interval, and multiples of them whose
+# limits are compared. Twice as many err a thirtieth. One digit more of accuracy doubles them, between the bounds below.
+_SUBSTEPS, _LEVELS = 32, (4, 2, 1)
 _FEWEST, _MOST = -2, 2
 # Panels of the first march, marches at most, and the share of the largest depth by which the last one may differ.
-_FIRST_PANELS, _MOST_MARCHES, _STAYS = 32, 4, 1e-12
+_FIRST_PANELS, _MOST_MARCHES, _STAYS = 32, 4, 1e-9
 # Share of the largest force below which what is held is rounding and no contact.
 _HELD = 1e-12
 # Share of the largest spring force by which spring forces must rise outwards for the answer to carry a note.
@@ -105,7 +106,7 @@ def solve_history(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
         answer, other = (
             _by_depth(scene, springs, law, loading)
             if isinstance(loading, DepthHistory)
-            else [_by_force(scene, one, law, loading, n) for one, n in _resolutions(springs, settings)]
+            else _by_force(scene, springs, law, loading, _substeps(settings))
         )
         _refuse_widest(scene, springs, float(answer.radius.max()), float(answer.path.peaks[-1]))
     floor = sum(float(one[0]) for one in springs.floor(answer.radius.max(keepdims=True)))
@@ -144,12 +145,10 @@ def _stated(
     return np.where(known, change[known].max(initial=0.0), change.max() + doubt)
 
 
-def _resolutions(springs: Springs, settings: Mapping[str, Setting]) -> list[tuple[Springs, int]]:
-    """Springs and substeps of the answer, and of the history that it is compared with."""
+def _substeps(settings: Mapping[str, Setting]) -> int:
+    """Fewest substeps of a force history for the method's accuracy."""
     accuracy = float(settings.get("accuracy") or DEFAULT_ACCURACY)
-    doublings = float(np.clip(round(np.log10(DEFAULT_ACCURACY / accuracy)), _FEWEST, _MOST))
-    substeps = int(_SUBSTEPS * 2.0**doublings)
-    return [(springs, substeps), (springs.finer, substeps // 2)]
+    return int(_SUBSTEPS * 2.0 ** np.clip(round(np.log10(DEFAULT_ACCURACY / accuracy)), _FEWEST, _MOST))
 
 
 def _refuse_idle(loading: DepthHistory | ForceHistory) -> None:
@@ -184,9 +183,28 @@ def _by_depth(scene: Scene, springs: Springs, law: SpringLaw, loading: DepthHist
     return found
 
 
-def _by_force(scene: Scene, springs: Springs, law: SpringLaw, loading: ForceHistory, substeps: int) -> Response:
-    """The answer to forces that are met at so many substeps."""
-    steps = steps_of(law, loading, substeps)
+def _by_force(
+    scene: Scene, springs: Springs, law: SpringLaw, loading: ForceHistory, substeps: int
+) -> tuple[Response, Response]:
+    """The answer to forces in the limit of many substeps, and the same on finer springs with half of them."""
+    three = [
+        _marched(scene, one, law, loading, steps_of(law, loading, substeps, times))
+        for one, times in zip((springs, springs.finer, springs.finer), _LEVELS, strict=True)
+    ]
+    limits = [
+        {name: extrapolated(law, getattr(one, name), getattr(two, name)) for name in ("depth", "radius")}
+        for one, two in pairwise(three)
+    ]
+    own, force = three[0].known, loading.force > 0
+    for limit, one in zip(limits, three, strict=False):
+        limit["depth"] = np.where(own, one.depth, limit["depth"])
+        limit["radius"] = np.where(own | ~force, one.radius, np.maximum(limit["radius"], scene.indenter.flat_radius))
+    answer, other = (one._replace(**limit) for one, limit in zip(three, limits, strict=False))
+    return answer, other
+
+
+def _marched(scene: Scene, springs: Springs, law: SpringLaw, loading: ForceHistory, steps: Steps) -> Response:
+    """The answer to forces that are met at some instants."""
     load = law.elastic_force(steps.time, steps.force)
     known = never_larger(law, load) | law.is_elastic | isinstance(scene.indenter, FlatPunch)
     closed = _elastic_depths(scene, springs, load)
