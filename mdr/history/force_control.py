@@ -7,8 +7,13 @@ been larger all springs ever touched are touched, and F_e is the elastic force o
 J. Appl. Mech. 27, 438; Ting 1966, J. Appl. Mech. 33, 845).
 
 Elsewhere the depth is less than F_e would make it. There it is a quadratic in time on each substep, whose two
-coefficients follow from the force inside and at the end of the substep. Panels of springs end at the fronts of the last
-march, so that the force at these instants is a sum of Gauss rules, and the march is repeated until the depth stays.
+coefficients follow from the sum of displacements at the middle and at the end of the substep,
+
+    2 E* int u(x, t) y_1^2(x) dx = F_e(t),   u = delta - g in contact.
+
+Springs in contact take part with their depth alone, whatever the path to it, so that substeps err only by what free
+springs keep of it. Panels of springs end at the fronts of the last march, so that these sums are Gauss rules, and the
+march is repeated until the depth stays.
 """
 
 from __future__ import annotations
@@ -25,21 +30,18 @@ from contact.records.validation import FloatArray
 from mdr.history.spring_bed import Path, SpringBed
 from mdr.history.spring_law import SpringLaw
 
-# Where in a substep the force is met besides its end. With 1/2 the order is four. A dashpot's force depends on the
-# speed: 1/3 is Radau's rule of order three.
-_INNER, _INNER_OF_DASHPOTS = 1 / 2, 1 / 3
-# Times as many substeps where the depth is known.
-_MORE = 3.0
+# Times as many substeps where the depth is known: they cost little, and what springs keep of them is as accurate.
+_MORE = 3
 # Newton steps of a substep; five are usual.
 _MOST_STEPS = 60
-# Share of the largest force to which a force is met, and that may be missed where springs leave a jump.
-_TOLERANCE, _ACCEPTABLE = 1e-12, 1e-6
+# Share of the largest F_e to which it is met, and that may be missed.
+_TOLERANCE, _ACCEPTABLE = 1e-14, 1e-9
 # Share of all springs whose stiffness starts a substep in which hardly any touch.
 _LEAST = 1e-3
 
 
 class Steps(NamedTuple):
-    """Instants at which a force is met: two per substep.
+    """Instants at which depths are determined: two per substep.
 
     Attributes:
         time: [s], shape (1 + 2 substeps,).
@@ -63,26 +65,22 @@ def steps_of(law: SpringLaw, loading: ForceHistory, substeps: int, times: int) -
     """
     durations = np.diff(loading.time)
     share = (durations / durations.sum() + 1 / durations.size) / 2
-    closed = never_larger(law, law.elastic_force(loading.time, loading.force))
-    # Where the depth is known substeps cost little, and roots of time begin there.
-    share *= np.where(closed[1:] & closed[:-1], _MORE, 1.0)
+    load = law.elastic_force(loading.time, loading.force)
+    closed = never_larger(law, load)
     counts = times * np.maximum(np.ceil(substeps * share), 2).astype(int)
-    inner = _INNER_OF_DASHPOTS if law.viscosity else _INNER
     instants = [loading.time[:1]]
     for k, count in enumerate(counts.tolist()):
+        count *= _MORE if closed[k] and closed[k + 1] else 1
         s = np.arange(count + 1) / count
         fades = loading.force[k + 1] <= 0 < loading.force[k] and not law.viscosity
-        ends = loading.time[k] + durations[k] * (s * s * (6 - 8 * s + 3 * s * s) if fades else s * s)
+        way = s * s * (6 - 8 * s + 3 * s * s) if fades else s**1.5 if load[k] > 0 else s**4
+        ends = loading.time[k] + durations[k] * way
         ends[-1] = loading.time[k + 1]
-        instants.append(np.column_stack([ends[:-1] + inner * np.diff(ends), ends[1:]]).ravel())
+        counts[k] = count
+        instants.append(np.column_stack([(ends[:-1] + ends[1:]) / 2, ends[1:]]).ravel())
     time = np.concatenate(instants)
     given = np.append(0, 2 * np.cumsum(counts))
     return Steps(time, np.interp(time, loading.time, loading.force), given)
-
-
-def extrapolated(law: SpringLaw, fine: FloatArray, coarse: FloatArray) -> FloatArray:
-    """Limit of results with so many substeps and half of them, whose error is of order four, with a dashpot three."""
-    return fine + (fine - coarse) / (7 if law.viscosity else 15)
 
 
 def never_larger(law: SpringLaw, load: FloatArray) -> NDArray[np.bool_]:
@@ -93,14 +91,15 @@ def never_larger(law: SpringLaw, load: FloatArray) -> NDArray[np.bool_]:
 
 @dataclass
 class March:
-    """Depths that carry a force on one bed of springs.
+    """Depths under a force on one bed of springs.
 
     Attributes:
         law: Of the springs.
         bed: The springs.
         weight: Stiffness of each in contact [N/m], shape (n,).
-        steps: When which force is met.
-        closed: Depths of the elastic force F_e [m] at these instants.
+        steps: Instants and forces.
+        load: F_e [N] at the instants.
+        closed: Depths [m] of the elastic layer under it.
         known: Where these are the depths, of the same shape.
     """
 
@@ -108,6 +107,7 @@ class March:
     bed: SpringBed
     weight: FloatArray
     steps: Steps
+    load: FloatArray
     closed: FloatArray
     known: NDArray[np.bool_]
 
@@ -133,49 +133,50 @@ class March:
                 risen = (self.closed[k + 1 : k + 3] - depth[k]) / [first, whole]
                 a = 2 * (risen[1] - risen[0]) / (whole - first)
                 pace = np.array([risen[1] - whole * a / 2, a])
-                _, self.bed = self._forces(float(depth[k]), pace, (first, whole))
+                _, self.bed = self._displaced(float(depth[k]), pace, (first, whole))
             else:
-                pace, self.bed = self._met(float(depth[k]), pace, self.steps.force[k + 1 : k + 3], (first, whole))
+                pace, self.bed = self._met(float(depth[k]), pace, self.load[k + 1 : k + 3], (first, whole))
             v, a = pace
             speed[k : k + 2], acceleration[k : k + 2] = (v, v + a * first), a
             depth[k + 1 : k + 3] = depth[k] + first * (v + first * a / 2), depth[k] + whole * (v + whole * a / 2)
             pace = np.array([v + a * whole, 0.0])
         return Path(time, depth, speed, acceleration, free)
 
-    def _forces(
+    def _displaced(
         self, depth: float, pace: FloatArray, spans: tuple[float, float]
     ) -> tuple[FloatArray, SpringBed]:
-        """Forces [N] inside and at the end of a substep, stiffness in contact [N/m] there, shape (2, 2), and the bed."""
+        """F_e [N] at the middle and the end of a substep and stiffness in contact [N/m], shape (2, 2), and the bed."""
         bed, (v, a), found, before = self.bed.copy(), pace.tolist(), np.empty((2, 2)), 0.0
         for i, span in enumerate(spans):
             bed.advance(depth + before * (v + before * a / 2), (v + a * before, a), span - before)
-            found[:, i] = self.weight @ bed.forces(v + a * span), self.weight @ bed.touching
+            found[:, i] = self.weight @ bed.surface, self.weight @ bed.touching
             before = span
         return found, bed
 
     def _met(
         self, depth: float, pace: FloatArray, target: FloatArray, spans: tuple[float, float]
     ) -> tuple[FloatArray, SpringBed]:
-        """Speed and acceleration that meet two forces [N], by Newton's rule with Broyden's corrections, and the bed."""
-        largest, h = float(self.steps.force.max()), spans[1]
-        scale = np.array([1 / h, 2 / h**2])  # unknowns are parts of the way [m]
+        """Speed and acceleration that meet F_e [N] twice, by Newton's rule with Broyden's corrections, and the bed."""
+        largest, t = float(self.load.max()), np.array(spans)
+        scale = np.array([1 / t[1], 2 / t[1] ** 2])  # unknowns are parts of the way [m]
+        ways = np.column_stack([t * scale[0], t * t / 2 * scale[1]])
         x, slopes, before, best = pace / scale, np.empty((2, 2)), np.zeros(2), (np.inf, pace, self.bed)
-        B, A, _ = self.law.drive(np.array(spans))
         for number in range(_MOST_STEPS):
-            (force, stiffness), bed = self._forces(depth, x * scale, spans)
-            missed = force - target
+            (reached, stiffness), bed = self._displaced(depth, x * scale, spans)
+            missed = reached - target
             worst = float(np.abs(missed).max()) / largest
             if worst < best[0]:
                 best = worst, x * scale, bed
             if worst <= _TOLERANCE:
                 break
             if number == 0:
-                stiffness = np.maximum(stiffness, _LEAST * self.weight.sum())
-                slopes = stiffness[:, None] * np.column_stack([A * scale[0], B * scale[1]])
+                slopes = np.maximum(stiffness, _LEAST * self.weight.sum())[:, None] * ways
             else:
                 slopes += np.outer(missed - before - slopes @ move, move) / (move @ move)
             move = -np.linalg.solve(slopes, missed)
             move *= min(1.0, 0.3 * self.bed.g.max() / max(float(np.abs(move).max()), 1e-300))
+            if float(np.abs(move).max()) <= EPS * abs(depth):
+                break
             x, before = x + move, missed
         if best[0] > _ACCEPTABLE:
             raise NotConvergedError("no depth carries the prescribed force", {"force": best[0]})

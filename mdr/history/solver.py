@@ -8,7 +8,6 @@ Errors: the same history on finer springs with more of them, and with other step
 from __future__ import annotations
 
 from collections.abc import Mapping
-from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -35,7 +34,7 @@ from mdr.admissible import refuse_pulling, refuse_touching_outside
 from mdr.contact_surface import surface_of
 from mdr.equilibria import is_simple, is_singular, sizes_of
 from mdr.history.fronts import Layout, fronts, layout, panel_ends, refuse_open_inside
-from mdr.history.force_control import March, Steps, extrapolated, never_larger, steps_of
+from mdr.history.force_control import March, Steps, never_larger, steps_of
 from mdr.history.spring_bed import Path, SpringBed, followed
 from mdr.history.spring_law import SpringLaw
 from mdr.radius_search import RadiusSearch, refuse_too_wide
@@ -47,8 +46,11 @@ from mdr.springs.error_model import DEFAULT_ACCURACY
 _NODES_OF_DEPTHS, _NODES = 12, 6
 # Substeps of a whole force history at the default accuracy, at least two in each interval, and multiples of them whose
 # limits are compared. Twice as many err a thirtieth. One digit more of accuracy doubles them, between the bounds below.
-_SUBSTEPS, _LEVELS = 32, (4, 2, 1)
+_SUBSTEPS, _LEVELS = 32, (2, 1)
 _FEWEST, _MOST = -2, 2
+# Share of the change by twice as many substeps that is added to it: errors are of third order or better, with a dashpot
+# of second. The stated error is a multiple of that share.
+_LEFT, _LEFT_OF_DASHPOTS = 1 / 7, 1 / 3
 # Panels of the first march, marches at most, and the share of the largest depth by which the last one may differ.
 _FIRST_PANELS, _MOST_MARCHES, _STAYS = 32, 4, 1e-9
 # Share of the largest force below which what is held is rounding and no contact.
@@ -186,21 +188,16 @@ def _by_depth(scene: Scene, springs: Springs, law: SpringLaw, loading: DepthHist
 def _by_force(
     scene: Scene, springs: Springs, law: SpringLaw, loading: ForceHistory, substeps: int
 ) -> tuple[Response, Response]:
-    """The answer to forces in the limit of many substeps, and the same on finer springs with half of them."""
-    three = [
+    """The answer to forces in the limit of many substeps, and short of it; where depths are known, on finer springs."""
+    fine, coarse = (
         _marched(scene, one, law, loading, steps_of(law, loading, substeps, times))
-        for one, times in zip((springs, springs.finer, springs.finer), _LEVELS, strict=True)
-    ]
-    limits = [
-        {name: extrapolated(law, getattr(one, name), getattr(two, name)) for name in ("depth", "radius")}
-        for one, two in pairwise(three)
-    ]
-    own, force = three[0].known, loading.force > 0
-    for limit, one in zip(limits, three, strict=False):
-        limit["depth"] = np.where(own, one.depth, limit["depth"])
-        limit["radius"] = np.where(own | ~force, one.radius, np.maximum(limit["radius"], scene.indenter.flat_radius))
-    answer, other = (one._replace(**limit) for one, limit in zip(three, limits, strict=False))
-    return answer, other
+        for one, times in zip((springs, springs.finer), _LEVELS, strict=True)
+    )
+    left = _LEFT_OF_DASHPOTS if law.viscosity else _LEFT
+    limit = {n: getattr(fine, n) + left * (getattr(fine, n) - getattr(coarse, n)) for n in ("depth", "radius")}
+    answer = {n: np.where(fine.known, getattr(fine, n), limit[n]) for n in limit}
+    other = {n: np.where(fine.known, getattr(coarse, n), getattr(fine, n)) for n in limit}
+    return fine._replace(**answer), fine._replace(**other)
 
 
 def _marched(scene: Scene, springs: Springs, law: SpringLaw, loading: ForceHistory, steps: Steps) -> Response:
@@ -213,7 +210,7 @@ def _marched(scene: Scene, springs: Springs, law: SpringLaw, loading: ForceHisto
     for _ in range(0 if known[steps.given].all() else _MOST_MARCHES):
         bed = layout_of(scene, springs, ends, _NODES)
         march = March(
-            law, SpringBed.undeformed(law, bed.g, closed[0]), 2 * springs.modulus * bed.weight, steps, closed, known
+            law, SpringBed.undeformed(law, bed.g, closed[0]), 2 * springs.modulus * bed.weight, steps, load, closed, known
         )
         before, path, size = path.depth, march.path(), bed.g.size
         doubt = float(np.abs(path.depth - before).max())
