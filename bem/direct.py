@@ -226,7 +226,8 @@ def panels_of(profile: Profile, a: float, kernel: Kernel) -> Panels:
             end = min(low + sqrt((low**2 + gap) / 2), sqrt(low**2 + longest))
             found.append((start, low, end if end < high * (1 - 1e-9) else high))
             low = found[-1][-1]
-    return Panels(*np.array(found).T, kernel.sizes.nodes)
+    starts, lows, highs = np.array(found).T
+    return Panels(starts, lows, highs, kernel.sizes.nodes)
 
 
 class Density:
