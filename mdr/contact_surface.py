@@ -18,16 +18,7 @@ from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
 from bem.equation import Radius
-from bem.numerics import (
-    cholesky,
-    even_bessel,
-    even_legendre,
-    gauss,
-    graded,
-    solve_factored,
-    special,
-    spherical_bessel,
-)
+from bem.numerics import cholesky, even_bessel, even_legendre, gauss, graded, solve_factored, special, spherical_bessel
 from contact import InvalidInput
 from contact.records.validation import FloatArray
 from mdr.spring_bed import Springs

@@ -11,9 +11,9 @@ from typing import Final
 
 import numpy as np
 
+from bem.direct import Sizes, transform
 from bem.flat_punch import IntegralEquation
 from bem.kernels.moduli import relaxation_of
-from bem.layer_equation.one_radius import half_space_load
 from contact import DepthHistory, FlatPunch, HistoryPath, InvalidInput, Profile, Scene
 from contact.records.validation import FloatArray
 from contact.scene.effects import Relaxation, Viscoelasticity
@@ -123,7 +123,7 @@ def _corners(indenter: Profile, end: float) -> FloatArray:
 
 def _gap(scene: Scene, x: FloatArray) -> FloatArray:
     if scene.layer.is_half_space:
-        return half_space_load(scene.indenter, x - scene.indenter.flat_radius)
+        return transform(scene.indenter, x - scene.indenter.flat_radius, Sizes().slopes)
     return bed_of(scene.layer, scene.indenter, IntegralEquation()).mdr_profile(x)
 
 
