@@ -7,8 +7,8 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from bem.direct_method import IntegralEquationMethod
     from bem.flat_punch import IntegralEquation
-    from bem.layer_equation.method import IntegralEquationMethod
     from bem.layer_equation.protocol import FlatPunchSolution, FlatPunchSource
     from bem.method import Bem
     from bem.tables import FftTable, TableFile
@@ -19,7 +19,7 @@ _HOME = {
     "FlatPunchSolution": "bem.layer_equation.protocol",
     "FlatPunchSource": "bem.layer_equation.protocol",
     "IntegralEquation": "bem.layer_equation.flat_punch_source",
-    "IntegralEquationMethod": "bem.layer_equation.method",
+    "IntegralEquationMethod": "bem.direct_method",
     "TableFile": "bem.tables",
 }
 

@@ -5,7 +5,7 @@ from contact import Method
 
 def mdr_by_integral_equation(nodes: int = 24, panel_width: float = 1.0, accuracy: float = 1e-9) -> Method:
     """Return MDR on flat-punch data from the integral equation."""
-    from bem.layer_equation.flat_punch_source import IntegralEquation  # noqa: PLC0415 - a method is imported when it is used
+    from bem.flat_punch import IntegralEquation  # noqa: PLC0415 - a method is imported when it is used
     from mdr import Mdr  # noqa: PLC0415
 
     return Mdr(flat_punch=IntegralEquation(nodes=nodes, panel_width=panel_width), accuracy=accuracy)

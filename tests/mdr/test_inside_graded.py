@@ -5,11 +5,11 @@ import math
 import numpy as np
 import pytest
 
+from bem.direct_method import IntegralEquationMethod
 from bem.kernels.graded import GradedKernel
 from bem.kernels.inside import place_of, transfer
 from bem.kernels.stack import Sheet, StackKernel
 from bem.layer_equation.inside import graded_part
-from bem.layer_equation.method import IntegralEquationMethod
 from contact import (
     Cone,
     ContactRadii,

@@ -11,9 +11,9 @@ from typing import Final
 
 import numpy as np
 
+from bem.direct import Sizes, transform
 from bem.flat_punch import IntegralEquation
 from bem.kernels.moduli import relaxation_of
-from bem.layer_equation.one_radius import half_space_load
 from contact import DepthHistory, FlatPunch, HistoryPath, InvalidInput, Profile, Scene
 from contact.records.validation import FloatArray
 from contact.scene.effects import Relaxation, Viscoelasticity
@@ -84,8 +84,9 @@ def spring_by_spring(scene: Scene, radius: float) -> ForceOpinion:
 
 def stepped_in_time(scene: Scene) -> HistoryPath:
     """The fast method's answer to a force history, every interval in steps, one digit finer than usual."""
-    from mdr.history.solver import followed_history
     from mdr.history.springs_in_time import SpringLaw
+
+    from mdr.history.solver import followed_history
 
     law, settings = SpringLaw.of(relaxation_of(scene)), {"accuracy": 0.1 * DEFAULT_ACCURACY}
     return followed_history(scene, scene.loading, law, IntegralEquation(), settings)  # type: ignore[arg-type]
@@ -123,7 +124,7 @@ def _corners(indenter: Profile, end: float) -> FloatArray:
 
 def _gap(scene: Scene, x: FloatArray) -> FloatArray:
     if scene.layer.is_half_space:
-        return half_space_load(scene.indenter, x - scene.indenter.flat_radius)
+        return transform(scene.indenter, x - scene.indenter.flat_radius, Sizes().slopes)
     return bed_of(scene.layer, scene.indenter, IntegralEquation()).mdr_profile(x)
 
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from bem.direct_method import IntegralEquationMethod
 from bem.flat_punch import IntegralEquation
-from bem.layer_equation.method import IntegralEquationMethod
 from contact import (
     Adhesion,
     ContactRadii,

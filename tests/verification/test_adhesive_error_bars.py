@@ -22,8 +22,7 @@ from contact import (
 from mdr import Mdr
 from mdr.adhesive_branch import Adhesive
 from tests.drawn_scenes import random_scene, random_scenes
-from tests.referees.pressure import reference_pressure
-from tests.referees.second_opinion import CHEAP_RATIO, adhesive_states
+from tests.referees.second_opinion import CHEAP_RATIO, adhesive_states, pressure_of
 
 QUANTITIES = ("contact_radius", "indentation_depth", "normal_force", "contact_stiffness")
 ROUNDING = 2.3e-16  # of the reference itself, once it is a double
@@ -192,8 +191,8 @@ def test_pressures_of_adhering_contacts_are_covered(nodes):
         dl = float((bare.values["indentation_depth"] - opinion.values["indentation_depth"])[0])
 
         def expected(r, layer=layer, indenter=indenter, a=a, dl=dl):
-            lifted = reference_pressure(layer, FlatPunch(radius=a), 0.0, dl, r)
-            return reference_pressure(layer, indenter, a - indenter.flat_radius, None, r) - lifted
+            lifted = pressure_of(layer, FlatPunch(radius=a), a, dl, r)
+            return pressure_of(layer, indenter, a, None, r) - lifted
 
         assert distance(path, a, expected) <= float(path.error_estimate["pressure"][0]) + 1e-13
 

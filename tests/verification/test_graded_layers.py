@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from bem.direct_method import IntegralEquationMethod
 from bem.kernels.of_layer import surface_kernel
 from bem.layer_equation.any_layer import relative_panels as panels_module
 from bem.layer_equation.any_layer.edge_systems import EdgeSystems
 from bem.layer_equation.any_layer.point_kernel import PointKernel
 from bem.layer_equation.any_layer.relative_panels import RelativePanels
-from bem.layer_equation.method import IntegralEquationMethod
 from contact import (
     Adhesion,
     Cone,
