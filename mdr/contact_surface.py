@@ -35,8 +35,8 @@ _CENTRE = 1e-3
 _NEAR = 4.0
 # Wave numbers that are summed at a time.
 _CHUNK = 20_000
-# A graded layer's 1 - chi falls like 1/k: the displacement outside takes so many times more wave
-# numbers, up to k a of about this. Twice as many leave a fifth of the error under a flat punch.
+# A graded layer's 1 - chi falls like 1/k: the displacement outside takes so many times more wave numbers, up to k a of
+# about this. Twice as many leave a fifth of the error under a flat punch.
 _SLOW_DECAY, _SLOW_WAVES = (10.0, 100.0), 2e3
 
 

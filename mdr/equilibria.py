@@ -50,8 +50,8 @@ _COMPARED, _CHECKED = 8, 12
 _INSIDE, _OUTSIDE = 8, np.array([1.02, 2.0, 4.0])
 # Relative rounding error of pressure and displacement by their quadratures.
 _FIELD_ROUNDING = 2e-13
-# Error of pressures that are infinite at the edge of a graded layer, which both resolutions share: their series converge
-# slowly. With half of it one of thirty scenes is not covered.
+# Error of pressures that are infinite at the edge of a graded layer: their series converge slowly. With half of it one
+# of thirty scenes is not covered.
 _GRADED_EDGE = 2e-9
 
 
