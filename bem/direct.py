@@ -165,7 +165,7 @@ class Panels(NamedTuple):
 
     def abel(self, series: FloatArray, r: FloatArray, count: int, *, beyond: bool) -> FloatArray:
         """int g(s)/sqrt(|t^2 - r^2|) ds over t > r, or over t < r, of a series g; panels shrink towards r."""
-        total, (v, w) = np.zeros_like(r), _one_sided(count)
+        total, (v, w) = np.zeros_like(r), _one_sided(count, 8)
         for p, (start, low, high) in enumerate(zip(*self[:3], strict=True)):
             i = np.flatnonzero(r < start + high**2 if beyond else r > start + low**2)
             here, gap = (part[:, None] for part in self.place(r[i], p))
@@ -185,9 +185,9 @@ def _to_series(nodes: int) -> FloatArray:
 
 
 @lru_cache(maxsize=64)
-def _one_sided(count: int) -> tuple[FloatArray, FloatArray]:
+def _one_sided(count: int, levels: int) -> tuple[FloatArray, FloatArray]:
     """Composite rule on [0, 1], v = u^2 on panels that shrink towards 0."""
-    u, w = panels(np.concatenate([[0.0], 0.15 ** np.arange(8.0)[::-1]]), count)
+    u, w = panels(np.concatenate([[0.0], 0.15 ** np.arange(float(levels))[::-1]]), count)
     return u * u, 2 * u * w
 
 
@@ -278,7 +278,7 @@ class Density:
 
         Where x or -x is closer to a panel than it is long, the kernel is integrated by panels that shrink towards it.
         """
-        rows, grid, (v, u) = np.zeros((x.size, self.t.size)), self.panels, _one_sided(self.kernel.sizes.slopes)
+        rows, grid, (v, u) = np.zeros((x.size, self.t.size)), self.panels, _one_sided(self.kernel.sizes.slopes, 6)
         if not self.kernel.is_graded:
             return rows
         for target in (x, -x):

@@ -87,7 +87,7 @@ SHARED: tuple[Shared, ...] = (
     Shared(
         name="fields inside from the contact's density",
         place="bem.layer_equation.inside",
-        methods=EQUATIONS,
+        methods=("mdr",),
         guard="agreement with finite elements; laws of elastic bodies",
         cases=("inside_half_space", "inside_layer"),
     ),
@@ -106,7 +106,7 @@ SHARED: tuple[Shared, ...] = (
     Shared(
         name="slopes of the half-space transform",
         place="bem.layer_equation.profiles.half_space_slope",
-        methods=EQUATIONS,
+        methods=("mdr",),
         guard="agreement with finite elements",
         quantities=("pressure",),
     ),
