@@ -15,7 +15,6 @@ logarithm at x = t, and the rest falls so fast that it needs few wave numbers, l
 
 from __future__ import annotations
 
-from functools import lru_cache
 from itertools import pairwise
 from math import gamma, inf, pi, sqrt
 from typing import NamedTuple
@@ -25,7 +24,7 @@ from numpy.polynomial.legendre import legder, legval, legvander
 from scipy.special import k0, k1
 
 from bem.kernels.of_contact import contact_kernel
-from bem.numerics import gauss, graded, panels
+from bem.numerics import EPS, gauss, graded, panels
 from contact import ElasticLayer, PowerLaw, Profile, Sphere, Spheroconical
 from contact.records.validation import FloatArray
 
@@ -60,7 +59,7 @@ class Sizes(NamedTuple):
         search: Tolerance of ln(a - b) in searches of the radius.
     """
 
-    nodes: int = 16
+    nodes: int = 20
     width: float = 0.75
     waves: int = 40
     reach: float = 21.0
@@ -72,16 +71,8 @@ class Sizes(NamedTuple):
     @property
     def finer(self) -> Sizes:
         """The companion that states errors."""
-        return Sizes(
-            self.nodes + 4,
-            0.8 * self.width,
-            self.waves + 6,
-            self.reach + 3,
-            self.slopes + 4,
-            self.terms + 1,
-            self.corner / 4,
-            self.search,
-        )
+        one = self._replace(nodes=self.nodes + 4, width=0.8 * self.width, waves=self.waves + 6, reach=self.reach + 3)
+        return one._replace(slopes=self.slopes + 4, terms=self.terms + 1, corner=self.corner / 4)
 
 
 class Kernel:
@@ -153,22 +144,34 @@ class Panels(NamedTuple):
         s = self.low[:, None] + span * x
         return s.ravel(), (self.start[:, None] + s * s).ravel(), (2 * s * span * w).ravel()
 
+    @property
+    def to_series(self) -> FloatArray:
+        """Legendre coefficients from values at the nodes of a panel, shape (nodes, nodes)."""
+        x, w = gauss(self.nodes)
+        degree = np.arange(self.nodes)[:, None]
+        return np.asarray((2 * degree + 1) * w * legvander(2 * x - 1, self.nodes - 1).T)
+
     def series(self, values: FloatArray) -> FloatArray:
         """Legendre coefficients on each panel of values at the nodes, shape (nodes, p)."""
-        return np.asarray(_to_series(self.nodes) @ values.reshape(-1, self.nodes).T)
+        return np.asarray(self.to_series @ values.reshape(-1, self.nodes).T)
 
     def place(self, t: FloatArray, p: int) -> tuple[FloatArray, FloatArray]:
         """s of the point of one panel closest to t, and the distance of t from the panel."""
-        low, high = (self.start[p] + end**2 for end in (self.low[p], self.high[p]))
-        s = np.clip(np.sqrt(np.maximum(t - self.start[p], 0)), self.low[p], self.high[p])
-        return s, np.maximum(0, np.maximum(low - t, t - high))
+        low, high = self.low[p], self.high[p]
+        first, last = self.start[p] + low**2, self.start[p] + high**2
+        s = np.clip(np.sqrt(np.maximum(t - self.start[p], 0)), low, high)
+        # Slivers count by the root of their length: what is a rounding from an end is the end.
+        s = np.where(np.abs(t - first) <= 4 * EPS * t, low, np.where(np.abs(t - last) <= 4 * EPS * t, high, s))
+        gap = np.maximum(first - t, t - last)
+        return s, np.where(gap > 4 * EPS * t, gap, 0.0)
 
     def abel(self, series: FloatArray, r: FloatArray, count: int, *, beyond: bool) -> FloatArray:
         """int g(s)/sqrt(|t^2 - r^2|) ds over t > r, or over t < r, of a series g; panels shrink towards r."""
-        total, (v, w) = np.zeros_like(r), _one_sided(count)
-        for p, (start, low, high) in enumerate(zip(*self[:3], strict=True)):
-            i = np.flatnonzero(r < start + high**2 if beyond else r > start + low**2)
-            here, gap = (part[:, None] for part in self.place(r[i], p))
+        total, (v, w) = np.zeros_like(r), _one_sided(count, 8)
+        for p, (low, high) in enumerate(zip(self.low, self.high, strict=True)):
+            here, gap = self.place(r, p)
+            i = np.flatnonzero(here < high if beyond else here > low)
+            here, gap = here[i, None], gap[i, None]
             length = (high if beyond else low) - here
             step = length * v
             gap = gap + np.abs(step * (2 * here + step))
@@ -177,17 +180,9 @@ class Panels(NamedTuple):
         return total
 
 
-@lru_cache(maxsize=64)
-def _to_series(nodes: int) -> FloatArray:
-    """Legendre coefficients from values at the Gauss nodes."""
-    x, w = gauss(nodes)
-    return np.asarray((2 * np.arange(nodes)[:, None] + 1) * (legvander(2 * x - 1, nodes - 1) * w[:, None]).T)
-
-
-@lru_cache(maxsize=64)
-def _one_sided(count: int) -> tuple[FloatArray, FloatArray]:
+def _one_sided(count: int, levels: int) -> tuple[FloatArray, FloatArray]:
     """Composite rule on [0, 1], v = u^2 on panels that shrink towards 0."""
-    u, w = panels(np.concatenate([[0.0], 0.15 ** np.arange(8.0)[::-1]]), count)
+    u, w = panels(np.concatenate([[0.0], 0.15 ** np.arange(float(levels))[::-1]]), count)
     return u * u, 2 * u * w
 
 
@@ -248,6 +243,8 @@ class Density:
         self.phi = self._solved()
         self.integrals = self.w @ self.phi
         self.edge = (self._load(np.array([a - profile.flat_radius])) + self.psi(np.array([a])))[0]
+        # phi(a) = 0
+        self.depth = float(self.edge[1] / self.edge[0])
 
     def _load(self, excess: FloatArray) -> FloatArray:
         return np.column_stack([np.ones(excess.size), transform(self.profile, excess, self.kernel.sizes.slopes)])
@@ -279,7 +276,7 @@ class Density:
 
         Where x or -x is closer to a panel than it is long, the kernel is integrated by panels that shrink towards it.
         """
-        rows, grid, (v, u) = np.zeros((x.size, self.t.size)), self.panels, _one_sided(self.kernel.sizes.slopes)
+        rows, grid, (v, u) = np.zeros((x.size, self.t.size)), self.panels, _one_sided(self.kernel.sizes.slopes, 6)
         if not self.kernel.is_graded:
             return rows
         for target in (x, -x):
@@ -292,27 +289,16 @@ class Density:
                 weight = np.concatenate([(middle - low) * u, (high - middle) * u], axis=1)
                 weight *= 2 * s * self.kernel.tail(np.abs(target[near, None] - start - s * s))
                 table = legvander(2 * (s - low) / (high - low) - 1, grid.nodes - 1)
-                rule = np.einsum("ij,ijl->il", weight, table) @ _to_series(grid.nodes)
+                rule = np.einsum("ij,ijl->il", weight, table) @ grid.to_series
                 part[near, p * grid.nodes : (p + 1) * grid.nodes] = rule
             rows += part
         return rows
 
-    @property
-    def depth(self) -> float:
-        """Depth [m] at which phi(a) = 0."""
-        return float(self.edge[1] / self.edge[0])
-
-    def slope(self, depth: float) -> FloatArray:
-        """d phi/ds on each panel as Legendre series."""
-        series = legder(self.panels.series(self.phi @ [depth, -1.0]))
-        return np.asarray(2 * series / (self.panels.high - self.panels.low))
-
     def pressure(self, r: FloatArray, depth: float, *, is_singular: bool) -> FloatArray:
         """pi p(r)/E* = phi(a)/sqrt(a^2 - r^2) - int_r^a phi'(t)/sqrt(t^2 - r^2) dt at r < a [m], Eq. (9)."""
-        edge = self.edge @ [depth, -1.0] if is_singular else 0.0
-        smooth = self.panels.abel(
-            self.slope(depth), np.maximum(r, _AXIS * self.a), self.kernel.sizes.slopes, beyond=True
-        )
+        grid, edge = self.panels, self.edge @ [depth, -1.0] if is_singular else 0.0
+        slope = 2 * legder(grid.series(self.phi @ [depth, -1.0])) / (grid.high - grid.low)  # d phi/ds
+        smooth = grid.abel(slope, np.maximum(r, _AXIS * self.a), self.kernel.sizes.slopes, beyond=True)
         return np.asarray(edge / np.sqrt((self.a - r) * (self.a + r)) - smooth)
 
     def displacement(self, r: FloatArray, depth: float) -> FloatArray:
@@ -320,7 +306,7 @@ class Density:
         grid, count, under = self.panels, self.kernel.sizes.slopes, np.array([depth, -1.0])
         total = grid.abel(grid.series(2 * self.s * (self.load @ under)), r, count, beyond=False)
         if not self.kernel.is_uniform:
-            step, ends = sqrt(self.kernel.width), [0.0]
+            step, ends = sqrt(self.kernel.width / 2), [0.0]
             while self.a + ends[-1] ** 2 < r.max():
                 ends.append(ends[-1] + max(step - ends[-1] / 2, ends[-1] / 2))
             grid = Panels(np.full(len(ends) - 1, self.a), np.array(ends[:-1]), np.array(ends[1:]), grid.nodes)

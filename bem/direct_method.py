@@ -83,7 +83,7 @@ class IntegralEquationMethod(Record):
 
     name: ClassVar[str] = "integral_equation"
 
-    nodes: int = Field(default=16, ge=6, le=48)
+    nodes: int = Field(default=20, ge=6, le=48)
     panel_width: Annotated[float, *positive("panels about as wide as the layer is thick")] = 0.75
 
     def supports(self, scene: Scene) -> Supported | Unsupported:
@@ -177,19 +177,16 @@ class DirectSolver:
         indenter, flat, end = self.scene.indenter, self.scene.indenter.flat_radius, self.scene.indenter.max_radius
         last = float(np.nextafter(end, 0.0))
 
-        def radius(z: float) -> float:
-            return min(flat + exp(z) / (1 + exp(z) / (end - flat)), last)
-
         @cache
         def contact(z: float) -> Contact:
-            return self.at(radius(z), value)
+            return self.at(min(flat + exp(z) / (1 + exp(z) / (end - flat)), last), value)
 
         def missed(z: float) -> float:
             """ln of the load that is reached over the prescribed one."""
-            reached = contact(z).reached / value
-            if reached < 1 and radius(z) == last:
+            reached, a = contact(z).reached / value, contact(z).state[0]
+            if reached < 1 and a == last:
                 raise InvalidInput(f"loading.values = {value:g}: the indenter ends at {end:g} m before it is reached")
-            if reached > 1 and radius(z) - flat < EPS * flat:
+            if reached > 1 and a - flat < EPS * flat:
                 message = f"loading.values = {value:g}: the contact is as wide as the flat end to the last digit"
                 raise InvalidInput(f"{message}; press more, or take a flat punch")
             return log(max(reached, np.finfo(float).tiny))
@@ -202,7 +199,7 @@ class DirectSolver:
         while missed(low) > 0:
             low, high = 2 * low - high - 1, low
         z = toms748(missed, low, high, xtol=self.sizes.search)
-        change = log(radius(z) / radius(z - _STEP))
+        change = log(contact(z).state[0] / contact(z - _STEP).state[0])
         return contact(z)._replace(slope=abs(missed(z) - missed(z - _STEP)) / change if change > 0 else inf)
 
     def pressure(self, contact: Contact, radius: FloatArray) -> FloatArray:

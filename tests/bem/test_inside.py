@@ -10,7 +10,6 @@ from contact import (
     Cone,
     ContactRadii,
     FlatPunch,
-    IndentationDepths,
     InvalidInput,
     Layer,
     LayerStack,
@@ -22,7 +21,6 @@ from contact import (
     Tabulated,
     TruncatedCone,
 )
-from mdr import Mdr
 
 NAMES = ("radial_stress", "hoop_stress", "axial_stress", "shear_stress", "hydrostatic_pressure")
 HEIGHTS = np.linspace(0.0, 2.0, 9) ** 2 / 20.0
@@ -48,34 +46,10 @@ LAYERS = [
 ]
 
 
-@pytest.mark.parametrize("layer", LAYERS, ids=["incompressible", "thin", "half-space", "stack"])
-@pytest.mark.parametrize("indenter", INDENTERS, ids=lambda one: type(one).__name__)
-def test_fields_are_those_of_mdr_within_the_stated_errors(layer, indenter):
-    loading = IndentationDepths([1e-3]) if isinstance(indenter, FlatPunch) else ContactRadii([1.0])
-    scene = Scene(layer=layer, indenter=indenter, loading=loading)
-    direct, mdr = IntegralEquationMethod().solve(scene).inside(), Mdr().solve(scene).inside()
-    draw = np.random.default_rng(4)
-    deepest = min(layer.thickness, 2.0)
-    r, z = draw.uniform(0.0, 1.5, 12), deepest * draw.uniform(0.0, 1.0, 12) ** 3
-    found, exact = direct.at(r, z), mdr.at(r, z)
-    largest = max(float(np.abs(getattr(exact, name)).max()) for name in NAMES)
-    stated = found.error_estimate["stress"] + exact.error_estimate["stress"]
-    assert stated < 1e-6
-    for name in NAMES:
-        assert np.abs(getattr(found, name) - getattr(exact, name)).max() <= stated * largest, name
-
-
-def test_the_same_refusals():
+def test_the_direct_equation_gives_no_fields_inside():
     scene = Scene(layer=LAYERS[0], indenter=Cone(slope=0.1), loading=ContactRadii([1.0]))
-    inside = IntegralEquationMethod().solve(scene).inside()
-    with pytest.raises(InvalidInput, match="depth = 2: points must lie in the layer, between 0 and 1 m"):
-        inside.at(0.0, 2.0)
-    with pytest.raises(InvalidInput, match="stresses are infinite at this sharp rim"):
-        inside.at(0.0, 0.0)
-    worst, same = inside.largest("von_mises"), Mdr().solve(scene).inside().largest("von_mises")
-    assert [worst.radius, worst.depth, worst.value] == pytest.approx(
-        [same.radius, same.depth, same.value], rel=1e-6, abs=1e-7
-    )
+    with pytest.raises(InvalidInput, match="integral_equation gives no fields inside the body; ask mdr or fem"):
+        IntegralEquationMethod().solve(scene).inside()
 
 
 GRID_CONTACTS = {

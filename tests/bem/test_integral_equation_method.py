@@ -160,14 +160,15 @@ PLANTED = {
 
 @pytest.mark.parametrize("fault", PLANTED)
 def test_an_error_planted_in_each_discretisation_is_stated(fault, monkeypatch):
-    layer = LAYERS["bonded"]
-    if "graded" in fault:
-        layer = GradedLayer(thickness=1e-3, youngs_modulus=ExponentialDepth(surface=2e6, base=2e7), poissons_ratio=0.3)
     scene = Scene(
-        layer=layer,
+        layer=LAYERS["bonded"],
         indenter=TruncatedParaboloid(flat_radius=0.4e-3, radius_of_curvature=0.02),
         loading=NormalForces([3e-2, 1e-1]),
     )
+    if "graded" in fault:
+        graded = GradedLayer(thickness=1e-3, youngs_modulus=ExponentialDepth(surface=2e6, base=2e7), poissons_ratio=0.3)
+        paraboloid = Paraboloid(radius_of_curvature=0.02)
+        scene = scene.replace(layer=graded, indenter=paraboloid, loading=ContactRadii([1e-3]))
     exact = IntegralEquationMethod().solve(scene)
     monkeypatch.setattr("bem.direct_method.Sizes", lambda **_: Sizes(**PLANTED[fault]))
     wrong = IntegralEquationMethod().solve(scene)

@@ -5,7 +5,6 @@ import math
 import numpy as np
 import pytest
 
-from bem.direct_method import IntegralEquationMethod
 from bem.kernels.graded import GradedKernel
 from bem.kernels.inside import place_of, transfer
 from bem.kernels.stack import Sheet, StackKernel
@@ -176,20 +175,17 @@ def largest(found, names):
         pytest.param(FlatPunch(radius=0.7), 0.7, marks=pytest.mark.slow),
     ],
 )
-def test_the_direct_equation_and_more_waves_change_nothing_beyond_what_is_stated(indenter, radius, monkeypatch):
+def test_more_waves_change_nothing_beyond_what_is_stated(indenter, radius, monkeypatch):
     path = pressed(graded(), indenter, radius)
     a = float(path.contact_radius[0])
     r, z = a * np.array([0.02, 0.5, 0.99, 1.01, 1.3, 0.4]), a * np.array([0.3, 1e-4, 1e-5, 1e-3, 0.0, 1.0])
     found = path.inside().at(r, z)
-    direct = pressed(graded(), indenter, radius, IntegralEquationMethod()).inside().at(r, z)
     monkeypatch.setattr(graded_part, "_LARGEST", 4.0 * graded_part._LARGEST)
     finer = path.inside().at(r, z)
     steep = max(largest(finer, SLOPES), largest(finer, STRESSES) / min(a, 1.0))
     scales = {"stress": (STRESSES, largest(finer, STRESSES)), "pressure_gradient": (SLOPES, steep)}
     for kind, (names, scale) in (scales | {"displacement": (MOVED, float(path.indentation_depth[0]))}).items():
         assert apart(found, finer, names, scale) <= found.error_estimate[kind], kind
-        stated = found.error_estimate[kind] + direct.error_estimate[kind]
-        assert apart(found, direct, names, scale) <= stated, kind
 
 
 def test_hardly_any_grading_is_the_uniform_layer():

@@ -63,7 +63,7 @@ PROBES = {
     "stack": Probe("two_layers", ("soft on stiff, paraboloid, a/H=1",)),
     "graded": Probe("graded_layer", ("E=4^z, paraboloid, a/H=1",)),
     "inside": Probe("inside_layer", ("paraboloid, bonded nu=0.5 a/h=1",)),
-    "inside half-space": Probe("inside_half_space", ("paraboloid nu=0.3",), ("mdr", "integral_equation")),
+    "inside half-space": Probe("inside_half_space", ("paraboloid nu=0.3",), ("mdr", "fem")),
     "held": Probe("held_indentation", ("relaxing half-space",), ("mdr", "fem")),
     "pull-off": Probe("flat_punch_adhesion", ("half-space, force",), ("mdr", "bem")),
 }
