@@ -148,8 +148,8 @@ def graded_points(
     At the edge the energy error of the last cell falls like its size; at a kink, where the stress is merely
     logarithmic, like its square, but the L2 error of the pressure like its root.
     """
-    last_kink = max(indenter.kinks, default=0.0)
-    before_end = max(settings.edge_cell * indenter.left_to_upright_end, SMALLEST_BEFORE_END)
+    last_kink, coarser = max(indenter.kinks, default=0.0), settings.coarsening**6
+    before_end = max(settings.edge_cell * indenter.left_to_upright_end, SMALLEST_BEFORE_END * coarser)
     edge_cell = max(min(settings.edge_cell * min(1.0, thickness, 1.0 - last_kink), before_end), SMALLEST)
     cells = {r: 0.5 * settings.growth * min(1.0, thickness) for r in indenter.breakpoints}
     ends = (0.0, *sorted(indenter.kinks), 1.0)
