@@ -13,6 +13,7 @@ from typing import TypeVar
 import numpy as np
 
 from contact import (
+    Adhesion,
     ContactPath,
     ContactRadii,
     DepthHistory,
@@ -65,7 +66,7 @@ def path_with_errors(
     """The path with its stated errors; the states are those of both paths."""
     uneven = np.array([BEFORE_END if s.contact.indenter.left_to_upright_end < NARROW else 1.0 for s in states])
     changes = {name: uneven * _with_neighbours(relative_change(answer, companion, name)) for name in answer.ARRAYS}
-    exact = set() if answer.scene.effects else exact_names(answer.scene)
+    exact = set() if answer.scene.effect(Adhesion) is not None else exact_names(answer.scene)
     least = LEAST_SHARE * np.max([changes[name] for name in answer.ARRAYS if name != "contact_radius"], axis=0)
     errors = {
         name: np.zeros(len(answer)) if name in exact else SAFETY * np.maximum(change, least) + FLOOR
