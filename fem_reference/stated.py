@@ -33,11 +33,11 @@ S = TypeVar("S", bound=Solution)
 
 # Rounding of every number, relative: a hundred times the backward error of linear solves.
 FLOOR = 1e-12
-# Least change of a number of a state, over the largest of them: two meshes may agree in one number by accident. Half of
-# it misses one number in thirty, twice of it makes one stated error in three twice as large.
+# Least change of a number of a state, over the largest of them: two meshes may agree in one number by accident. Not
+# measured: what half and twice of it do.
 LEAST_SHARE = 0.1
-# Factor on changes next to an upright end nearer than `NARROW`, where meshes are uneven. With half of it one number in
-# ten is missed.
+# Factor on changes next to an upright end nearer than `NARROW`, where meshes are uneven. With half of it a sphere
+# 1e-7 before its equator is missed.
 BEFORE_END = 2.0
 # Radii over the contact's at which displacements of two meshes are compared, down to the cell at the edge.
 BESIDE = 1.0 + 2.0 ** np.arange(-24.0, 3.0)

@@ -21,8 +21,8 @@ from fem_reference.discrete_layer.outer_edge import outer_distance
 NARROW = 0.1
 NARROW_GROWTH = 0.7
 # Growth of the companion over that of the answer: errors fall like its seventh power, so that the companion errs 17
-# times as much. With 1.25 the two agree by accident on coarse meshes, and stated errors are three times too small; with
-# 2 they are a hundred times too large.
+# times as much. With 1.25 the two agree by accident on coarse meshes, and stated errors are three times too small;
+# with 2 the seventh power makes them a hundred times too large.
 COARSER = 1.5
 # The same of the edge cell, whose errors are proportional to it.
 COARSER_EDGE = 10.0

@@ -18,8 +18,7 @@ from fem_reference.discrete_layer.settings import NARROW, NARROWEST, narrowest_r
 from fem_reference.elastic.path import ContactSolver, FemEquilibrium
 from fem_reference.elastic.prescribed_radius import PrescribedContact, quick_solution
 
-# Relative load that is left to the first-order correction, whose own error is its square. A tenth takes a second full
-# solution of most loads, ten times as much errs by 1e-6.
+# Relative load that is left to the first-order correction, whose own error is its square. Not measured: half and twice.
 LEFT_OVER = 1e-4
 # Full solutions of one load: on coarse meshes each radius has a mesh that misses the load by its own error.
 ATTEMPTS = 3
