@@ -106,7 +106,10 @@ class Body:
     def _integrals(self, r: FloatArray, z: FloatArray) -> FloatArray:
         """I_00, I_10, I_20, I_01/r, I_11/r, I_21, shape (6, n)."""
         surface, a = self.surface, self.a
-        found = surface.edge * _punch(r, z, a, (r - a) * (r + a))
+        edge = surface.edge
+        if surface.kernel.tail and edge == 0:  # what the series leaves at the edge belongs to its transform, too
+            edge = float(surface.density(np.array([a]))[0])
+        found = edge * _punch(r, z, a, (r - a) * (r + a))
         for low, high in pairwise([0.0, *(b for b in self.tip.breaks if b < a), a]):
             own, above, gap, weight, rest = self._nodes(low, high, r, z)
             t = np.sqrt(low**2 + above)

@@ -80,8 +80,7 @@ def friction_effect(path: ContactPath, coefficient: float) -> FrictionEffect:
 def _changes(scene: Scene, a: float, depth: float, coefficient: float) -> tuple[float, float, float, bool]:
     """The fields of `FrictionEffect` at one state."""
     layer = scene.layer
-    unit = a if layer.is_half_space else layer.surface.thickness
-    slip, largest, is_one_way = _slip(layer.in_own_units(), a / unit)
+    slip, largest, is_one_way = _slip(layer.in_own_units(), 1.0 if layer.is_half_space else a / layer.thickness)
     springs, moved = Springs.of(layer, scene.indenter), coefficient * largest
     share = _RADIUS_SHARE * min(1.0, moved)
     near = np.clip(a * (1 + share * np.array([0.0, -1.0, 1.0])), springs.tip.flat, springs.tip.end)
