@@ -106,9 +106,8 @@ class Body:
     def _integrals(self, r: FloatArray, z: FloatArray) -> FloatArray:
         """I_00, I_10, I_20, I_01/r, I_11/r, I_21, shape (6, n)."""
         surface, a = self.surface, self.a
-        edge = surface.edge
-        if surface.kernel.tail and edge == 0:  # what the series leaves at the edge belongs to its transform, too
-            edge = float(surface.density(np.array([a]))[0])
+        # Series of graded layers converge slowly at the edge; what they leave there belongs to their transform, too.
+        edge = surface.edge if self.kernel.is_smooth else surface.edge_of_series
         found = edge * _punch(r, z, a, (r - a) * (r + a))
         for low, high in pairwise([0.0, *(b for b in self.tip.breaks if b < a), a]):
             own, above, gap, weight, rest = self._nodes(low, high, r, z)
