@@ -25,18 +25,26 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import cho_factor, cho_solve
-from scipy.special import erfc, gammaln, gammasgn
 
 from bem.kernels.of_contact import ContactKernel
-from bem.numerics import Octaves, even_bessel, even_bessel_second, gauss, panels
+from bem.numerics import (
+    Octaves,
+    cholesky,
+    even_bessel,
+    even_bessel_second,
+    gauss,
+    panels,
+    solve_factored,
+    special,
+)
 from contact.records.validation import FloatArray
 
 # a/h beyond which A is factored by QR of its square root. Below 4 Cholesky is as good and faster; beyond 16 Cholesky
 # loses a digit of k_N at nu = 1/2.
 _ROOT_FROM = 8.0
-# Radius over a up to which tables of displacements outside are kept. Errors are compared at 1.5 a.
-_FAR = 2.0
+# Radius over a up to which tables of displacements outside are kept, and orders times largest wave number from which
+# on they are made anew: at 2e5 (a/h = 100) they take 10 MB.
+_FAR, _LARGEST_TABLE = 4.0, 2e5
 # Radii that are remembered per layer: a search asks for the same ones again. Half as many make searches slower.
 _REMEMBERED = 400
 
@@ -170,8 +178,8 @@ class Radius:
             reach: Larger than one where 1 - chi falls like a power.
         """
         waves = self._waves._replace(farthest=farthest, top=reach * self._waves.top)
-        # Tables for far points are large and asked for once.
-        kappa, w, table = (_transforms if farthest <= _FAR else _transforms.__wrapped__)(waves)
+        is_kept = farthest <= _FAR and waves.orders * waves.top < _LARGEST_TABLE
+        kappa, w, table = (_transforms if is_kept else _transforms.__wrapped__)(waves)
         use = int(np.searchsorted(kappa, reach * self.sizes.reach * self.a)) + self.sizes.nodes
         return kappa[:use], w[:use], table[:, :use]
 
@@ -193,7 +201,7 @@ class Radius:
         """Upper triangular R with A = R^T R."""
         if self.is_rooted:
             return self._root()
-        return np.asarray(cho_factor(np.eye(self.count) - self.smooth, overwrite_a=True, check_finite=False)[0])
+        return cholesky(np.eye(self.count) - self.smooth)
 
     def _root(self) -> FloatArray:
         """R of the QR factorisation of the rows sqrt((2/pi) w chi) c(kappa): their condition is the root of that of A.
@@ -206,7 +214,7 @@ class Radius:
         last = ends[min(int(np.searchsorted(ends, max(3 * self.a, 5 * self.count) + width)), ends.size - 1)]
         near = kappa < last
         kappa, w, table = kappa[near], w[near], table[:, near]
-        share = erfc(12 * ((kappa - last) / width + 0.5)) / 2  # 1 within, 0 at `last`
+        share = special().erfc(12 * ((kappa - last) / width + 0.5)) / 2  # 1 within, 0 at `last`
         v, u = gauss(2 * self.sizes.nodes)
         far = np.concatenate([kappa[share < 1], last / v])
         weight = np.concatenate([(w * (1 - share))[share < 1], u * last / v**2])
@@ -217,7 +225,7 @@ class Radius:
 
     def solve(self, right: FloatArray) -> FloatArray:
         """A^-1 right, shape (count,)."""
-        return np.asarray(cho_solve((self._factor, False), right, check_finite=False))
+        return solve_factored(self._factor, right)
 
     @cached_property
     def punch(self) -> FloatArray:
@@ -327,6 +335,7 @@ def flat_punches(kernel: ContactKernel, sizes: Sizes, *, kinked: bool = False) -
 
 def _critical(mu: NDArray[np.floating], nu: NDArray[np.floating] | float, power: int) -> FloatArray:
     """int_0^inf J_mu J_nu x^-power dx (Weber and Schafheitlin)."""
+    gammaln, gammasgn = special().gammaln, special().gammasgn
     over = [(nu - mu + power + 1) / 2, (mu + nu + power + 1) / 2, (mu - nu + power + 1) / 2]
     size = gammaln(power) + gammaln((mu + nu - power + 1) / 2) - power * np.log(2.0) - sum(gammaln(x) for x in over)
     return np.asarray(np.exp(size) * np.nan_to_num(gammasgn(over[0]) * gammasgn(over[2])))

@@ -12,7 +12,6 @@ from typing import TypeAlias
 import numpy as np
 
 from bem.adhesion.equilibrium_branch import DEPTH, FORCE, EquilibriumBranch
-from bem.layer_equation.flat_punch_source import IntegralEquation
 from bem.layer_equation.protocol import FlatPunchSource
 from contact import (
     ContactPath,
@@ -28,7 +27,6 @@ from contact import (
 from contact.answer.solution import Setting, StatedErrors
 from contact.records.validation import FloatArray
 from contact.stated import stated_error
-from mdr.adhesion.solver import solve_adhesive as adhesive_by_table
 from mdr.adhesive_branch import Adhesive, refuse_touching, work_of_adhesion
 from mdr.contact_surface import Surface
 from mdr.equilibria import (
@@ -58,8 +56,6 @@ def solve_adhesive(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[
     """
     if work_of_adhesion(scene) == 0.0:
         return replace(solve_elastic(scene.replace(effects=()), flat_punch, settings), scene=scene)
-    if not isinstance(flat_punch, IntegralEquation):
-        return adhesive_by_table(scene, flat_punch, settings)
     log = StageLog()
     with log.stage("adhesion"):
         contacts = Adhesive(scene, springs_of(scene, flat_punch, log))

@@ -20,7 +20,7 @@ from contact.scene.extent import radius_of_elongation
 from mdr.admissible import is_touched_nowhere, refuse_touching_outside
 from mdr.contact_surface import surface_of
 from mdr.equilibria import is_simple
-from mdr.radius_search import LARGEST_RATIO, RadiusSearch, growing_radii, refuse_too_wide
+from mdr.radius_search import RadiusSearch, growing_radii, refuse_too_wide
 from mdr.spring_bed import Springs
 
 # Relative error down to which branches are sampled. A tenth of it meets rounding.
@@ -28,7 +28,7 @@ _SAMPLED = 2e-14
 # The companion's branch is so much longer, so that its polynomials have other nodes.
 _LONGER = 1.03
 # First trial radius over the flat end, in units of where height and elongation are equal on the half-space.
-_FIRST_WAY = 2.0
+FIRST_WAY = 2.0
 # a/h from which the half-space is no guide to the first trial radius.
 _THIN = 10.0
 # Largest number of contacts of a path that are checked for touching outside.
@@ -116,8 +116,9 @@ class Adhesive:
 
     def _first_radius(self) -> float:
         flat, thickness = self.scene.indenter.flat_radius, self.scene.layer.surface.thickness
-        first = flat + self.longer * _FIRST_WAY * (balance_radius(self.scene) - flat)
-        return first if first <= LARGEST_RATIO / 6 * thickness else self.longer * max(_THIN * thickness, 2 * flat)
+        first = flat + self.longer * FIRST_WAY * (balance_radius(self.scene) - flat)
+        is_guided = first <= self.springs.largest_ratio / 6 * thickness
+        return first if is_guided else self.longer * max(_THIN * thickness, 2 * flat)
 
 
 def refuse_touching(contacts: Adhesive, radius: FloatArray, depth: FloatArray) -> None:

@@ -16,11 +16,9 @@ from itertools import pairwise
 import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
-from scipy.linalg import cho_factor, cho_solve
-from scipy.special import j0
 
 from bem.equation import Radius
-from bem.numerics import even_bessel, even_legendre, gauss, graded, spherical_bessel
+from bem.numerics import cholesky, even_bessel, even_legendre, gauss, graded, solve_factored, special, spherical_bessel
 from contact import InvalidInput
 from contact.records.validation import FloatArray
 from mdr.spring_bed import Springs
@@ -33,6 +31,8 @@ _HARD = 60.0
 _MOST_KINKS = 8
 # Share of the contact radius within which kinks make no patch of their own: around the axis there is nothing left.
 _CENTRE = 1e-3
+# Radius over a up to which all displacements outside share one table of wave numbers.
+_NEAR = 4.0
 # Wave numbers that are summed at a time.
 _CHUNK = 20_000
 # A graded layer's 1 - chi falls like 1/k: the displacement outside takes so many times more wave numbers.
@@ -48,6 +48,7 @@ def surface_of(springs: Springs, a: float, depth: float, *, is_singular: bool = 
     """Fields of the contact of radius a [m] at a depth [m]; p is singular at the edge if phi(a) is not zero."""
     inner = [b for b in springs.tip.breaks if _CENTRE * a < b < a]
     is_wide = not springs.kernel.is_uniform and a > _WIDE * springs.unit and not springs.kernel.tail
+    is_wide = is_wide and not springs.is_tabulated
     return (Patched if is_wide and 0 < len(inner) < _MOST_KINKS else Surface)(
         springs, a, depth, is_singular=is_singular
     )
@@ -87,7 +88,7 @@ class Surface:
         if self.kernel.is_uniform:
             self._phi = self._series = self._smooth = np.zeros(1)
             return
-        if self.kernel.tail and self.edge != 0:
+        if self.kernel.tail:  # phi' is smooth enough for pressures with many polynomials only
             self._radius = Radius(self.kernel, self.a / self.springs.unit, self.sizes, kinked=True)
         radius = self._radius
         load = -self.tip.moments(np.array([self.a]), radius.count, self.sizes.extra)[0]
@@ -232,8 +233,8 @@ class Surface:
         """int_0^inf (1 - chi) phi^(k) J_0(kr) dk [m]."""
         if self.kernel.is_uniform:
             return 0.0
-        kappa, weighted = self._weighted_spectrum(2.0 ** np.ceil(np.log2(max(float(far.max()) / self.a, 2.0))))
-        total = np.zeros(far.shape[0])
+        kappa, weighted = self._weighted_spectrum(2.0 ** np.ceil(np.log2(max(float(far.max()) / self.a, _NEAR))))
+        total, j0 = np.zeros(far.shape[0]), special().j0
         for part in range(0, kappa.size, _CHUNK):
             total = total + j0(far / self.a * kappa[part : part + _CHUNK]) @ weighted[part : part + _CHUNK]
         return total
@@ -265,12 +266,12 @@ class Patched(Surface):
             top = 2 * (sizes.least + int(1.25 * sizes.rate * np.sqrt(x * half)))
             self._patches.append((middle, half, np.arange(0, top, 2 if low == 0 else 1)))
         self._degree = max(int(n[-1]) for *_, n in self._patches)
-        kappa, w, _ = self._radius.waves(2.0)
+        kappa, w, _ = self._radius.waves(_NEAR)
         self._table = self._transforms(kappa)
         table = self._table
         smooth = (table * (2 / np.pi * w * self.kernel.one_minus_chi(kappa / x))) @ table.T
         load = np.concatenate([self._load(*patch) for patch in self._patches])
-        phi = cho_solve(cho_factor(np.eye(load.size) - smooth), load)
+        phi = solve_factored(cholesky(np.eye(load.size) - smooth), load)
         cuts = np.cumsum([n.size for *_, n in self._patches])[:-1]
         self._phi, self._psi, self._parts = phi, phi - load, []
         for (middle, half, n), part in zip(self._patches, np.split(phi - load, cuts), strict=True):

@@ -13,13 +13,11 @@ import numpy as np
 
 from bem.adhesion.equilibrium_branch import DEPTH, FORCE
 from bem.adhesion.withdrawal import CONTROLS, Route
-from bem.layer_equation.flat_punch_source import IntegralEquation
 from bem.layer_equation.protocol import FlatPunchSource
 from contact import Detachment, DetachmentPath, FlatPunch, InvalidInput, Scene, StageLog, UnsupportedSceneError
 from contact.answer.solution import Setting
 from contact.records.validation import BoolArray, FloatArray
 from contact.stated import stated_error
-from mdr.adhesion.solver import solve_detachment as detachment_by_table
 from mdr.adhesive_branch import Adhesive, refuse_touching, work_of_adhesion
 from mdr.contact_surface import surface_of
 from mdr.equilibria import springs_of
@@ -100,8 +98,6 @@ def solve_detachment(scene: Scene, flat_punch: FlatPunchSource, settings: Mappin
         InvalidInput: If there is nothing to detach, or the indenter ends too early.
         UnsupportedSceneError: If the indenter would touch outside its circle of contact.
     """
-    if not isinstance(flat_punch, IntegralEquation):
-        return detachment_by_table(scene, flat_punch, settings)
     log, loading = StageLog(), scene.loading
     if not isinstance(loading, Detachment):
         raise UnsupportedSceneError(f"loading = {type(loading).__name__}: a detachment path needs Detachment")

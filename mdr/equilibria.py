@@ -15,12 +15,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bem.equation import USUAL, Sizes
-from bem.layer_equation.flat_punch_source import IntegralEquation
+from bem.flat_punch import IntegralEquation
 from bem.layer_equation.protocol import FlatPunchSource
 from bem.numerics import EPS, gauss
 from contact import (
     ContactPath,
     ContactRadii,
+    ElasticLayer,
     FlatPunch,
     IndentationDepths,
     InvalidInput,
@@ -45,7 +46,7 @@ StatedError: TypeAlias = FloatArray | Callable[[], FloatArray]
 # States of a path at which errors are computed and contacts are checked; the largest change counts for all of them.
 _COMPARED, _CHECKED = 8, 12
 # Radii inside, and radii outside over the contact radius, at which fields are compared.
-_INSIDE, _OUTSIDE = 8, np.array([1.02, 1.5])
+_INSIDE, _OUTSIDE = 8, np.array([1.02, 2.0, 4.0])
 # Relative rounding error of pressure and displacement by their quadratures.
 _FIELD_ROUNDING = 2e-13
 
@@ -63,10 +64,6 @@ def solve_elastic(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
         SeveralContacts: If the contact would not be one circle.
         UnsupportedSceneError: If the surfaces would pull inside, or the indenter would touch outside.
     """
-    if not isinstance(flat_punch, IntegralEquation):
-        from mdr.elastic import solve_elastic as solve_by_table  # noqa: PLC0415 - loaded with tables only
-
-        return solve_by_table(scene, flat_punch, settings)
     log = StageLog()
     springs = springs_of(scene, flat_punch, log)
     with log.stage("mdr_profile"):
@@ -92,14 +89,30 @@ def solve_elastic(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
     )
 
 
-def springs_of(scene: Scene, flat_punch: IntegralEquation, log: StageLog) -> Springs:
-    """Springs of a scene; those of a layer are solutions of its equation."""
-    springs = Springs.of(scene.layer, scene.indenter, sizes_of(flat_punch))
+def springs_of(scene: Scene, flat_punch: FlatPunchSource, log: StageLog) -> Springs:
+    """Springs of a scene; those of a layer are solutions of its equation, or of a table."""
+    springs = springs_on(scene.layer, scene.indenter, flat_punch)
     if not scene.layer.is_half_space:
         with log.stage("flat_punch_data"):
             log.count("flat_punch_solutions")
             springs.punches.at(np.ones(1))
     return springs
+
+
+def springs_on(layer: ElasticLayer, indenter: Profile, flat_punch: FlatPunchSource) -> Springs:
+    """Springs of a layer under an indenter, by the equation of contact or by a table of flat punches.
+
+    Raises:
+        UnsupportedSceneError: If a table is asked for of a layer that is not uniform.
+        InvalidInput: If a stored table is of another layer.
+    """
+    if isinstance(flat_punch, IntegralEquation):
+        return Springs.of(layer, indenter, sizes_of(flat_punch))
+    if layer.is_half_space:
+        return Springs.of(layer, indenter)
+    from mdr.table_bed import TableSprings  # noqa: PLC0415 - loads the boundary elements
+
+    return TableSprings.of_table(layer, indenter, flat_punch)
 
 
 def is_simple(scene: Scene) -> bool:
@@ -225,7 +238,7 @@ class ElasticErrors:
         # Between the rim of a flat end and the edge pressures go with a - b.
         pressure = whole + moved / np.maximum(1 - self.springs.tip.flat / self.state.radius, 1e-12)
         # Outside thin layers w is a small difference of terms of the size of phi, K/a times the depth.
-        displacement = depth + moved + EPS * self.values.K / self.state.radius
+        displacement = (force if is_punch else depth) + moved + EPS * self.values.K / self.state.radius
         # Functions outlive the answer's other arrays, so they refer to a few states only.
         pair = partial(_pair, self.scene, self.springs, seen)
         return {

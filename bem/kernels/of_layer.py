@@ -82,8 +82,7 @@ def _shared(kernel: GradedKernel) -> GradedKernel:
 
 def _without_roundings(record: _R) -> _R:
     """A record with its numbers, and those of records in it, to `_DIGITS`."""
-    # Every record is a dataclass.
-    names = [field.name for field in dataclasses.fields(record)]  # type: ignore[arg-type]
+    names = [field.name for field in dataclasses.fields(record)]
     return record.replace(**{name: _to_digits(getattr(record, name)) for name in names})
 
 

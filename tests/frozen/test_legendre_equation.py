@@ -7,7 +7,7 @@ import json
 
 import pytest
 
-from bem.layer_equation.flat_punch_source import IntegralEquation
+from bem.flat_punch import IntegralEquation
 from contact import Adhesion, Detachment, scene_from_mapping
 from mdr.adhesive import solve_adhesive
 from mdr.detachment import solve_detachment

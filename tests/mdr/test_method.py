@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.special import beta
 
-from bem.layer_equation.flat_punch_source import IntegralEquation
+from bem.flat_punch import IntegralEquation
 from contact import (
     Adhesion,
     Cone,

@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 
+from bem.flat_punch import IntegralEquation
 from bem.kernels.of_layer import stack_kernel
 from bem.kernels.stack import StackKernel
-from bem.layer_equation.flat_punch_source import IntegralEquation
 from contact import (
     Cone,
     ContactRadii,
