@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from math import inf
-from typing import TYPE_CHECKING, Protocol, Self, runtime_checkable
+from typing import TYPE_CHECKING, Any, Protocol, Self, runtime_checkable
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -293,7 +293,7 @@ class FlatPunchSolution(Protocol):
 class FlatPunchSource(Protocol):
     """Numerical settings that can produce a `FlatPunchSolution`."""
 
-    def solution(self, layer: ElasticLayer, max_ratio: float) -> FlatPunchSolution:
+    def solution(self, layer: ElasticLayer, max_ratio: float, /) -> Any:
         """The flat punch on this layer up to at least a/h = max_ratio; cached by the source.
 
         Raises:

@@ -14,7 +14,7 @@ from contact.records.validation import FloatArray
 
 EPS: Final = float(np.finfo(float).eps)
 
-# Elastic contacts and their springs (`mdr.springs`, `mdr.elastic`).
+# Elastic contacts and their springs (`mdr.springs`).
 
 # Relative rounding of springs, stiffness and profile, added to what flat-punch data state; chosen. The same number is
 # how far beyond its range a rounded radius may be asked for.

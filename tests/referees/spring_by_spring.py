@@ -84,8 +84,9 @@ def spring_by_spring(scene: Scene, radius: float) -> ForceOpinion:
 
 def stepped_in_time(scene: Scene) -> HistoryPath:
     """The fast method's answer to a force history, every interval in steps, one digit finer than usual."""
-    from mdr.history.solver import followed_history
     from mdr.history.springs_in_time import SpringLaw
+
+    from mdr.history.solver import followed_history
 
     law, settings = SpringLaw.of(relaxation_of(scene)), {"accuracy": 0.1 * DEFAULT_ACCURACY}
     return followed_history(scene, scene.loading, law, IntegralEquation(), settings)  # type: ignore[arg-type]
