@@ -117,6 +117,12 @@ class Surface:
         """-1/ln[(a + t)/(a - t)] times what `smooth_slope` leaves out of psi'."""
         return self._corner
 
+    @property
+    def edge_of_series(self) -> float:
+        """phi(a) [m] as the series has it, which differs from `edge` by what they miss."""
+        known = self.depth - float(self.tip.transform(np.array([self.a]))[0]) + 2 * np.log(2) * self.a * self._corner
+        return float(known + self._smooth.sum())
+
     def smooth_slope(self, t: FloatArray) -> FloatArray:
         """psi' without the logarithm at the edge."""
         full = np.zeros(2 * self._smooth.size)
