@@ -13,7 +13,7 @@ def mdr_by_integral_equation(nodes: int = 24, panel_width: float = 1.0, accuracy
 
 def mdr_by_fft_table(cells: int = 256, ratios: int = 400, radii: int = 500) -> Method:
     """Return MDR on a flat-punch table of the FFT boundary element method, as published."""
-    from bem.tables.from_grid import FftTable  # noqa: PLC0415
+    from bem.tables import FftTable  # noqa: PLC0415
     from mdr import Mdr  # noqa: PLC0415
 
     return Mdr(flat_punch=FftTable(cells=cells, ratios=ratios, radii=radii))

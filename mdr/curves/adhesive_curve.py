@@ -11,10 +11,11 @@ from functools import lru_cache
 
 import numpy as np
 
-from bem.layer_equation.flat_punch_source import IntegralEquation
+from bem.flat_punch import IntegralEquation
 from contact import IndentationDepths, InvalidInput, Scene
 from contact.records.validation import BoolArray, FloatArray
-from mdr.springs.reach import covering_system
+from mdr.equilibria import solve_elastic
+from mdr.spring_bed import Springs
 
 # Radii of the table, evenly in the logarithm over three decades: the error of straight lines between them falls with
 # the square of their number, and is stated, not assumed.
@@ -92,15 +93,17 @@ def adhesive_curve(scene: Scene) -> AdhesiveCurve:
     """
     if not isinstance(scene.loading, IndentationDepths):
         raise InvalidInput("scene: a force curve prescribes indentation depths")
-    deeper = scene.replace(loading=IndentationDepths([_DEEPER * float(scene.loading.values.max())]))
-    system = covering_system(deeper, IntegralEquation())
-    flat = system.flat_radius
-    radius = flat + (system.max_radius - flat) * np.logspace(-_DECADES, 0.0, _RADII)
-    modulus = scene.layer.surface.youngs_modulus
+    # The elastic contact at the largest depth says how far the table reaches, and refuses what is no circle.
+    deeper = scene.replace(loading=IndentationDepths([_DEEPER * float(scene.loading.values.max())]), effects=())
+    largest = float(solve_elastic(deeper, IntegralEquation(), {}).contact_radius[0])
+    springs, flat = Springs.of(scene.layer, scene.indenter), scene.indenter.flat_radius
+    radius = flat + (largest - flat) * np.logspace(-_DECADES, 0.0, _RADII)
+    values, modulus = springs.at(radius), scene.layer.surface.youngs_modulus
+    state = springs.state(radius, values)
     return AdhesiveCurve(
         radius=radius,
-        depth=system.mdr_profile(radius),
-        elastic_force=system.elastic_force(radius) / modulus,
-        stiffness=system.contact_stiffness(radius) / modulus,
-        spring=system.spring_stiffness(radius) / modulus,
+        depth=state.depth,
+        elastic_force=state.force / modulus,
+        stiffness=state.stiffness / modulus,
+        spring=springs.modulus / modulus * values.y1**2,
     )
