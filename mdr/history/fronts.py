@@ -35,7 +35,7 @@ _GROWTH, _MOST_PANELS = 4.0, 12
 _APART = 1e-9
 # Power of the distance from a kink, or from the axis, in which springs are smooth: g goes with roots of the former, and
 # tips like r^1.7 are not analytic at the latter.
-_KINK_POWER, _AXIS_POWER = 2.0, 4.0
+_KINK_POWER, _AXIS_POWER = 2.0, 6.0
 
 
 def fronts(law: SpringLaw, path: Path) -> FloatArray:
@@ -67,7 +67,9 @@ def _brackets(law: SpringLaw, path: Path) -> tuple[FloatArray, FloatArray]:
     return low, high
 
 
-def _refined(law: SpringLaw, path: Path, instants: NDArray[np.intp], low: FloatArray, high: FloatArray) -> FloatArray:
+def _refined(
+    law: SpringLaw, path: Path, instants: NDArray[np.intp], low: FloatArray, high: FloatArray
+) -> FloatArray:
     """Fronts at some instants by the Illinois rule, all at once."""
     (a, f_a), (b, f_b) = low.copy(), high.copy()
     top = path.peaks[-1]

@@ -14,7 +14,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bem.kernels.moduli import relaxation_of
-from bem.layer_equation.flat_punch_source import IntegralEquation
 from bem.layer_equation.protocol import FlatPunchSource
 from bem.numerics import EPS
 from contact import (
@@ -32,9 +31,9 @@ from contact.records.validation import FloatArray
 from contact.stated import stated_error
 from mdr.admissible import refuse_pulling, refuse_touching_outside
 from mdr.contact_surface import surface_of
-from mdr.equilibria import is_simple, is_singular, sizes_of
-from mdr.history.force_control import March, Steps, never_larger, steps_of
+from mdr.equilibria import is_simple, is_singular, springs_on
 from mdr.history.fronts import Layout, fronts, layout, panel_ends, refuse_open_inside
+from mdr.history.force_control import March, Steps, never_larger, steps_of
 from mdr.history.spring_bed import Path, SpringBed, followed
 from mdr.history.spring_law import SpringLaw
 from mdr.radius_search import RadiusSearch, refuse_too_wide
@@ -43,7 +42,7 @@ from mdr.springs.error_model import DEFAULT_ACCURACY
 
 # Nodes per panel under a depth, and under a force, where panels are as many as instants. With half as many errors of
 # 1e-6 are stated.
-_NODES_OF_DEPTHS, _NODES = 12, 6
+_NODES_OF_DEPTHS, _NODES = 14, 6
 # Substeps of a whole force history at the default accuracy, at least two in each interval, and multiples of them whose
 # limits are compared. Twice as many err a thirtieth. One digit more of accuracy doubles them, between the bounds below.
 _SUBSTEPS, _LEVELS = 32, (2, 1)
@@ -101,9 +100,8 @@ def solve_history(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
     if not isinstance(loading, DepthHistory | ForceHistory):
         raise UnsupportedSceneError(f"loading = {type(loading).__name__}: a history needs DepthHistory or ForceHistory")
     _refuse_idle(loading)
-    assert isinstance(flat_punch, IntegralEquation)
     with log.stage("equivalent_system"):
-        springs = Springs.of(scene.layer, scene.indenter, sizes_of(flat_punch))
+        springs = springs_on(scene.layer, scene.indenter, flat_punch)
     with log.stage("history"):
         answer, other = (
             _by_depth(scene, springs, law, loading)
@@ -138,7 +136,9 @@ def solve_history(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
     )
 
 
-def _stated(answer: FloatArray, other: FloatArray, known: NDArray[np.bool_], doubt: float, floor: float) -> FloatArray:
+def _stated(
+    answer: FloatArray, other: FloatArray, known: NDArray[np.bool_], doubt: float, floor: float
+) -> FloatArray:
     """Errors relative to the largest value: one for all instants known in closed form, one for all others."""
     scale = max(float(np.abs(answer).max()), np.finfo(float).tiny)
     change = stated_error(answer, other, scale=scale, floor=floor, sequence=False)
@@ -208,13 +208,7 @@ def _marched(scene: Scene, springs: Springs, law: SpringLaw, loading: ForceHisto
     for _ in range(0 if known[steps.given].all() else _MOST_MARCHES):
         bed = layout_of(scene, springs, ends, _NODES)
         march = March(
-            law,
-            SpringBed.undeformed(law, bed.g, closed[0]),
-            2 * springs.modulus * bed.weight,
-            steps,
-            load,
-            closed,
-            known,
+            law, SpringBed.undeformed(law, bed.g, closed[0]), 2 * springs.modulus * bed.weight, steps, load, closed, known
         )
         before, path, size = path.depth, march.path(), bed.g.size
         doubt = float(np.abs(path.depth - before).max())
@@ -237,9 +231,7 @@ def _elastic_depths(scene: Scene, springs: Springs, load: FloatArray) -> FloatAr
         radius = np.full(np.count_nonzero(some), scene.indenter.radius)
     else:
         try:
-            radius = _search(scene, springs).radii(
-                "force", load[some], lambda a: _refuse_circle(scene, springs, a, 0.0)
-            )
+            radius = _search(scene, springs).radii("force", load[some], lambda a: _refuse_circle(scene, springs, a, 0.0))
         except InvalidInput as error:
             message = f"loading.force, as an elastic layer must bear it to be as deep: {error}"
             raise InvalidInput(message) from None
