@@ -14,7 +14,6 @@ import numpy as np
 from cases.judgement.rules.judgement import Judgement
 from cases.results.status import Status
 from contact import Sphere, Spheroconical, TruncatedParaboloid
-from mdr.impact import collocation_step
 from tests.planted.guards import TEMPORARY, Claims, Test
 from tests.planted.planting import override, set_to, swap
 
@@ -461,21 +460,15 @@ TIME_STEPPING = [
         Test("mdr.test_recovery:test_a_spring_that_is_touched_and_released_within_one_step"),
     ),
     Fault(
-        "no floor under the stated error of an impact",
-        "time stepping",
-        set_to("mdr.impact.results:AGREEMENT_SHARES", 0.0),
-        Test("verification.test_impact_errors:test_two_runs_that_agree_by_chance_still_state_an_error", (28, 1e-6)),
-    ),
-    Fault(
         "last scene of each full chunk of pull-offs left out",
         "mdr",
         swap("mdr.adhesion.batch:pull_off_groups", without_the_last_of_a_full_chunk),
         Test("mdr.test_batch_sizes:test_pull_offs_of_every_size", (513,)),
     ),
     Fault(
-        "quadrature of first order at a step's end",
+        "integrals of a phase that end a node early",
         "time stepping",
-        set_to("mdr.impact.collocation_step:ENDS", np.stack([np.full(10, 0.1), collocation_step.ENDS[1]])),
+        swap("mdr.impact.rules:gauss", shifted_nodes),
         Test(
             "verification.test_impact:test_flat_punch_restitution_of_the_closed_form_and_of_the_integration",
             (0.2, 0.571740),
@@ -484,13 +477,13 @@ TIME_STEPPING = [
     Fault(
         "memory of first contact that fades too slowly",
         "time stepping",
-        swap("mdr.impact.equations:remembered", forgets_slowly),
+        swap("mdr.impact.motion:Shrinkage.ago", forgets_slowly),
         Test("verification.test_impact:test_figure_12_restitution_peak_audit_and_self_convergence", (2e-3,)),
     ),
     Fault(
         "release at zero depth in place of zero force",
         "time stepping",
-        lambda patch: patch.setattr("mdr.impact.flat_punch.EndCondition", released_at_zero_depth(_event())),
+        swap("mdr.impact.motion:Shrinkage._system", released_at_zero_depth),
         Test(
             "verification.test_impact:test_flat_punch_restitution_of_the_closed_form_and_of_the_integration",
             (0.2, 0.571740),
@@ -508,16 +501,10 @@ TIME_STEPPING = [
     Fault(
         "half of the dissipation",
         "time stepping",
-        swap("mdr.impact.energies:dissipation", half_the_loss),
+        swap("mdr.impact.history:_inverse", half_the_loss),
         Test("verification.test_impact:test_figure_12_restitution_peak_audit_and_self_convergence", (2e-3,)),
     ),
 ]
-
-
-def _event():
-    from mdr.impact.collocation import EndCondition
-
-    return EndCondition
 
 
 # -- comparators -----------------------------------------------------------------------------------------------------
