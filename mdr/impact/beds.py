@@ -20,13 +20,15 @@ from bem.layer_equation.flat_punch_source import IntegralEquation
 from bem.layer_equation.protocol import FlatPunchSource
 from contact import Cone, ElasticLayer, FlatPunch, Paraboloid, PowerLaw, Profile, Scene, UnsupportedSceneError
 from contact.records.validation import FloatArray
-from mdr.impact.track import Track
+from mdr.impact.track import Track, exponent_of
 from mdr.profiles import tip_of
 from mdr.radius_search import LARGEST_RATIO
 from mdr.spring_bed import Springs
 
 # Binary logarithms of the ladder's radii over the unit of length.
 _LOWEST, _HIGHEST = -60, 80
+# Flattest tip r^n, and binary logarithm of the least heights of a ladder: beyond, energies underflow.
+_FLATTEST, _UNDERFLOW = 40.0, -900.0
 # Share of the radius of an upright end that contacts keep away from it.
 _NEAR_END = 1e-6
 # Tracks and ladders that are remembered.
@@ -70,7 +72,7 @@ def bed_of(scene: Scene, flat_punch: FlatPunchSource) -> tuple[Bed, Units]:
     """The bed of a scene and its units.
 
     Raises:
-        UnsupportedSceneError: If the powers of a flat tip are beyond doubles.
+        UnsupportedSceneError: If a tip is too flat, or its heights are beyond doubles.
     """
     layer, law = scene.layer, power_law(scene.indenter)
     kernel, unit, modulus = contact_kernel(layer), unit_of(layer), 2 * contact_modulus(layer)
@@ -78,6 +80,8 @@ def bed_of(scene: Scene, flat_punch: FlatPunchSource) -> tuple[Bed, Units]:
     if law is None or tabulated:
         return Bed(kernel, unit, scene.indenter, tabulated), Units(1.0, 1.0, modulus)
     coefficient, exponent = law
+    if exponent > _FLATTEST:
+        raise UnsupportedSceneError(f"indenter: impacts are modelled for tips up to r^{_FLATTEST:g}, not r^{exponent:g}")
     depth = coefficient * np.float64(unit) ** exponent
     if not 0 < depth < math.inf:
         raise UnsupportedSceneError(f"indenter: heights of a tip r^{exponent:g} over a thickness are beyond doubles")
@@ -116,7 +120,8 @@ class Ladder:
         self.is_whole = isinstance(self.tip.profile, FlatPunch)
         if self.is_whole:
             return
-        self._grow(np.arange(_LOWEST, _HIGHEST + 1.0 if springs.kernel.is_uniform else 1.0))
+        self.lowest = max(_LOWEST, int(_UNDERFLOW / exponent_of(self.tip.profile)))
+        self._grow(np.arange(self.lowest, _HIGHEST + 1.0 if springs.kernel.is_uniform else 1.0))
 
     def _grow(self, levels: FloatArray) -> None:
         """Add levels, none beyond the profile's end, the widest contact, or where g falls."""
@@ -139,7 +144,7 @@ class Ladder:
     def extend(self, level: int) -> None:
         """Make sure that a level exists, if the ladder may go on."""
         while self.excess.size <= level and not self.is_whole:
-            self._grow(np.array([_LOWEST + float(self.excess.size)]))
+            self._grow(np.array([self.lowest + float(self.excess.size)]))
 
     def level(self, energy: float, impulse: float) -> int:
         """The level at which an elastic layer stores an energy, or a dashpot has taken an impulse, surely."""

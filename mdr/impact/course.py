@@ -35,7 +35,7 @@ class Course:
         parts: Growths in their order, each with its shrinkage.
         turn: State at the turn.
         end: State at the release.
-        unsure: Sums of the last relative corrections of speeds and of durations, shape (2, n).
+        unsure: Sums of the last corrections of speeds over v_0, of ln T, and of rebounds over their speeds, shape (3, n).
         short: Whether a contact grows beyond its track, shape (n,); its numbers are void then.
     """
 
@@ -71,7 +71,7 @@ def course(bodies: Bodies, nodes: int, guess: Course | FloatArray) -> Course:
     """
     n, m = bodies.rates.shape
     state = State(np.zeros(n), bodies.velocity.copy(), np.zeros(n), np.zeros((n, m)), np.zeros((n, m)))
-    unsure, short = np.zeros((2, n)), np.zeros(n, dtype=bool)
+    unsure, short = np.zeros((3, n)), np.zeros(n, dtype=bool)
     like = guess if isinstance(guess, Course) else None
     if isinstance(guess, Course):
         parts = list(_alike(bodies, nodes, state, guess))
@@ -81,11 +81,14 @@ def course(bodies: Bodies, nodes: int, guess: Course | FloatArray) -> Course:
     found = Course(bodies, tuple(parts), turn, state, unsure, short)
     for number in reversed(range(len(parts))):
         index, growth, _ = parts[number]
-        unsure[:, index] += growth.unsure
+        unsure[:2, index] += growth.unsure
         if not found.is_elastic:
             shrinkage = _mirrored(growth, state.take(index), like.parts[number].shrinkage if like else None)
             shrinkage.solve(growth, searched=like is not None)
-            unsure[:, index] += shrinkage.unsure
+            # Where a dashpot stopped a body, speeds of its rebound are far below v_0.
+            whole = np.abs(shrinkage.speed).max(axis=1) / shrinkage.bodies.velocity
+            speed, duration = shrinkage.unsure
+            unsure[:, index] += np.stack([speed * whole, duration, speed])
             state.put(index, shrinkage.finish())
             parts[number] = Pressed(index, growth, shrinkage)
     if found.is_elastic:
@@ -175,7 +178,7 @@ def _largest(phase: Growth) -> FloatArray:
 
     A viscous layer relaxes at the turn, so that the force is smaller after it.
     """
-    fit = phase.force @ phase.rule.analysis.T
+    fit = (phase.rule.analysis @ phase.force[..., None])[..., 0]
     places = np.linspace(0, 1, _PLACES)
     values = phase.rule.at(phase.force, np.broadcast_to(places, (fit.shape[0], _PLACES)))
     s = places[np.clip(values.argmax(axis=1), 1, _PLACES - 2)]

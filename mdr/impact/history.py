@@ -30,8 +30,7 @@ def history(blow: Blow, attempt: Attempt, log: StageLog, settings: Mapping[str, 
     rows, phases = samples(attempt.course), _phases(attempt.course)
     length, depth, stiffness = blow.units
     force, peak_depth, radius = in_si(blow, attempt, 0)[2:].tolist()
-    velocity, unit = blow.velocity * depth, stiffness * depth**2
-    energy = velocity**2 * stiffness / (2 * blow.pull)
+    energy, unit = blow.speed**2 * stiffness / (2 * blow.pull), stiffness * depth**2
     log.count("nodes", sum(phase.speed.size for phase in phases))
     log.count("sweeps", sum(phase.sweeps for phase in (*phases, *_phases(attempt.finer))))
     errors = dict(zip(OUTCOMES, attempt.error, strict=True)) | _series_errors(attempt, rows.shape[1])
@@ -44,7 +43,7 @@ def history(blow: Blow, attempt: Attempt, log: StageLog, settings: Mapping[str, 
         stages=log.records,
         time=rows[0],
         indentation_depth=rows[1] * depth,
-        velocity=rows[2] / blow.velocity * velocity,
+        velocity=rows[2] / blow.velocity * blow.speed,
         normal_force=rows[3] * stiffness * depth,
         contact_radius=rows[4] * length,
         kinetic_energy=(rows[2] / blow.velocity) ** 2 * energy,

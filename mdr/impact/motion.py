@@ -197,7 +197,10 @@ class Phase:
             missed, matrix = system(done if sweep else None)
             step = np.linalg.solve(matrix, missed[..., None])[..., 0]
             scale = np.maximum(np.abs(self.speed).max(axis=1), np.abs(self.start.speed))
-            both = np.stack([np.abs(step[:, :-1]).max(axis=1) / scale, np.abs(step[:, -1])])
+            # Nodes move with the duration: the change of a speed at its instant counts.
+            drift = self.bodies.pull[:, None] * self.force * self.duration[:, None] * self.rule.share[:-1]
+            both = np.abs(np.stack([np.zeros_like(scale), step[:, -1]]))
+            both[0] = np.abs(step[:, :-1] + drift * step[:, -1:]).max(axis=1) / scale
             both = np.where(np.isfinite(both), both, np.inf)
             size = both.sum(axis=0)
             stalled = (size < _STALLED) | ((both[0] < _STALLED_SPEED) & (size < _LONGEST_STEP))

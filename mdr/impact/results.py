@@ -70,7 +70,8 @@ class Blow(NamedTuple):
         scene: The impact.
         bed: Layer and profile.
         units: Of the bed.
-        velocity: v_0 [1/s].
+        speed: v_0 [m/s].
+        velocity: v_0 over the unit of depth [1/s].
         pull: 2 E*/M [1/s^2].
         weights: w_j, G_inf/G_0 first, shape (m,).
         rates: 1/tau_j [1/s], 0 first, shape (m,).
@@ -80,6 +81,7 @@ class Blow(NamedTuple):
     scene: Scene
     bed: Bed
     units: Units
+    speed: float
     velocity: float
     pull: float
     weights: FloatArray
@@ -110,7 +112,7 @@ def blow_of(scene: Scene, flat_punch: FlatPunchSource) -> Blow:
     weights, rates = np.append(law.long_term_modulus, law.moduli) / modulus, np.append(0.0, 1 / law.times)
     loading = scene.loading
     velocity, pull = loading.velocity / units.depth, units.stiffness / loading.mass
-    return Blow(scene, bed, units, velocity, pull, weights, rates, law.viscosity / modulus)
+    return Blow(scene, bed, units, loading.velocity, velocity, pull, weights, rates, law.viscosity / modulus)
 
 
 class Attempt(NamedTuple):
@@ -148,6 +150,7 @@ def attempted(blows: Sequence[Blow], sizes: Sizes, nodes: int, excess: FloatArra
     unsure = answer.unsure + finer.unsure
     errors = np.array(error) + unsure[0]
     errors[1] += unsure[1]
+    errors[0] += unsure[2]
     return Attempt(answer, finer, values, errors)
 
 
@@ -188,7 +191,10 @@ def _guess(blow: Blow, sizes: Sizes) -> tuple[float, float]:
 def in_si(blow: Blow, attempt: Attempt, place: int) -> FloatArray:
     """Five outcomes of an impact of an attempt in SI units."""
     length, depth, stiffness = blow.units
-    return attempt.values[:, place] * [1.0, 1.0, stiffness * depth, depth, length]
+    found = attempt.values[:, place] * [1.0, 1.0, stiffness * depth, depth, length]
+    # Rounded as the quotient of two speeds [m/s], which it is in a history.
+    found[0] = found[0] * blow.speed / blow.speed
+    return np.asarray(found)
 
 
 def solved(
@@ -255,8 +261,8 @@ def _refuse_unsolved(blows: Sequence[Blow], found: Sequence[tuple[Attempt, int]]
 
 def _unsure(attempt: Attempt, place: int) -> float:
     """Largest last correction of speeds, or of a duration; where the speed is lost in rounding the latter is vague."""
-    speed, duration = attempt.course.unsure[:, place] + attempt.finer.unsure[:, place]
-    return float(max(speed, duration * _VAGUE))
+    speed, duration, rebound = attempt.course.unsure[:, place] + attempt.finer.unsure[:, place]
+    return float(max(speed, _VAGUE * duration, _VAGUE * rebound))
 
 
 def _first_level(blow: Blow, sizes: Sizes) -> int:

@@ -59,7 +59,7 @@ class Piece(NamedTuple):
         K, a, slope = np.moveaxis((basis[..., None] * self.series[which]).sum(axis=-2), -1, 0)
         slope = slope / (self.scale + z)
         if self.is_tip:
-            slope, K, a = K + z * slope, z * K, z * a
+            slope, K, a = K + z * slope, z * K, np.where(depth > self.start, z * a, 0.0)
         return K, slope * z / (self.power * rise), a
 
 
