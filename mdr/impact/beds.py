@@ -163,7 +163,8 @@ class Ladder:
                 known, wanted, depth = np.log(held), np.log(value), np.log(self.depth)
             use = np.isfinite(known)
             below = min(wanted - known[use][0], 0.0) * np.diff(depth[use][:2])[0] / np.diff(known[use][:2])[0]
-            found.append(float(np.exp(np.interp(wanted, known[use], depth[use]) + below)))
+            reached = np.interp(wanted, known[use], depth[use]) if value < np.inf else np.inf
+            found.append(float(np.exp(reached + below)))
         return found[0], found[1]
 
 

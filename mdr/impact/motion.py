@@ -269,7 +269,7 @@ class Shrinkage(Phase):
         none = np.zeros(self.duration.size, dtype=bool) if searched else None
         self.iterate(lambda done: self._system(none if done is None else done))
 
-    def _system(self, found: NDArray[np.bool_] | None) -> tuple[FloatArray, FloatArray]:
+    def _system(self, found: NDArray[np.bool_] | None, *, whole: bool = True) -> tuple[FloatArray, FloatArray]:
         self.lengthen()
         b, g, v, k = self.bodies, self.growth, self.speed, self.speed.shape[1]
         rates, eta = b.rates, b.viscosity[:, None]
@@ -278,8 +278,8 @@ class Shrinkage(Phase):
         self.total = total
         if g.bodies.tracks[0].pieces:
             if found is not None:
-                if self._shortened(total, found):
-                    return self._system(found)
+                if whole and self._shortened(total, found):
+                    return self._system(found, whole=False)
                 self._find_edge(total, found)
             K, lost, later = self._at_edge()
         else:
@@ -307,7 +307,8 @@ class Shrinkage(Phase):
         """
         first = self.growth.start.stress[..., None]
         held = (first * np.exp(-self.bodies.rates[..., None] * self.ago(np.zeros_like(total))[:, None])).sum(axis=1)
-        free = (total < held) & (self.rule.share[:-1] < _ENDED) & ~found[:, None]
+        relaxes = (self.bodies.viscosity == 0) & ~found
+        free = (total < held) & (self.rule.share[:-1] < _ENDED) & relaxes[:, None]
         cut = np.where(free.any(axis=1), self.rule.share[free.argmax(axis=1)], 1.0)
         if (cut == 1).all():
             return False

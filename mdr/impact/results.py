@@ -261,8 +261,8 @@ def _refuse_unsolved(blows: Sequence[Blow], found: Sequence[tuple[Attempt, int]]
 
 def _unsure(attempt: Attempt, place: int) -> float:
     """Largest last correction of speeds, or of a duration; where the speed is lost in rounding the latter is vague."""
-    speed, duration, rebound = attempt.course.unsure[:, place] + attempt.finer.unsure[:, place]
-    return float(max(speed, _VAGUE * duration, _VAGUE * rebound))
+    speed, duration, _ = attempt.course.unsure[:, place] + attempt.finer.unsure[:, place]
+    return float(max(speed, _VAGUE * duration))
 
 
 def _first_level(blow: Blow, sizes: Sizes) -> int:
