@@ -81,7 +81,9 @@ def bed_of(scene: Scene, flat_punch: FlatPunchSource) -> tuple[Bed, Units]:
         return Bed(kernel, unit, scene.indenter, tabulated), Units(1.0, 1.0, modulus)
     coefficient, exponent = law
     if exponent > _FLATTEST:
-        raise UnsupportedSceneError(f"indenter: impacts are modelled for tips up to r^{_FLATTEST:g}, not r^{exponent:g}")
+        raise UnsupportedSceneError(
+            f"indenter: impacts are modelled for tips up to r^{_FLATTEST:g}, not r^{exponent:g}"
+        )
     depth = coefficient * np.float64(unit) ** exponent
     if not 0 < depth < math.inf:
         raise UnsupportedSceneError(f"indenter: heights of a tip r^{exponent:g} over a thickness are beyond doubles")

@@ -40,7 +40,7 @@ _EXACT, _STALLED = 1e-13, 1e-9
 _STALLED_SPEED = 1e-11
 # Largest change of ln T in a sweep, halved while corrections stay above a share of the last. With twice as much steps
 # overshoot, with half they are slower.
-_LONGEST_STEP, _FALLS = 0.5, 0.8
+_LONGEST_STEP, _SHORTEST_STEP, _FALLS = 0.5, 0.05, 0.8
 # Share of a shrinkage before which nothing may be free; nodes beyond are within a Newton step of the end.
 _ENDED = 0.7
 # Most steps of the search for theta, and the size of the last, in shares of the growth: its square is rounding.
@@ -195,7 +195,7 @@ class Phase:
         self.unsure = np.full((2, n), np.inf)
         for sweep in range(_SWEEPS):
             missed, matrix = system(done if sweep else None)
-            step = np.linalg.solve(matrix, missed[..., None])[..., 0]
+            step = _solved(matrix, missed)
             scale = np.maximum(np.abs(self.speed).max(axis=1), np.abs(self.start.speed))
             # Nodes move with the duration: the change of a speed at its instant counts.
             drift = self.bodies.pull[:, None] * self.force * self.duration[:, None] * self.rule.share[:-1]
@@ -209,7 +209,7 @@ class Phase:
             done, self.sweeps = ~now, sweep + 1
             if done.all():
                 return
-            longest = np.where(size > _FALLS * last, longest / 2, np.minimum(longest * 1.5, _LONGEST_STEP))
+            longest = np.clip(np.where(size > _FALLS * last, longest / 2, longest * 1.5), _SHORTEST_STEP, _LONGEST_STEP)
             share = np.minimum(1.0, longest / np.maximum(both[1], 1e-300))
             move = np.where((now & np.isfinite(size))[:, None], share[:, None] * step, 0.0)
             self.speed = self.speed - move[:, :-1]
@@ -363,6 +363,16 @@ class Shrinkage(Phase):
         """The state at the end."""
         end, start = self.growth.start, self.start
         return State(start.time + self.duration, self.end_speed, self.depth[:, -1], self.stress[..., -1], end.load)
+
+
+def _solved(matrix: FloatArray, right: FloatArray) -> FloatArray:
+    """Solutions of linear systems, infinite where one is singular: a body that never turns."""
+    try:
+        return np.asarray(np.linalg.solve(matrix, right[..., None])[..., 0])
+    except np.linalg.LinAlgError:
+        if len(matrix) == 1:
+            return np.full_like(right, np.inf)
+        return np.concatenate([_solved(matrix[[i]], right[[i]]) for i in range(len(matrix))])
 
 
 def _times(matrix: FloatArray, vector: FloatArray) -> FloatArray:
