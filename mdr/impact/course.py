@@ -35,7 +35,7 @@ class Course:
         parts: Growths in their order, each with its shrinkage.
         turn: State at the turn.
         end: State at the release.
-        unsure: Sums of the last corrections of speeds over v_0, of ln T, and of rebounds over their speeds, shape (3, n).
+        unsure: Sums of the last corrections of speeds over v_0, of ln T, of rebounds over their speeds, shape (3, n).
         short: Whether a contact grows beyond its track, shape (n,); its numbers are void then.
     """
 

@@ -41,7 +41,7 @@ _STALLED_SPEED = 1e-11
 # Largest change of ln T in a sweep, halved while corrections stay above a share of the last. With twice as much steps
 # overshoot, with half they are slower.
 _LONGEST_STEP, _SHORTEST_STEP, _FALLS = 0.5, 0.05, 0.8
-# Share of a shrinkage before which nothing may be free; nodes beyond are within a Newton step of the end.
+# Share of a phase before which it may not end; nodes beyond are within a Newton step of the end.
 _ENDED = 0.7
 # Most steps of the search for theta, and the size of the last, in shares of the growth: its square is rounding.
 _EDGE_STEPS, _EDGE_STEP = 40, 1e-9
@@ -164,6 +164,22 @@ class Phase:
         rise = _times(self.rule.integrals, self.speed)
         return np.asarray(self.start.depth[:, None] + self.duration[:, None] * rise)
 
+    def cut(self, ended: NDArray[np.bool_]) -> bool:
+        """Cut durations to the first node that is beyond the end of the phase; whether there are some.
+
+        The equations of the end have later solutions, at which a body turns or a force vanishes again.
+        """
+        r = self.rule
+        ended = ended & (r.share[:-1] < _ENDED)
+        share = np.where(ended.any(axis=1), r.share[ended.argmax(axis=1)], 1.0)
+        if (share == 1).all():
+            return False
+        places = share[:, None] * r.share[:-1]
+        s = 1 - (1 - places) ** (1 / r.power) if isinstance(self, Shrinkage) else places ** (1 / r.power)
+        self.speed = np.where((share < 1)[:, None], r.at(self.speed, s), self.speed)
+        self.duration = self.duration * share
+        return True
+
     def series(self) -> FloatArray:
         """Depth, speed, force over 2 E* and radius at the nodes, shape (4, n, k)."""
         k = self.speed.shape[1]
@@ -222,7 +238,13 @@ class Growth(Phase):
 
     def solve(self, until: FloatArray | None) -> None:
         """Newton's method."""
-        self.iterate(lambda _: self._system(until))
+
+        def system(done: NDArray[np.bool_] | None) -> tuple[FloatArray, FloatArray]:
+            if done is not None:
+                self.cut((self.speed < 0) & ~done[:, None])
+            return self._system(until)
+
+        self.iterate(system)
 
     def _system(self, until: FloatArray | None) -> tuple[FloatArray, FloatArray]:
         self.lengthen()
@@ -308,14 +330,7 @@ class Shrinkage(Phase):
         first = self.growth.start.stress[..., None]
         held = (first * np.exp(-self.bodies.rates[..., None] * self.ago(np.zeros_like(total))[:, None])).sum(axis=1)
         relaxes = (self.bodies.viscosity == 0) & ~found
-        free = (total < held) & (self.rule.share[:-1] < _ENDED) & relaxes[:, None]
-        cut = np.where(free.any(axis=1), self.rule.share[free.argmax(axis=1)], 1.0)
-        if (cut == 1).all():
-            return False
-        s = 1 - (1 - cut[:, None] * self.rule.share[:-1]) ** (1 / self.rule.power)
-        self.speed = np.where((cut < 1)[:, None], self.rule.at(self.speed, s), self.speed)
-        self.duration = self.duration * cut
-        return True
+        return self.cut((total < held) & relaxes[:, None])
 
     def ago(self, share: FloatArray) -> FloatArray:
         """t - theta at the nodes."""
@@ -366,12 +381,12 @@ class Shrinkage(Phase):
 
 
 def _solved(matrix: FloatArray, right: FloatArray) -> FloatArray:
-    """Solutions of linear systems, infinite where one is singular: a body that never turns."""
+    """Solutions of linear systems, nan where one is singular: a body that never turns."""
     try:
         return np.asarray(np.linalg.solve(matrix, right[..., None])[..., 0])
     except np.linalg.LinAlgError:
         if len(matrix) == 1:
-            return np.full_like(right, np.inf)
+            return np.full_like(right, np.nan)
         return np.concatenate([_solved(matrix[[i]], right[[i]]) for i in range(len(matrix))])
 
 
