@@ -131,11 +131,18 @@ class Attempt(NamedTuple):
     error: FloatArray
 
 
-def attempted(blows: Sequence[Blow], sizes: Sizes, nodes: int, excess: FloatArray) -> Attempt:
-    """Solve impacts on tracks up to radii b + excess with so many nodes per phase."""
+def attempted(blows: Sequence[Blow], sizes: Sizes, nodes: int, excess: FloatArray, *, again: bool = False) -> Attempt:
+    """Solve impacts on tracks up to radii b + excess with so many nodes per phase.
+
+    Companions begin with better guesses. `again` solves those of which only the companion converged from there.
+    """
     bodies = _bodies(blows, sizes, excess)
     answer = course(bodies, nodes, np.array([_guess(blow, sizes) for blow in blows]).T)
-    finer = course(_bodies(blows, sizes.finer, excess), round(_FINER * nodes), answer)
+    fine_bodies = _bodies(blows, sizes.finer, excess)
+    finer = course(fine_bodies, round(_FINER * nodes), answer)
+    if again:
+        answer = course(bodies, nodes, finer)
+        finer = course(fine_bodies, round(_FINER * nodes), answer)
     values, other = answer.outcomes(), finer.outcomes()
     rounding = _ROUNDINGS * EPS + np.array([track.floor for track in bodies.tracks])
     floor = np.tile(rounding, (5, 1))
@@ -216,15 +223,17 @@ def solved(
         own = [i for i in going if nodes[i] == number]
         excess = np.array([_excess(blows[i], sizes, levels[i]) for i in own])
         attempt = attempted([blows[i] for i in own], sizes, number, excess)
-        worst = attempt.error.max(axis=0)
         for place, i in enumerate(own):
             if attempt.course.short[place]:
                 levels[i] = _next_level(blows[i], sizes, levels[i])
                 continue
-            old, error = found[i], np.nan_to_num(worst[place], nan=np.inf)
+            one = attempt, place
+            if not _unsure(*one) < _CONVERGED:
+                one = attempted([blows[i]], sizes, number, excess[[place]], again=True), 0
+            old, error = found[i], np.nan_to_num(one[0].error[:, one[1]].max(), nan=np.inf)
             before = np.inf if old is None else old[0].error[:, old[1]].max()
             if old is None or error < before:
-                found[i] = attempt, place
+                found[i] = one
             nodes[i] = round(_NEXT * number)
             if error < accuracy or nodes[i] > _MOST_NODES or (before < _CONVERGED and error > before / 2):
                 going.remove(i)
