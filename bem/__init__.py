@@ -7,21 +7,20 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from bem.layer_equation.flat_punch_source import IntegralEquation
-    from bem.layer_equation.method import IntegralEquationMethod
+    from bem.direct_method import IntegralEquationMethod
+    from bem.flat_punch import IntegralEquation
     from bem.layer_equation.protocol import FlatPunchSolution, FlatPunchSource
     from bem.method import Bem
-    from bem.tables.file import TableFile
-    from bem.tables.from_grid import FftTable
+    from bem.tables import FftTable, TableFile
 
 _HOME = {
     "Bem": "bem.method",
-    "FftTable": "bem.tables.from_grid",
+    "FftTable": "bem.tables",
     "FlatPunchSolution": "bem.layer_equation.protocol",
     "FlatPunchSource": "bem.layer_equation.protocol",
     "IntegralEquation": "bem.layer_equation.flat_punch_source",
-    "IntegralEquationMethod": "bem.layer_equation.method",
-    "TableFile": "bem.tables.file",
+    "IntegralEquationMethod": "bem.direct_method",
+    "TableFile": "bem.tables",
 }
 
 __all__ = [

@@ -15,8 +15,8 @@ from typing import Any, Final
 
 from cases.declare.shared import used_by
 from contact import InvalidInput, Method
+from contact.records.errors import shown
 from contact.records.extras import missing_extra
-from contact.records.record import shown
 
 ENTRY_POINT_GROUP = "contact_verification.methods"
 
@@ -50,7 +50,7 @@ BUILT_IN: Mapping[str, TableEntry] = {
     "mdr_table": TableEntry(module="cases.declare.mdr_variants", attribute="mdr_by_fft_table"),
     "fem": TableEntry(module="fem_reference", attribute="Fem"),
     "bem": TableEntry(module="bem.method", attribute="Bem"),
-    "integral_equation": TableEntry(module="bem.layer_equation.method", attribute="IntegralEquationMethod"),
+    "integral_equation": TableEntry(module="bem.direct_method", attribute="IntegralEquationMethod"),
 }
 
 

@@ -18,11 +18,13 @@ from bem.kernels.moduli import contact_modulus
 from bem.kernels.of_contact import ContactKernel, contact_kernel, unit_of
 from bem.layer_equation.flat_punch_source import IntegralEquation
 from bem.layer_equation.protocol import FlatPunchSource
-from contact import Cone, ElasticLayer, FlatPunch, Paraboloid, PowerLaw, Profile, Scene, UnsupportedSceneError
+from contact import ElasticLayer, FlatPunch, PowerLaw, Profile, Scene, UnsupportedSceneError
 from contact.records.validation import FloatArray
+from mdr.equilibria import springs_on
 from mdr.impact.track import Track, exponent_of
+from mdr.own_units import power_law
 from mdr.profiles import tip_of
-from mdr.radius_search import LARGEST_RATIO
+from mdr.radius_search import largest_radius
 from mdr.spring_bed import Springs
 
 # Binary logarithms of the ladder's radii over the unit of length.
@@ -53,10 +55,9 @@ class Bed(NamedTuple):
     def springs(self, sizes: Sizes) -> Springs:
         """The springs."""
         if self.tabulated is not None:
-            # Tables are loaded by those who use them.
-            from mdr.impact.tabulated import TableSprings  # noqa: PLC0415
-
-            return TableSprings(self.kernel, self.unit, 0.5, tip_of(self.indenter), sizes, *self.tabulated)
+            layer, source = self.tabulated
+            springs = springs_on(layer, self.indenter, source)
+            return springs if sizes == springs.sizes else springs.finer
         return Springs(self.kernel, self.unit, 0.5, tip_of(self.indenter), sizes)
 
 
@@ -79,29 +80,16 @@ def bed_of(scene: Scene, flat_punch: FlatPunchSource) -> tuple[Bed, Units]:
     tabulated = None if layer.is_half_space or isinstance(flat_punch, IntegralEquation) else (layer, flat_punch)
     if law is None or tabulated:
         return Bed(kernel, unit, scene.indenter, tabulated), Units(1.0, 1.0, modulus)
-    coefficient, exponent = law
+    exponent = law[1]
     if exponent > _FLATTEST:
         raise UnsupportedSceneError(
             f"indenter: impacts are modelled for tips up to r^{_FLATTEST:g}, not r^{exponent:g}"
         )
-    depth = coefficient * np.float64(unit) ** exponent
+    # f(unit), since the coefficient may be beyond doubles
+    depth = float(scene.indenter.height(np.array([unit]))[0])
     if not 0 < depth < math.inf:
         raise UnsupportedSceneError(f"indenter: heights of a tip r^{exponent:g} over a thickness are beyond doubles")
     return Bed(kernel, 1.0, _unit_power(exponent)), Units(unit, float(depth), modulus * unit)
-
-
-def power_law(indenter: Profile) -> tuple[float, float] | None:
-    """C and n of f = C r^n."""
-    match indenter:
-        case Paraboloid():
-            return 0.5 / indenter.radius_of_curvature, 2.0
-        case Cone():
-            return indenter.slope, 1.0
-        case PowerLaw():
-            radius = np.float64(indenter.reference_radius)
-            with np.errstate(all="ignore"):
-                return float(indenter.reference_height / radius**indenter.exponent), indenter.exponent
-    return None
 
 
 @lru_cache(maxsize=_KEPT)
@@ -127,11 +115,11 @@ class Ladder:
 
     def _grow(self, levels: FloatArray) -> None:
         """Add levels, none beyond the profile's end, the widest contact, or where g falls."""
-        tip, kernel, unit = self.tip, self.springs.kernel, self.springs.unit
-        grown = unit * np.exp2(levels)
+        tip = self.tip
+        grown = self.springs.unit * np.exp2(levels)
         excess = grown / (1 + grown / (tip.end - tip.flat))
         end = tip.end * (1 - _NEAR_END) if tip.profile.ends_upright else tip.end
-        last = min(end, np.inf if kernel.is_uniform else LARGEST_RATIO * unit * kernel.units) - tip.flat
+        last = min(end, largest_radius(self.springs)) - tip.flat
         if excess[-1] > last * (1 - _NEAR_END) or levels[-1] == _HIGHEST:
             self.is_whole = True
             excess = np.append(excess[excess < last * (1 - _NEAR_END)], min(last, excess[-1]))

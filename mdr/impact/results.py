@@ -15,10 +15,11 @@ from bem.numerics import EPS
 from contact import Impact, InvalidInput, NotConvergedError, Scene, UnsupportedSceneError
 from contact.records.validation import FloatArray
 from contact.stated import stated_error
-from mdr.impact.beds import Bed, Units, bed_of, ladder_of, power_law, track_of
+from mdr.impact.beds import Bed, Units, bed_of, ladder_of, track_of
 from mdr.impact.course import Course, course
 from mdr.impact.motion import Bodies
 from mdr.impact.track import exponent_of
+from mdr.own_units import power_law
 from mdr.radius_search import SeveralContacts, refuse_too_wide
 
 # Share of the instantaneous modulus to which a layer is expected to relax on the way in. Softer ones may need a second

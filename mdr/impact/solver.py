@@ -19,11 +19,10 @@ from contact.answer.small_strains import refuse_deep
 from contact.answer.solution import Setting
 from mdr.admissible import refuse_pulling, refuse_touching_outside
 from mdr.contact_surface import surface_of
-from mdr.equilibria import is_simple, is_singular, sizes_of
+from mdr.equilibria import is_simple, is_singular, sizes_of, springs_on
 from mdr.impact.history import history
 from mdr.impact.results import OUTCOMES, Blow, ImpactResults, blow_of, in_si, solved, time_power
 from mdr.radius_search import RadiusSearch
-from mdr.spring_bed import Springs
 
 # Accuracies that may be asked for: a coarser one is no impact any more, a finer one is below rounding.
 _LEAST_ACCURACY, _BEST_ACCURACY, _DEFAULT_ACCURACY = 1e-4, 1e-13, 1e-9
@@ -54,7 +53,7 @@ def solve_impact(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[st
         blow, sizes = blow_of(scene, flat_punch), _sizes(flat_punch)
     with log.stage("impact"):
         attempt, _ = solved([blow], sizes, accuracy)[0]
-    _refuse_inadmissible(scene, sizes, in_si(blow, attempt, 0)[4])
+    _refuse_inadmissible(scene, flat_punch, in_si(blow, attempt, 0)[4])
     return history(blow, attempt, log, known)
 
 
@@ -88,7 +87,7 @@ def impact_batch(
             for i, (attempt, place) in zip(chunk, found, strict=True):
                 values[:, i], errors[:, i] = in_si(blows[i], attempt, place), attempt.error[:, place]
                 refuse_deep(scenes[i], values[3, i])
-                _refuse_inadmissible(scenes[i], sizes, values[4, i])
+                _refuse_inadmissible(scenes[i], flat_punch, values[4, i])
             done += len(chunk)
             if progress is not None:
                 progress(done, len(blows))
@@ -115,7 +114,7 @@ def _kind(blow: Blow, sizes: Sizes) -> tuple[bool, int, int, bool]:
     return isinstance(blow.bed.indenter, FlatPunch), time_power(blow, sizes), blow.rates.size, blow.viscosity == 0
 
 
-def _refuse_inadmissible(scene: Scene, sizes: Sizes, radius: float) -> None:
+def _refuse_inadmissible(scene: Scene, flat_punch: FlatPunchSource, radius: float) -> None:
     """Refuse motions up to a radius [m] during which a contact pulls inside, or the widest one is touched outside.
 
     Raises:
@@ -125,7 +124,7 @@ def _refuse_inadmissible(scene: Scene, sizes: Sizes, radius: float) -> None:
     is_punch = isinstance(indenter, FlatPunch)
     if is_simple(scene) or (radius <= flat and not is_punch):
         return
-    springs = Springs.of(scene.layer, indenter, sizes)
+    springs = springs_on(scene.layer, indenter, flat_punch)
     if not is_punch:
         RadiusSearch(springs, may_fall=True).refuse_falls(radius)
     shares = np.arange(_CONTACTS, 0, -1) / _CONTACTS

@@ -4,18 +4,18 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from bem.layer_equation.any_layer.graded_one_radius import GradedDirectDensity
+from bem.layer_equation.any_layer.logarithmic_rule import logarithmic_weights
+from bem.layer_equation.any_layer.split_kernel import SplitKernel
 from scipy.integrate import quad
 
+from bem.direct_method import IntegralEquationMethod
 from bem.kernels.of_layer import surface_kernel
 from bem.layer_equation.any_layer import graded_one_radius
 from bem.layer_equation.any_layer import relative_panels as panels_module
 from bem.layer_equation.any_layer.edge_systems import EdgeSystems
-from bem.layer_equation.any_layer.graded_one_radius import GradedDirectDensity
-from bem.layer_equation.any_layer.logarithmic_rule import logarithmic_weights
 from bem.layer_equation.any_layer.point_kernel import PointKernel
 from bem.layer_equation.any_layer.relative_panels import RelativePanels, relative_panels
-from bem.layer_equation.any_layer.split_kernel import SplitKernel
-from bem.layer_equation.method import IntegralEquationMethod
 from bem.polynomials.gauss_panels import gauss_nodes
 from contact import (
     Cone,

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from bem import Bem
-from bem.layer_equation.method import IntegralEquationMethod
+from bem.direct_method import IntegralEquationMethod
 from contact import ContactPath, IndentationDepths, InvalidInput, Layer, NormalForces, Paraboloid, Scene
 from fem_reference import Fem
 from mdr import Mdr

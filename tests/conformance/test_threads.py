@@ -12,8 +12,8 @@ import pytest
 import scipy.linalg  # noqa: F401 - its BLAS is one of the two that are watched
 from threadpoolctl import threadpool_info, threadpool_limits
 
-from bem.layer_equation.flat_punch_source import IntegralEquation
-from bem.layer_equation.method import IntegralEquationMethod
+from bem.direct_method import IntegralEquationMethod
+from bem.flat_punch import IntegralEquation
 from bem.method import Bem
 from cases.run.empty_caches import forget
 from contact import ContactRadii, IndentationDepths, Layer, Paraboloid, Scene, TruncatedCone

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from bem.layer_equation.flat_punch_source import IntegralEquation
-from bem.layer_equation.method import IntegralEquationMethod
+from bem.direct_method import IntegralEquationMethod
+from bem.flat_punch import IntegralEquation
 from contact import (
     ContactPath,
     ContactRadii,

@@ -1,7 +1,7 @@
 """A second answer to elastic and adhesive contacts of given radius, for campaigns over thousands of scenes.
 
-It is the direct integral equation (`bem.layer_equation.one_radius`) on more nodes than its method takes: one dense
-linear system for each contact radius. It shares the layer's kernel with MDR and nothing else; the kernel is checked
+It is the direct integral equation (`bem.direct`) on more nodes than its method takes: one dense linear system for each
+contact radius. It shares the layer's kernel with MDR and nothing else; the kernel is checked
 against 40 digits and by finite elements.
 """
 
@@ -11,9 +11,9 @@ from typing import Final
 
 import numpy as np
 
+from bem.direct import Density, Kernel, Sizes
+from bem.direct_method import LARGEST_RATIO
 from bem.kernels.layer import compliance_kernel
-from bem.layer_equation import method
-from bem.layer_equation.one_radius import DirectDensity
 from contact import (
     Adhesion,
     ContactPath,
@@ -29,14 +29,10 @@ from contact.records.validation import FloatArray
 
 # Ratio a/h up to which one radius takes a tenth of a second; for campaigns that have to be cheap.
 CHEAP_RATIO: Final = 25.0
-# Largest ratio a/h of the direct solver: one radius takes three seconds there.
-LARGEST_RATIO: Final = method.LARGEST_RATIO
 QUANTITIES: Final = ("contact_radius", "indentation_depth", "normal_force", "contact_stiffness")
 
-# Pieces one thickness wide with 20 nodes: the density's smooth part is analytic within two thicknesses of the real
-# axis, where 20 nodes leave 8.1^-20.
-_PIECE: Final = 1.0
-_NODES: Final = 20
+# More nodes and wave numbers than the method takes.
+_SIZES: Final = Sizes(nodes=20, waves=46, reach=24.0, slopes=18)
 # Share of a - b over which derivatives are taken; they only scale tiny corrections of the radius.
 _STEP: Final = 1e-4
 _EPS: Final = float(np.finfo(float).eps)
@@ -100,16 +96,23 @@ def adhesive_states(scene: Scene, radii: FloatArray) -> SecondOpinion:
     return SecondOpinion(values=values, uncertainty=_roundings(scene, radii))
 
 
-def direct_density(layer: Layer, indenter: Profile, excess: float) -> DirectDensity:
-    """The referee's densities at a - b [m].
+def direct_density(layer: Layer, indenter: Profile, a: float) -> Density:
+    """The solution for one contact radius [m].
 
     Raises:
         InvalidInput: If a/h is beyond `LARGEST_RATIO`.
     """
-    ratio = (indenter.flat_radius + excess) / layer.thickness
+    ratio = a / layer.thickness
     if ratio > LARGEST_RATIO:
         raise InvalidInput(f"a/h = {ratio:g}: the second opinion covers ratios up to {LARGEST_RATIO:g}")
-    return DirectDensity.solve(layer, indenter, excess, _PIECE, _NODES)
+    return Density(Kernel(layer, _SIZES), indenter, a)
+
+
+def pressure_of(layer: Layer, indenter: Profile, a: float, depth: float | None, radius: FloatArray) -> FloatArray:
+    """p [Pa] at radii r < a [m]; the depth [m] of a flat punch, None where phi(a) = 0 defines it."""
+    density = direct_density(layer, indenter, a)
+    p = density.pressure(radius, density.depth if depth is None else depth, is_singular=depth is not None)
+    return np.asarray(layer.contact_modulus / math.pi * p)
 
 
 def smallest_eigenvalue(layer: Layer, a: float) -> float:
@@ -142,14 +145,10 @@ def _row(scene: Scene, given: float, a: float) -> tuple[float, float, float, flo
 
 def _state(scene: Scene, a: float) -> _State:
     """Depth, force and stiffness at a contact radius a [m]."""
-    density = direct_density(scene.layer, scene.indenter, a - scene.indenter.flat_radius)
-    depth, unit, modulus = density.depth, density.unit, scene.layer.contact_modulus
-    return _State(
-        depth=depth * unit,
-        force=modulus * unit**2 * density.force(depth),
-        stiffness=modulus * unit * density.stiffness,
-        edge=float(density.edge_values[0]),
-    )
+    density = direct_density(scene.layer, scene.indenter, a)
+    stiffness, lacking = 2 * scene.layer.contact_modulus * density.integrals
+    force = float(density.depth * stiffness - lacking)
+    return _State(depth=density.depth, force=force, stiffness=float(stiffness), edge=float(density.edge[0]))
 
 
 def _roundings(scene: Scene, radii: FloatArray) -> FloatArray:

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from bem.layer_equation.one_radius import half_space_load
+from bem.direct import Sizes, transform
+from bem.direct_method import LARGEST_RATIO
 from contact import (
     Adhesion,
     Cone,
@@ -30,7 +31,7 @@ from contact import (
     TruncatedParaboloid,
 )
 from mdr import Mdr
-from tests.referees.second_opinion import LARGEST_RATIO, QUANTITIES, adhesive_states, second_opinion
+from tests.referees.second_opinion import QUANTITIES, adhesive_states, second_opinion
 
 # Relative; digits to which the tables print k_bar, solved elsewhere by radius-by-radius collocation
 STIFFNESS = {
@@ -110,7 +111,7 @@ def test_the_load_is_the_integral_of_the_slope(indenter, x):
         return float(indenter.slope_at(x * math.sin(angle)))
 
     pieces = [quad(slope, low, high, epsabs=1e-13, epsrel=1e-13)[0] for low, high in pairwise(ends)]
-    assert float(half_space_load(indenter, np.array([x - indenter.flat_radius]))[0]) == pytest.approx(
+    assert float(transform(indenter, np.array([x - indenter.flat_radius]), Sizes().slopes)[0]) == pytest.approx(
         x * sum(pieces), rel=1e-11, abs=0.0
     )
 
@@ -124,7 +125,7 @@ def test_narrow_pieces_of_a_table_lose_no_digits(x):
     nodes, weights = np.polynomial.legendre.leggauss(8)
     angles = ends[:-1, None] + np.diff(ends)[:, None] * (1 + nodes) / 2
     expected = x * float(np.diff(ends) / 2 @ table.slope_at(x * np.sin(angles)) @ weights)
-    assert float(half_space_load(table, np.array([x]))[0]) == pytest.approx(expected, rel=5e-15, abs=0.0)
+    assert float(transform(table, np.array([x]), Sizes().slopes)[0]) == pytest.approx(expected, rel=5e-15, abs=0.0)
 
 
 def test_beyond_its_reach_it_says_so():

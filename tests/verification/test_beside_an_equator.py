@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from bem import Bem
-from bem.layer_equation.method import IntegralEquationMethod
+from bem.direct_method import IntegralEquationMethod
 from cases.declare.methods import build
 from contact import (
     ContactPath,

@@ -4,7 +4,7 @@ from functools import cache
 
 import numpy as np
 
-from bem.layer_equation.method import IntegralEquationMethod
+from bem.direct_method import IntegralEquationMethod
 from contact import FlatPunch, IndentationDepths, Layer, Scene
 from fem_reference.discrete_layer.elements import PAIRS
 from fem_reference.discrete_layer.grading import Grading

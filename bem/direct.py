@@ -1,0 +1,329 @@
+"""The equation of one contact solved for its profile, point by point: a second route beside `bem.equation`.
+
+The pressure's Abel density phi on [0, a] obeys
+
+    phi(x) - int_0^a L(x, t) phi(t) dt = depth - g_hs(x),    L(x, t) = (2/pi) int_0^inf (1 - chi) cos kx cos kt dk,
+    g_hs(x) = x int_0^(pi/2) f'(x cos u) du                  transform of the profile for the half-space, Eq. (8)
+    phi(a) = 0: depth of the contact,   F = 2 E* int phi dt,   k_N = 2 E* int phi_1 dt, phi_1 for the right side 1
+
+Nystroem's method: phi at Gauss nodes of panels between the breaks b of the profile. On them t = b + s^2, which makes
+the root of g_hs at a break smooth. Only 1 - chi is shared with the method of dimensionality reduction.
+
+On graded layers 1 - chi = sum_j d_j y^j + rest, y = B/sqrt(k^2 + B^2): the sum is a kernel in closed form with a
+logarithm at x = t, and the rest falls so fast that it needs few wave numbers, like 1 - chi of uniform layers.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from itertools import pairwise
+from math import gamma, inf, pi, sqrt
+from typing import NamedTuple
+
+import numpy as np
+from numpy.polynomial.legendre import legder, legval, legvander
+from scipy.special import k0, k1
+
+from bem.kernels.of_contact import contact_kernel
+from bem.numerics import gauss, graded, panels
+from contact import ElasticLayer, PowerLaw, Profile, Sphere, Spheroconical
+from contact.records.validation import FloatArray
+
+# Largest phase of a cosine on a panel of wave numbers: 40 Gauss nodes integrate it to the last digit.
+_PHASE = 48.0
+# Wave numbers that are summed at a time: memory only.
+_CHUNK = 4000
+# Share of the contact radius below which the pressure is that of this radius. Half of it doubles roundings there.
+_AXIS = 1e-8
+# Share of the contact radius on which the first panel under a power law r^n ends: 0.02 leaves 1e-13 for n = 1.07.
+_TIP = 0.02
+# B times the thickness. Half or twice of it leave a hundred times more.
+_DECAY = 10.0
+# Largest wave number of a graded layer over that of a uniform one: at least, over the depth of the first break of its
+# constants, and at most. With half of them the rest is ten times larger.
+_GRADED, _BREAK, _MOST = 1.5, 0.3, 8.0
+# Largest panel of a graded layer over the depth of the first break: with twice of it panels do not resolve the rest.
+_LONGEST = 4.0
+
+
+class Sizes(NamedTuple):
+    """All sizes of the discretisation; the stated error is the change from one set of sizes to a finer one.
+
+    Attributes:
+        nodes: Gauss nodes per panel.
+        width: Largest panel over the thickness (the contact radius on the half-space).
+        waves: Gauss nodes per panel of wave numbers.
+        reach: Largest wave number times the thickness.
+        slopes: Gauss nodes per panel of the profile's transform and of the Abel integrals.
+        terms: Number of d_j of a graded layer.
+        corner: Last panel towards kinks and edge of a graded layer, over the stretch or the largest panel.
+        search: Tolerance of ln(a - b) in searches of the radius.
+    """
+
+    nodes: int = 16
+    width: float = 0.75
+    waves: int = 40
+    reach: float = 21.0
+    slopes: int = 14
+    terms: int = 8
+    corner: float = 2e-4
+    search: float = 1e-13
+
+    @property
+    def finer(self) -> Sizes:
+        """The companion that states errors."""
+        return Sizes(
+            self.nodes + 4,
+            0.8 * self.width,
+            self.waves + 6,
+            self.reach + 3,
+            self.slopes + 4,
+            self.terms + 1,
+            self.corner / 4,
+            self.search,
+        )
+
+
+class Kernel:
+    """1 - chi of a layer at wave numbers k [1/m], split into a rest that falls fast and, on graded layers, a tail."""
+
+    def __init__(self, layer: ElasticLayer, sizes: Sizes) -> None:
+        self.layer, self.sizes, self.thickness = layer, sizes, layer.surface.thickness
+        self.is_uniform, self.is_graded = layer.is_half_space, contact_kernel(layer).is_graded
+        self.reach, self.decay, self.d = sizes.reach / self.thickness, _DECAY / self.thickness, np.zeros(1)
+        self.width = sizes.width * self.thickness
+        if self.is_graded:
+            first = min(getattr(layer, "breakpoints", ()), default=inf) / self.thickness
+            self.width *= min(1.0, _LONGEST * first)
+            self.reach *= min(max(_GRADED, _BREAK / first), _MOST)
+            y = self.decay / np.hypot(self.reach, self.decay) * np.sin(pi / 2 * np.linspace(0.04, 1.0, 3 * sizes.terms))
+            values = self.one_minus_chi(self.decay * np.sqrt(1 / y**2 - 1))
+            self.d = np.linalg.lstsq(y[:, None] ** np.arange(sizes.terms), values / y, rcond=None)[0]
+
+    def one_minus_chi(self, k: FloatArray) -> FloatArray:
+        """1 - chi: all that is used of the other method."""
+        kernel = contact_kernel(self.layer)
+        return kernel.one_minus_chi(k * self.thickness / kernel.units)
+
+    def waves(self, distance: float) -> tuple[FloatArray, FloatArray]:
+        """Nodes k and weights times (2/pi) (1 - chi) without the tail, for phases up to k times a distance [m]."""
+        if self.is_uniform:
+            return np.zeros(0), np.zeros(0)
+        count = int(np.ceil(self.reach * max(distance / _PHASE, self.thickness / 2)))
+        halvings = 4 + int(np.ceil(np.log2(contact_kernel(self.layer).longest)))
+        even = self.reach / count * np.arange(1, count + 1)
+        k, w = panels(np.concatenate([[0.0], even[0] * 0.5 ** np.arange(halvings, 0, -1), even]), self.sizes.waves)
+        y = self.decay / np.hypot(k, self.decay)
+        return k, 2 / pi * w * (self.one_minus_chi(k) - y * np.polynomial.polynomial.polyval(y, self.d))
+
+    def tail(self, s: FloatArray) -> FloatArray:
+        """(1/pi) int_0^inf sum_j d_j y^j cos ks dk = (B/sqrt(pi)) sum_j d_j (z/2)^v K_v(z)/Gamma(j/2).
+
+        z = B s, v = (j - 1)/2; K_v for v = 0, 1/2, 1, 3/2, the others by their recurrence.
+        """
+        z = self.decay * np.maximum(s, 1e-300)
+        root = np.sqrt(pi) / 2 * np.exp(-z)
+        parts = [k0(z), root, z / 2 * k1(z), root * (1 + z) / 2]
+        while len(parts) < self.d.size:
+            parts.append(z * z / 4 * parts[-4] + (len(parts) / 2 - 1) * parts[-2])
+        terms = (d * part / gamma((j + 1) / 2) for j, (d, part) in enumerate(zip(self.d, parts, strict=True)))
+        return np.asarray(self.decay / np.sqrt(pi) * sum(terms))
+
+
+class Panels(NamedTuple):
+    """Panels on which t = start + s^2, low < s < high.
+
+    Attributes:
+        start: b [m], shape (p,).
+        low: Shape (p,).
+        high: Shape (p,).
+        nodes: Gauss nodes per panel.
+    """
+
+    start: FloatArray
+    low: FloatArray
+    high: FloatArray
+    nodes: int
+
+    @property
+    def rule(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """s, t and weights of dt at the nodes, shape (p nodes,)."""
+        x, w = gauss(self.nodes)
+        span = (self.high - self.low)[:, None]
+        s = self.low[:, None] + span * x
+        return s.ravel(), (self.start[:, None] + s * s).ravel(), (2 * s * span * w).ravel()
+
+    def series(self, values: FloatArray) -> FloatArray:
+        """Legendre coefficients on each panel of values at the nodes, shape (nodes, p)."""
+        return np.asarray(_to_series(self.nodes) @ values.reshape(-1, self.nodes).T)
+
+    def place(self, t: FloatArray, p: int) -> tuple[FloatArray, FloatArray]:
+        """s of the point of one panel closest to t, and the distance of t from the panel."""
+        low, high = (self.start[p] + end**2 for end in (self.low[p], self.high[p]))
+        s = np.clip(np.sqrt(np.maximum(t - self.start[p], 0)), self.low[p], self.high[p])
+        return s, np.maximum(0, np.maximum(low - t, t - high))
+
+    def abel(self, series: FloatArray, r: FloatArray, count: int, *, beyond: bool) -> FloatArray:
+        """int g(s)/sqrt(|t^2 - r^2|) ds over t > r, or over t < r, of a series g; panels shrink towards r."""
+        total, (v, w) = np.zeros_like(r), _one_sided(count)
+        for p, (start, low, high) in enumerate(zip(*self[:3], strict=True)):
+            i = np.flatnonzero(r < start + high**2 if beyond else r > start + low**2)
+            here, gap = (part[:, None] for part in self.place(r[i], p))
+            length = (high if beyond else low) - here
+            step = length * v
+            gap = gap + np.abs(step * (2 * here + step))
+            root = np.sqrt(gap * (2 * r[i, None] + (gap if beyond else -gap)))
+            total[i] += (legval(2 * (here + step - low) / (high - low) - 1, series[:, p]) / root * np.abs(length)) @ w
+        return total
+
+
+@lru_cache(maxsize=64)
+def _to_series(nodes: int) -> FloatArray:
+    """Legendre coefficients from values at the Gauss nodes."""
+    x, w = gauss(nodes)
+    return np.asarray((2 * np.arange(nodes)[:, None] + 1) * (legvander(2 * x - 1, nodes - 1) * w[:, None]).T)
+
+
+@lru_cache(maxsize=64)
+def _one_sided(count: int) -> tuple[FloatArray, FloatArray]:
+    """Composite rule on [0, 1], v = u^2 on panels that shrink towards 0."""
+    u, w = panels(np.concatenate([[0.0], 0.15 ** np.arange(8.0)[::-1]]), count)
+    return u * u, 2 * u * w
+
+
+def transform(profile: Profile, excess: FloatArray, count: int) -> FloatArray:
+    """g_hs [m] at x = b + excess > 0 [m], b the flat radius, shape (n,).
+
+    Stretches between breaks have panels that shrink towards their ends, but for those that begin smoothly.
+    """
+    total, flat, end = np.zeros_like(excess), profile.flat_radius, float(excess.max())
+    inner = (b - flat for b in profile.breakpoints if 0 < b - flat < end)
+    for low, high in pairwise([0.0, *inner, end]):
+        x = excess[excess > low, None]
+        far, near = (np.sqrt(np.maximum((x - e) * (x + e + 2 * flat), 0)) for e in (low, high))
+        narrow = np.arctan2(near, flat + high)
+        span = np.arctan2(far, flat + low) - narrow
+        v, w = gauss(count + 10) if low > 0 and flat + low not in profile.kinks else graded(count)
+        radius = np.clip((flat + x) * np.cos(narrow + span * v), flat + low, np.nextafter(flat + high, 0))
+        total[excess > low] += span[:, 0] * (profile.slope_at(radius) @ w)
+    return (flat + excess) * total
+
+
+def panels_of(profile: Profile, a: float, kernel: Kernel) -> Panels:
+    """Panels of the contact of radius a [m], short against the distance of s from singularities of phi."""
+    width = kernel.sizes.width * a if kernel.is_uniform else kernel.width
+    pole = profile.radius if isinstance(profile, Sphere | Spheroconical) else inf
+    ends = np.unique([0.0, *(b for b in (profile.flat_radius, *profile.breakpoints) if b < a), a]).tolist()
+    found = []
+    for i, (start, stop) in enumerate(pairwise(ends)):
+        gap = min(start - ends[i - 1], abs(pole - start)) if i else _TIP * a if isinstance(profile, PowerLaw) else inf
+        corner = stop if kernel.is_graded and (stop == a or stop in profile.kinks) else inf
+        upright, shortest = pole if pole > stop else inf, kernel.sizes.corner * min(width, stop - start)
+        low, high = 0.0, sqrt(stop - start)
+        while low < high:
+            t = start + low**2
+            longest = min(width, max((corner - t) / 2, shortest), (upright - t) / 3)
+            end = min(low + sqrt((low**2 + gap) / 2), sqrt(low**2 + longest))
+            found.append((start, low, end if end < high * (1 - 1e-9) else high))
+            low = found[-1][-1]
+    starts, lows, highs = np.array(found).T
+    return Panels(starts, lows, highs, kernel.sizes.nodes)
+
+
+class Density:
+    """Solution for one contact radius; columns of arrays belong to the right-hand sides 1 and g_hs.
+
+    Args:
+        kernel: Of the layer.
+        profile: The indenter.
+        a: Contact radius [m].
+    """
+
+    def __init__(self, kernel: Kernel, profile: Profile, a: float) -> None:
+        self.kernel, self.profile, self.a = kernel, profile, a
+        self.panels = panels_of(profile, a, kernel)
+        self.s, self.t, self.w = self.panels.rule
+        # Beyond a flat end g_hs needs the digits of t - b.
+        self.load = self._load(np.repeat(self.panels.start - profile.flat_radius, kernel.sizes.nodes) + self.s**2)
+        self.phi = self._solved()
+        self.integrals = self.w @ self.phi
+        self.edge = (self._load(np.array([a - profile.flat_radius])) + self.psi(np.array([a])))[0]
+
+    def _load(self, excess: FloatArray) -> FloatArray:
+        return np.column_stack([np.ones(excess.size), transform(self.profile, excess, self.kernel.sizes.slopes)])
+
+    def _solved(self) -> FloatArray:
+        """phi at the nodes: by a matrix of nodes or, where these are fewer, of wave numbers.
+
+        (1 - P Q)^-1 = 1 + P (1 - Q P)^-1 Q, P of nodes times wave numbers.
+        """
+        k, weight = self.kernel.waves(2 * self.a)
+        Q = np.cos(np.multiply.outer(k, self.t)) * self.w
+        P = (Q / self.w).T * weight
+        if k.size < self.t.size and not self.kernel.is_graded:
+            return np.asarray(self.load + P @ np.linalg.solve(np.eye(k.size) - Q @ P, Q @ self.load))
+        return np.asarray(np.linalg.solve(np.eye(self.t.size) - P @ Q - self._tail(self.t), self.load))
+
+    def psi(self, x: FloatArray) -> FloatArray:
+        """int_0^a L(x, t) phi(t) dt at x >= 0 [m], also outside the contact, shape (x.size, 2)."""
+        k, weight = self.kernel.waves(self.a + float(x.max()))
+        total = self._tail(x) @ self.phi
+        for i in range(0, k.size, _CHUNK):
+            some = k[i : i + _CHUNK]
+            spectrum = np.cos(np.multiply.outer(some, self.t)) @ (self.w[:, None] * self.phi)
+            total += np.cos(np.multiply.outer(x, some)) @ (weight[i : i + _CHUNK, None] * spectrum)
+        return total
+
+    def _tail(self, x: FloatArray) -> FloatArray:
+        """The tail's part of int L(x, t) phi(t) dt as weights of phi at the nodes, shape (x.size, nodes).
+
+        Where x or -x is closer to a panel than it is long, the kernel is integrated by panels that shrink towards it.
+        """
+        rows, grid, (v, u) = np.zeros((x.size, self.t.size)), self.panels, _one_sided(self.kernel.sizes.slopes)
+        if not self.kernel.is_graded:
+            return rows
+        for target in (x, -x):
+            part = self.kernel.tail(np.abs(target[:, None] - self.t)) * self.w
+            for p, (start, low, high) in enumerate(zip(*grid[:3], strict=True)):
+                here, gap = grid.place(target, p)
+                near = np.flatnonzero(gap < high**2 - low**2)
+                middle = here[near, None]
+                s = np.concatenate([middle + (low - middle) * v, middle + (high - middle) * v], axis=1)
+                weight = np.concatenate([(middle - low) * u, (high - middle) * u], axis=1)
+                weight *= 2 * s * self.kernel.tail(np.abs(target[near, None] - start - s * s))
+                table = legvander(2 * (s - low) / (high - low) - 1, grid.nodes - 1)
+                rule = np.einsum("ij,ijl->il", weight, table) @ _to_series(grid.nodes)
+                part[near, p * grid.nodes : (p + 1) * grid.nodes] = rule
+            rows += part
+        return rows
+
+    @property
+    def depth(self) -> float:
+        """Depth [m] at which phi(a) = 0."""
+        return float(self.edge[1] / self.edge[0])
+
+    def slope(self, depth: float) -> FloatArray:
+        """d phi/ds on each panel as Legendre series."""
+        series = legder(self.panels.series(self.phi @ [depth, -1.0]))
+        return np.asarray(2 * series / (self.panels.high - self.panels.low))
+
+    def pressure(self, r: FloatArray, depth: float, *, is_singular: bool) -> FloatArray:
+        """pi p(r)/E* = phi(a)/sqrt(a^2 - r^2) - int_r^a phi'(t)/sqrt(t^2 - r^2) dt at r < a [m], Eq. (9)."""
+        edge = self.edge @ [depth, -1.0] if is_singular else 0.0
+        smooth = self.panels.abel(
+            self.slope(depth), np.maximum(r, _AXIS * self.a), self.kernel.sizes.slopes, beyond=True
+        )
+        return np.asarray(edge / np.sqrt((self.a - r) * (self.a + r)) - smooth)
+
+    def displacement(self, r: FloatArray, depth: float) -> FloatArray:
+        """w(r) = (2/pi) int_0^r W(t)/sqrt(r^2 - t^2) dt at r > a [m], W = depth - g_hs inside, -psi outside."""
+        grid, count, under = self.panels, self.kernel.sizes.slopes, np.array([depth, -1.0])
+        total = grid.abel(grid.series(2 * self.s * (self.load @ under)), r, count, beyond=False)
+        if not self.kernel.is_uniform:
+            step, ends = sqrt(self.kernel.width), [0.0]
+            while self.a + ends[-1] ** 2 < r.max():
+                ends.append(ends[-1] + max(step - ends[-1] / 2, ends[-1] / 2))
+            grid = Panels(np.full(len(ends) - 1, self.a), np.array(ends[:-1]), np.array(ends[1:]), grid.nodes)
+            s, t, _ = grid.rule
+            total -= grid.abel(grid.series(2 * s * (self.psi(t) @ under)), r, count, beyond=False)
+        return np.asarray(2 / pi * total)
