@@ -8,20 +8,19 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from bem.direct_method import IntegralEquationMethod
-    from bem.layer_equation.flat_punch_source import IntegralEquation
+    from bem.flat_punch import IntegralEquation
     from bem.layer_equation.protocol import FlatPunchSolution, FlatPunchSource
     from bem.method import Bem
-    from bem.tables.file import TableFile
-    from bem.tables.from_grid import FftTable
+    from bem.tables import FftTable, TableFile
 
 _HOME = {
     "Bem": "bem.method",
-    "FftTable": "bem.tables.from_grid",
+    "FftTable": "bem.tables",
     "FlatPunchSolution": "bem.layer_equation.protocol",
     "FlatPunchSource": "bem.layer_equation.protocol",
     "IntegralEquation": "bem.layer_equation.flat_punch_source",
     "IntegralEquationMethod": "bem.direct_method",
-    "TableFile": "bem.tables.file",
+    "TableFile": "bem.tables",
 }
 
 __all__ = [

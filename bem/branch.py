@@ -132,7 +132,8 @@ class Branch:
     def _samples(self) -> tuple[FloatArray, FloatArray]:
         """Radii [m], from zero on, and depth and force there."""
         ends = [0.0, *sorted(b for b in set(self.breaks) if 0.0 < b < self.end), self.end]
-        way = np.append(0.0, np.geomspace(NEAREST, 1.0, SAMPLES))
+        # The last but one shows whether q turns just before a break or the end.
+        way = np.concatenate([[0.0], np.geomspace(NEAREST, 1.0, SAMPLES), [1.0 - ASIDE]])
         radius = np.unique(np.concatenate([low + (high - low) * way for low, high in pairwise(ends)] + [ends]))
         radius = radius[radius <= self.end]
         return radius, np.concatenate([np.zeros((2, 1)), self.values(radius[1:])], axis=1)

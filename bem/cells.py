@@ -16,51 +16,40 @@ thickness. At each depth all cells of the rim beyond tau_c let go and the pressu
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from math import log, pi, sqrt
-from typing import Final, NamedTuple
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 
 from bem.branch import DEPTH, FORCE
 from bem.grid.adhering import NODES, AdheringIndenter, adhesive_length, largest_radius
 from bem.grid.discs import disc_of, refuse_unresolved
-from bem.grid.operators import grid_operator, pressed
+from bem.grid.operators import GridOperator, grid_operator, pressed
 from bem.grid.pressed import FIRST_CELLS, Pressing
 from bem.kernels.moduli import contact_modulus
-from contact import (
-    ContactPath,
-    CriticalPoint,
-    Detachment,
-    DetachmentPath,
-    FlatPunch,
-    Scene,
-    StageLog,
-)
-from contact.answer.solution import Setting
+from contact import ContactPath, CriticalPoint, Detachment, DetachmentPath, FlatPunch, Scene, StageLog
 from contact.records.validation import BoolArray, FloatArray
+from contact.stated import stated_error
 
 # kappa, derived above.
 CELL_ENERGY: Final = 2.0 / (3.0 * pi) * (1.0 - sqrt(2.0) + 1.5 * log((sqrt(2.0) + 1.0) / (sqrt(2.0) - 1.0)))
-# Radius at the start of a detachment over that of the least force.
+# Radius at the start of a detachment over that of the least force; half the excess misses the fold on 48 cells.
 AHEAD: Final = 1.2
 # Radius of the grid's disc over that of the largest contact, which may be a little wider on the cells.
 ROOM: Final = 1.05
-# Depth steps per critical elongation, and the part of it to which the depth of pull-off is found.
+# Depth steps per critical elongation, and the part of it to which the depth of pull-off is found. Half as many steps
+# move pull-off forces by 0.1 %.
 STEPS: Final = 40
 FOLD: Final = 2e-3
-# A contact that shrinks below this part of its radius at one depth is past the fold, below `LOST` it has let go.
+# A contact that shrinks below this part of its radius at one depth step is past the fold; 0.5 finds the same ones.
 COLLAPSE: Final = 0.7
-LOST: Final = 0.1
-# A path under force control ends when its tension has fallen to this part of its largest.
-PAST_LEAST_FORCE: Final = 0.85
 # Largest error of the displacement under the contact; ten times it moves pull-off forces by 0.3 %.
 TOLERANCE: Final = 1e-3
-# Times the difference to half as many cells, which is of about first order, and cells by which the rim may lag.
-SAFETY: Final = 2.0
+# Cells by which the rim may lag: the floor of stated errors, over the contact radius.
 LAG: Final = 2.0
+NAMES: Final = ("contact_radius", "indentation_depth", "normal_force", "contact_stiffness")
 
 
 class CellState(NamedTuple):
@@ -98,26 +87,29 @@ class CellGrid:
         return sqrt(adhesive_length(self.scene) / (CELL_ENERGY * self.size))
 
     @cached_property
-    def _solve(self) -> Callable[[BoolArray, FloatArray | float, FloatArray | None], FloatArray]:
-        operator = grid_operator(self.scene.layer, self.size, self.cells, threads=self.threads)
-        return lambda contact, target, start: pressed(operator, contact, target, TOLERANCE, start)
+    def _operator(self) -> GridOperator:
+        return grid_operator(self.scene.layer, self.size, self.cells, threads=self.threads)
+
+    def _solve(self, contact: BoolArray, target: FloatArray | float, start: FloatArray | None = None) -> FloatArray:
+        return pressed(self._operator, contact, target, TOLERANCE, start)
 
     @cached_property
     def height(self) -> FloatArray:
         """f in cell sizes."""
-        indenter = self.scene.indenter
-        return np.asarray(
-            indenter.height(np.minimum(self.radius * disc_of(self.cells).centres, indenter.max_radius)) / self.size
-        )
+        within = np.minimum(self.radius * disc_of(self.cells).centres, self.scene.indenter.max_radius)
+        return np.asarray(self.scene.indenter.height(within) / self.size)
+
+    @cached_property
+    def _flat(self) -> FloatArray:
+        return self._solve(disc_of(self.cells).contact, 1.0)
 
     @cached_property
     def first(self) -> CellState:
         """The whole disc, at the depth at which its first cell lets go: p is linear in the depth, cell by cell."""
         contact = disc_of(self.cells).contact
-        flat, risen = (self._solve(contact, target, None) for target in (1.0, self.height))
-        rim = _rim(contact)
-        depth = float(np.max((risen[rim] - self.strength) / flat[rim]))
-        return CellState(contact, depth * flat - risen, depth)
+        rim, risen = _rim(contact), self._solve(contact, self.height)
+        depth = float(np.max((risen[rim] - self.strength) / self._flat[rim]))
+        return CellState(contact, depth * self._flat - risen, depth)
 
     def settled(self, state: CellState, depth: float, least: float = COLLAPSE) -> CellState | None:
         """Equilibrium at a depth, by letting go; None if the contact shrinks below `least` times its radius."""
@@ -130,168 +122,109 @@ class CellGrid:
             contact = contact & ~leaving
         return None
 
-    def unloaded(self, *, to_least_force: bool) -> list[CellState]:
-        """Stable states at decreasing depth, to pull-off or until the tension has passed its largest."""
-        flat = self._solve(self.first.contact, 1.0, None)
-        elongation = self.strength / float(flat[_rim(self.first.contact)].max())
+    def unloaded(self) -> FloatArray:
+        """`row` of stable states at decreasing depth, to pull-off under displacement control, shape (3, n)."""
+        elongation = self.strength / float(self._flat[_rim(self.first.contact)].max())
         states, step = [self.first], elongation / STEPS
         while step > FOLD * elongation:
-            forces = [self.force(state) for state in states]
-            if to_least_force and forces[-1] > PAST_LEAST_FORCE * min(forces) > min(forces):
-                break
             after = self.settled(states[-1], states[-1].depth - step)
             if after is None:
                 step /= 4.0
-                # A contact that jumps may come to rest at a smaller radius.
-                after = (
-                    self.settled(states[-1], states[-1].depth - 4.0 * step, LOST) if step <= FOLD * elongation else None
-                )
-                step = elongation / STEPS if after is not None else step
-            states += [after] if after is not None else []
-        return states
+            else:
+                states.append(after)
+        return np.array([self.row(state) for state in states]).T
 
-    def radius_of(self, state: CellState) -> float:
-        """a [m] of a circle with the area of the contact, as the disc has its own."""
-        return self.radius * sqrt(np.count_nonzero(state.contact) / np.count_nonzero(disc_of(self.cells).contact))
+    def followed(self, depths: FloatArray) -> FloatArray:
+        """`row` at depths [m] in their order, from out of contact; zero without contact, shape (4, n)."""
+        held: CellState | None = None
+        rows = np.zeros((depths.size, 4))
+        for i, depth in enumerate((depths / self.size).tolist()):
+            before = held if held is not None and depth < held.depth else self.first
+            held = self.settled(before, depth, 0.0) if held is not None or depth >= 0.0 else None
+            if held is not None:
+                rows[i] = *self.row(held), self.stiffness(held)
+        return rows.T
 
-    def force(self, state: CellState) -> float:
-        """F_N [N]."""
-        return 4.0 * contact_modulus(self.scene.layer) * self.size**2 * float(state.pressure.sum())
+    def row(self, state: CellState) -> tuple[float, float, float]:
+        """Radius of a circle with the area of the contact [m], depth [m] and force [N]."""
+        share = np.count_nonzero(state.contact) / np.count_nonzero(disc_of(self.cells).contact)
+        force = 4.0 * contact_modulus(self.scene.layer) * self.size**2 * float(state.pressure.sum())
+        return self.radius * sqrt(share), state.depth * self.size, force
 
-    def columns(self, states: list[CellState]) -> FloatArray:
-        """Radius, depth and force, shape (3, n)."""
-        return np.array([[self.radius_of(one), one.depth * self.size, self.force(one)] for one in states]).T
+    def stiffness(self, state: CellState) -> float:
+        """k_N [N/m] of the cells in contact."""
+        return 4.0 * contact_modulus(self.scene.layer) * self.size * float(self._solve(state.contact, 1.0).sum())
 
 
-@dataclass(frozen=True)
-class AdheringCells:
-    """A scene on a grid and on half as many cells.
+def solve_cells(scene: Scene, points: int, threads: int, settings: dict[str, Any]) -> ContactPath | DetachmentPath:
+    """Contacts at given depths, or a detachment from a contact radius to pull-off, with half as many cells as well."""
+    log, is_detachment = StageLog(), isinstance(scene.loading, Detachment)
+    radius = _largest(scene, Pressing(scene.layer, scene.indenter, FIRST_CELLS, threads=threads))
+    refuse_unresolved(scene.layer, scene.indenter, radius, points)
+    fine, coarse = (CellGrid(scene, radius, cells, threads) for cells in (points, points // 2))
+    with log.stage("adhesion"):
+        numbers = (_detachment if is_detachment else _path)(fine, coarse)
+    numbers |= {"cost": log.cost(unknowns=points**2 // 4), "stages": log.records}
+    return (DetachmentPath if is_detachment else ContactPath)(scene=scene, method="bem", settings=settings, **numbers)
 
-    Attributes:
-        scene: An adhesive scene.
-        points: Cells of the fine grid.
-        threads: Of the transforms.
-        settings: Of the method, for the answer.
-        log: Stage log.
-    """
 
-    scene: Scene
-    points: int
-    threads: int
-    settings: dict[str, Setting]
-    log: StageLog
+def _path(fine: CellGrid, coarse: CellGrid) -> dict[str, Any]:
+    """Numbers of the contacts at given depths."""
+    depths = fine.scene.loading.values  # type: ignore[attr-defined]
+    values, others = (dict(zip(NAMES, grid.followed(depths), strict=True)) for grid in (fine, coarse))
+    errors = {name: _errors(values[name], others[name], fine.size / fine.radius) for name in NAMES}
+    values["indentation_depth"], errors["indentation_depth"] = depths, np.zeros(depths.size)
+    return values | {"error_estimate": errors, "notes": ("depths are followed in their order, from out of contact",)}
 
-    def solve(self) -> ContactPath | DetachmentPath:
-        """Contacts at given depths, or a detachment from a contact radius to pull-off."""
-        return self._detachment() if isinstance(self.scene.loading, Detachment) else self._path()
 
-    def _grids(self, radius: float) -> tuple[CellGrid, CellGrid]:
-        refuse_unresolved(self.scene.layer, self.scene.indenter, radius, self.points)
-        fine, coarse = (CellGrid(self.scene, radius, cells, self.threads) for cells in (self.points, self.points // 2))
-        return fine, coarse
+def _detachment(fine: CellGrid, coarse: CellGrid) -> dict[str, Any]:
+    """Numbers of a detachment."""
+    found, other = fine.unloaded(), coarse.unloaded()
+    radius, lag, least = found[0], fine.size / found[0], int(found[2].argmin())
+    near = [np.interp(radius, other[0][::-1], one[::-1]) for one in other]
+    errors = {name: _errors(one, two, lag) for name, one, two in zip(NAMES, found, near, strict=False)}
+    by_force = fine.scene.loading.controlled == "force"  # type: ignore[attr-defined]
+    scalars, others = (_pull_off(columns, by_force=by_force) for columns in (found, other))
+    for name, value in scalars.items():
+        # At a fold depth and force are stationary: the radius is known to the root of their error.
+        flat = 0.0 if name == "pull_off_force" else 2.0 * sqrt(FOLD)
+        errors[name] = _errors(np.array([value]), np.array([others[name]]), 1.5 * lag[:1] + flat / LAG)
+    states = [dict(zip(NAMES, column, strict=False)) for column in found.T.tolist()]
+    points = {"force": states[least], "displacement": states[-1]}
+    return scalars | {
+        **dict(zip(NAMES, found, strict=False)),
+        "stable_displacement_control": np.ones(radius.size, dtype=np.bool_),
+        "stable_force_control": np.arange(radius.size) <= least,
+        "critical_points": tuple(CriticalPoint(control=c, kind="pull-off", **point) for c, point in points.items()),
+        "error_estimate": errors,
+        "notes": ("only the branch that is stable under displacement control is followed",),
+    }
 
-    def _pressing(self) -> Pressing:
-        return Pressing(self.scene.layer, self.scene.indenter, FIRST_CELLS, threads=self.threads)
 
-    def _path(self) -> ContactPath:
-        """From out of contact; at each depth the largest contact, or what is left of the one before."""
-        depths = self.scene.loading.values  # type: ignore[attr-defined]
-        most = max(float(depths.max()), 0.0)
-        end = largest_radius(self.scene, self._pressing(), DEPTH, most)
-        found = AdheringIndenter.up_to(self.scene, self._pressing(), end, NODES // 2).branch.solutions(DEPTH, most)
-        grids = self._grids(min(ROOM * found[-1], end) if found else end)
-        (radius, force), (other_radius, other_force) = (_followed(grid, depths) for grid in grids)
-        lag = LAG * grids[0].size / max(float(radius.max()), grids[0].size)
-        held = AdheringIndenter.up_to(self.scene, self._pressing(), grids[0].radius, NODES // 2)
-        largest = max(float(np.abs(force).max()), np.finfo(float).tiny)
-        moved = SAFETY * np.abs(radius - other_radius) / max(float(radius.max()), grids[0].size) + lag
-        return ContactPath(
-            scene=self.scene,
-            method="bem",
-            settings=self.settings,
-            cost=self.log.cost(unknowns=self.points**2 // 4),
-            notes=("depths are followed in their order, from out of contact",),
-            contact_radius=radius,
-            indentation_depth=depths,
-            normal_force=force,
-            contact_stiffness=np.array([held.stiffness(np.array([a]))[0] if a > 0.0 else 0.0 for a in radius]),
-            error_estimate={
-                "contact_radius": moved,
-                "indentation_depth": np.zeros(radius.size),
-                "contact_stiffness": 4.0 * moved,
-                "normal_force": SAFETY * np.abs(force - other_force) / largest + lag,
-            },
-        )
+def _errors(value: FloatArray, coarse: FloatArray, lag: FloatArray | float) -> FloatArray:
+    """Stated errors relative to the largest magnitude; `lag` is a cell over the contact radius."""
+    return stated_error(value, coarse, scale=np.abs(value).max(), floor=LAG * np.asarray(lag))
 
-    def _detachment(self) -> DetachmentPath:
-        loading = self.scene.loading
-        assert isinstance(loading, Detachment)
-        by_force = loading.controlled == "force"
-        grids = self._grids(loading.initial_contact_radius or self._start())
-        columns, other = (grid.columns(grid.unloaded(to_least_force=by_force)) for grid in grids)
-        (scalars, points), (others, _) = (_pull_off(values, by_force=by_force) for values in (columns, other))
-        lag = LAG * grids[0].size / columns[0]
-        errors = {"contact_radius": SAFETY * lag}
-        for name, values, coarse in zip(("indentation_depth", "normal_force"), columns[1:], other[1:], strict=True):
-            near = np.interp(columns[0], other[0][::-1], coarse[::-1])
-            errors[name] = SAFETY * np.abs(near - values) / np.abs(values).max() + lag
-        for name, value in scalars.items():
-            # At a fold depth and force are stationary, so that the radius is known to the root of their error.
-            flat = 0.0 if name == "pull_off_force" else 2.0 * sqrt(FOLD)
-            errors[name] = np.array([SAFETY * abs(others[name] / value - 1.0) + 3.0 * lag[0] + flat])
-        n, least = columns.shape[1], int(columns[2].argmin())
-        return DetachmentPath(
-            scene=self.scene,
-            method="bem",
-            settings=self.settings,
-            cost=self.log.cost(unknowns=self.points**2 // 4),
-            notes=("only the branch that is stable under displacement control is followed",),
-            contact_radius=columns[0],
-            indentation_depth=columns[1],
-            normal_force=columns[2],
-            stable_displacement_control=np.ones(n, dtype=np.bool_),
-            stable_force_control=np.arange(n) <= least,
-            critical_points=points,
-            error_estimate=errors,
-            pull_off_force=scalars["pull_off_force"],
-            pull_off_depth=scalars["pull_off_depth"],
-            pull_off_contact_radius=scalars["pull_off_contact_radius"],
-            force_at_loss=scalars["force_at_loss"],
-        )
 
-    def _start(self) -> float:
-        """Radius [m] of a punch, or ahead of the strongest tension by discs."""
-        indenter = self.scene.indenter
-        if isinstance(indenter, FlatPunch):
-            return indenter.radius
-        end = largest_radius(self.scene, self._pressing(), FORCE, None)
-        branch = AdheringIndenter.up_to(self.scene, self._pressing(), end, NODES // 2).branch
+def _largest(scene: Scene, pressing: Pressing) -> float:
+    """Radius [m] of the largest contact, by discs: at the largest depth, or where a detachment starts."""
+    loading, indenter = scene.loading, scene.indenter
+    given = loading.initial_contact_radius if isinstance(loading, Detachment) else None
+    deepest = None if isinstance(loading, Detachment) else max(float(loading.values.max()), 0.0)  # type: ignore[attr-defined]
+    end = given or largest_radius(scene, pressing, FORCE if deepest is None else DEPTH, deepest)
+    if given or isinstance(indenter, FlatPunch):
+        return end
+    branch = AdheringIndenter.up_to(scene, pressing, end, NODES // 2).branch
+    if deepest is None:
         return min(AHEAD * branch.loss(FORCE, end) + 0.1 * indenter.flat_radius, indenter.max_radius)
+    return min(ROOM * max(branch.solutions(DEPTH, deepest), default=end), end)
 
 
-def _followed(grid: CellGrid, depths: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Radius and force at depths in their order."""
-    held: CellState | None = None
-    found = np.zeros((2, depths.size))
-    for i, depth in enumerate((depths / grid.size).tolist()):
-        before = held if held is not None and depth < held.depth else grid.first
-        held = grid.settled(before, depth, LOST) if held is not None or depth >= 0.0 else None
-        if held is not None:
-            found[:, i] = grid.radius_of(held), grid.force(held)
-    return found[0], found[1]
-
-
-def _pull_off(columns: FloatArray, *, by_force: bool) -> tuple[dict[str, float], tuple[CriticalPoint, ...]]:
-    """Numbers of the pull-off, and its place under both controls."""
-    least, last = int(columns[2].argmin()), columns.shape[1] - 1
-    radius, depth, force = columns[:, least if by_force else last].tolist()
-    names = ("contact_radius", "indentation_depth", "normal_force")
-    points = tuple(
-        CriticalPoint(control=control, kind="pull-off", **dict(zip(names, columns[:, i].tolist(), strict=True)))
-        for control, i in (("force", least), ("displacement", last))
-    )
-    numbers = {"pull_off_force": float(columns[2].min()), "pull_off_depth": depth}
-    return numbers | {"pull_off_contact_radius": radius, "force_at_loss": force}, points
+def _pull_off(columns: FloatArray, *, by_force: bool) -> dict[str, float]:
+    """Numbers of the pull-off from radius, depth and force, shape (3, n)."""
+    names = ("pull_off_contact_radius", "pull_off_depth", "force_at_loss")
+    lost = columns[:, int(columns[2].argmin()) if by_force else -1]
+    return dict(zip(names, lost.tolist(), strict=True)) | {"pull_off_force": float(columns[2].min())}
 
 
 def _rim(contact: BoolArray) -> BoolArray:

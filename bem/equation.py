@@ -25,16 +25,26 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import cho_factor, cho_solve
-from scipy.special import erfc, gammaln, gammasgn
 
 from bem.kernels.of_contact import ContactKernel
-from bem.numerics import Octaves, even_bessel, even_bessel_second, gauss, panels
+from bem.numerics import (
+    Octaves,
+    cholesky,
+    even_bessel,
+    even_bessel_second,
+    gauss,
+    panels,
+    solve_factored,
+    special,
+)
 from contact.records.validation import FloatArray
 
 # a/h beyond which A is factored by QR of its square root. Below 4 Cholesky is as good and faster; beyond 16 Cholesky
 # loses a digit of k_N at nu = 1/2.
 _ROOT_FROM = 8.0
+# Radius over a up to which tables of displacements outside are kept, and orders times largest wave number from which
+# on they are made anew: at 2e5 (a/h = 100) they take 10 MB.
+_FAR, _LARGEST_TABLE = 4.0, 2e5
 # Radii that are remembered per layer: a search asks for the same ones again. Half as many make searches slower.
 _REMEMBERED = 400
 
@@ -92,21 +102,25 @@ COARSE = Sizes(5, 3.0, 10, 8.0, 6, -6)
 
 
 class _Waves(NamedTuple):
-    """Table of wave numbers kappa = k a: panels from 2^lowest to `top`, `orders` polynomials, `nodes` per panel."""
+    """Table of wave numbers kappa = k a: panels from 2^lowest to `top`, `orders` polynomials, `nodes` per panel.
+
+    Panels are at most four periods of cos(kappa) cos(`farthest` kappa) wide.
+    """
 
     lowest: int
     top: float
     orders: int
     nodes: int
+    farthest: float = 1.0
 
     @property
     def ends(self) -> FloatArray:
-        """Octaves up to 16, then panels of two periods."""
-        octaves = np.concatenate([[0.0], 2.0 ** np.arange(self.lowest, min(4, np.ceil(np.log2(self.top))) + 1)])
-        if self.top <= 16:
-            return octaves
-        even = 16 + 4 * np.pi * np.arange(1, np.ceil((self.top - 16) / (4 * np.pi)) + 1)
-        return np.concatenate([octaves, even])
+        """Octaves as long as they are narrow enough, then panels of equal width."""
+        last = int(5 - np.log2(1 + self.farthest))
+        octaves = 2.0 ** np.arange(min(self.lowest, last), min(last, np.ceil(np.log2(self.top))) + 1)
+        octaves = np.append(0.0, octaves)
+        first, width = octaves[-1], 8 * np.pi / (1 + self.farthest)
+        return np.append(octaves, first + width * np.arange(1, max(0, np.ceil((self.top - first) / width)) + 1))
 
 
 @lru_cache(maxsize=64)
@@ -156,12 +170,18 @@ class Radius:
         deepest = octave - 4 - int(np.ceil(np.log2(self.kernel.longest)))
         return min(deepest if self.a > 2.0 ** (octave - 2) else deepest - 20, 3)
 
-    @property
-    def waves(self) -> tuple[FloatArray, FloatArray]:
-        """Wave numbers k a and their weights, up to where 1 - chi is rounding."""
-        kappa, w, _ = _transforms(self._waves)
-        use = int(np.searchsorted(kappa, self.sizes.reach * self.a)) + self.sizes.nodes
-        return kappa[:use], w[:use]
+    def waves(self, farthest: float = 1.0, reach: float = 1.0) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Wave numbers k a, weights and c_n, up to `reach` times where 1 - chi is rounding.
+
+        Args:
+            farthest: Farthest radius over a at which a field is computed; a power of two, so that tables are shared.
+            reach: Larger than one where 1 - chi falls like a power.
+        """
+        waves = self._waves._replace(farthest=farthest, top=reach * self._waves.top)
+        is_kept = farthest <= _FAR and waves.orders * waves.top < _LARGEST_TABLE
+        kappa, w, table = (_transforms if is_kept else _transforms.__wrapped__)(waves)
+        use = int(np.searchsorted(kappa, reach * self.sizes.reach * self.a)) + self.sizes.nodes
+        return kappa[:use], w[:use], table[:, :use]
 
     @property
     def is_rooted(self) -> bool:
@@ -181,7 +201,7 @@ class Radius:
         """Upper triangular R with A = R^T R."""
         if self.is_rooted:
             return self._root()
-        return np.asarray(cho_factor(np.eye(self.count) - self.smooth, overwrite_a=True, check_finite=False)[0])
+        return cholesky(np.eye(self.count) - self.smooth)
 
     def _root(self) -> FloatArray:
         """R of the QR factorisation of the rows sqrt((2/pi) w chi) c(kappa): their condition is the root of that of A.
@@ -194,7 +214,7 @@ class Radius:
         last = ends[min(int(np.searchsorted(ends, max(3 * self.a, 5 * self.count) + width)), ends.size - 1)]
         near = kappa < last
         kappa, w, table = kappa[near], w[near], table[:, near]
-        share = erfc(12 * ((kappa - last) / width + 0.5)) / 2  # 1 within, 0 at `last`
+        share = special().erfc(12 * ((kappa - last) / width + 0.5)) / 2  # 1 within, 0 at `last`
         v, u = gauss(2 * self.sizes.nodes)
         far = np.concatenate([kappa[share < 1], last / v])
         weight = np.concatenate([(w * (1 - share))[share < 1], u * last / v**2])
@@ -205,7 +225,7 @@ class Radius:
 
     def solve(self, right: FloatArray) -> FloatArray:
         """A^-1 right, shape (count,)."""
-        return np.asarray(cho_solve((self._factor, False), right, check_finite=False))
+        return solve_factored(self._factor, right)
 
     @cached_property
     def punch(self) -> FloatArray:
@@ -315,6 +335,7 @@ def flat_punches(kernel: ContactKernel, sizes: Sizes, *, kinked: bool = False) -
 
 def _critical(mu: NDArray[np.floating], nu: NDArray[np.floating] | float, power: int) -> FloatArray:
     """int_0^inf J_mu J_nu x^-power dx (Weber and Schafheitlin)."""
+    gammaln, gammasgn = special().gammaln, special().gammasgn
     over = [(nu - mu + power + 1) / 2, (mu + nu + power + 1) / 2, (mu - nu + power + 1) / 2]
     size = gammaln(power) + gammaln((mu + nu - power + 1) / 2) - power * np.log(2.0) - sum(gammaln(x) for x in over)
     return np.asarray(np.exp(size) * np.nan_to_num(gammasgn(over[0]) * gammasgn(over[2])))

@@ -20,7 +20,7 @@ from bem.grid.adhering import (
     largest_radius,
     start_of_withdrawal,
 )
-from bem.grid.discs import Unresolved, disc_of, refuse_unresolved
+from bem.grid.discs import Unresolved, refuse_unresolved, shared_error
 from bem.grid.fields import ContactFields, NoContact, displacement_difference, pressure_difference
 from bem.grid.operators import Boundary
 from bem.grid.pressed import LEAST_CELLS, Equilibrium, Prescribed, Pressing, equilibrium, refuse_falling
@@ -63,9 +63,7 @@ BEST_GAIN: Final = 4.0
 # Times the difference to half as many cells: stated errors of pressures, whose order beside kinks is one half. Half of
 # it covers 90 % of random scenes instead of 97 %.
 FIELD_SAFETY: Final = 4.0
-# What two grids do not show: times (s/a)^2 with the cell size s, and a/h of thick layers, near the half-space that
-# measures the discs; and of a stiffness at a given radius.
-FLOOR: Final = 0.2
+# What two grids do not show of a stiffness at a given radius.
 STIFFNESS_FLOOR: Final = 1e-9
 # On the half-space, exact by construction, quadratures and roots are left.
 HALF_SPACE_FLOOR: Final = 1e-11
@@ -174,11 +172,17 @@ class Bem(Record):
                 raise InvalidInput("effects: without work of adhesion there is nothing to detach; give a positive one")
             return dataclasses.replace(_Solving(self, scene.replace(effects=()), StageLog()).pressed(), scene=scene)
         if self.adhesion == "cells":
-            from bem.cells import AdheringCells  # noqa: PLC0415 - only listed effects load
-
-            return AdheringCells(scene, self.points, self.threads, self.settings(), StageLog()).solve()
+            return self._by_cells(scene)
         solving = _Solving(self, scene, StageLog())
         return solving.detachment() if isinstance(scene.loading, Detachment) else solving.adhering()
+
+    def _by_cells(self, scene: Scene) -> ContactPath | DetachmentPath:
+        from bem.cells import solve_cells  # noqa: PLC0415 - only listed effects load
+
+        if not scene.indenter.is_convex:
+            # Discs refuse an indenter that touches outside the contact.
+            dataclasses.replace(self, adhesion="discs", points=min(self.points, 128)).solve(scene)
+        return solve_cells(scene, self.points, self.threads, self.settings())
 
     def settings(self) -> dict[str, Setting]:
         """As an answer reports them; an accuracy only where one was asked for."""
@@ -274,10 +278,9 @@ class _Solving:
 
     def _floor(self, radius: FloatArray) -> FloatArray:
         """At contact radii [m]."""
-        ratio = np.minimum(radius / self.scene.layer.surface.thickness, 1.0)
         if self.scene.layer.is_half_space:
             return np.full(radius.shape, HALF_SPACE_FLOOR)
-        return np.asarray(STIFFNESS_FLOOR + FLOOR / disc_of(self.method.points).radius ** 2 * ratio)
+        return STIFFNESS_FLOOR + shared_error(self.method.points, radius / self.scene.layer.surface.thickness)
 
     def _fields(self, pressing: Pressing, state: Equilibrium, edge: float | None) -> ContactFields:
         near = state.solved

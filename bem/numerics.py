@@ -4,15 +4,40 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from contact.answer.compiled_files import compiled, lapack
+from contact.records.errors import NotConvergedError
 from contact.records.validation import FloatArray
 
 EPS = float(np.finfo(np.float64).eps)
 # Smallest argument of the Bessel tables; x below it is rounded up to it, which changes no value.
 _LEAST = 1e-290
+
+
+def special() -> Any:
+    """Functions of `scipy.special`, as j0, from its compiled file alone: the package loads slowly."""
+    return compiled("scipy.special._special_ufuncs", "scipy.special")
+
+
+def cholesky(matrix: FloatArray) -> FloatArray:
+    """Upper triangular R with matrix = R^T R; its lower triangle is left undefined.
+
+    Raises:
+        NotConvergedError: If the matrix is not positive definite to double precision.
+    """
+    factor, failed = lapack().dpotrf(matrix, lower=False, clean=False)
+    if failed:
+        raise NotConvergedError("the equation of contact is singular to double precision")
+    return np.asarray(factor)
+
+
+def solve_factored(factor: FloatArray, right: FloatArray) -> FloatArray:
+    """x of R^T R x = right."""
+    return np.asarray(lapack().dpotrs(factor, right, lower=False)[0])
 
 
 @lru_cache(maxsize=256)

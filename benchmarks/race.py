@@ -90,14 +90,14 @@ solve = lambda: [method.solve(blow(1e-3, 1e-2)) for _ in range(20)][0]
 numbers = lambda history: [history.coefficient_of_restitution]
 """
 MANY_IMPACTS = """
-from bem.layer_equation.flat_punch_source import IntegralEquation
+from bem.flat_punch import IntegralEquation
 from mdr.batches import impacts
 scenes = [blow(*pair) for pair in zip(rng.uniform(5e-4, 5e-3, 1000), rng.uniform(2e-3, 5e-2, 1000))]
 solve = lambda source=IntegralEquation(): impacts(scenes, source)
 numbers = lambda found: found.coefficient_of_restitution.tolist()
 """
 THICKNESSES = """
-from bem.layer_equation.flat_punch_source import IntegralEquation
+from bem.flat_punch import IntegralEquation
 from mdr.batches import equilibria
 cone = TruncatedCone(flat_radius=5e-4, slope=0.1)
 scenes = [

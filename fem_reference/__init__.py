@@ -1,8 +1,8 @@
 """The independent reference: axisymmetric finite elements for contact with layers.
 
 Enters: a scene. Leaves: contact paths, detachments, impacts and histories with stated errors. Read `method` first, then
-`elastic.path`, `elastic.prescribed_radius` and `discrete_layer.problem`; `error_model` holds every coefficient of a
-stated error. Nothing here knows the layer kernel, the integral equation or the method of dimensionality reduction.
+`elastic.path`, `elastic.prescribed_radius` and `discrete_layer.problem`; `stated` compares answers at two resolutions.
+Nothing here knows the layer kernel, the integral equation or the method of dimensionality reduction.
 """
 
 from contact.records.extras import missing_extra

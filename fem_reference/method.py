@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
 from functools import partial
-from typing import TYPE_CHECKING, ClassVar, Self, TypeVar, overload
+from typing import ClassVar, Self, TypeAlias, overload
 
 from contact import (
     Adhesion,
@@ -16,6 +15,7 @@ from contact import (
     Detachment,
     DetachmentPath,
     EquilibriumLoading,
+    Fields,
     FlatPunch,
     ForceHistory,
     Friction,
@@ -38,29 +38,19 @@ from contact.answer.accuracy import told_where_less
 from contact.answer.no_contact import without_contact
 from contact.answer.one_thread import one_thread
 from contact.answer.small_strains import within_small_strains
-from fem_reference.adaptive import meshes_that_fit, settings_for, solve_history_to_accuracy, solve_to_accuracy
-from fem_reference.discrete_layer.indenter import ScaledIndenter
+from fem_reference.adaptive import meshes_that_fit, settings_for, solve_to_accuracy
 from fem_reference.discrete_layer.material import contact_modulus
 from fem_reference.discrete_layer.problem import LayerProblem
-from fem_reference.discrete_layer.settings import Discretisation, narrowest_radius
+from fem_reference.discrete_layer.settings import Discretisation
 from fem_reference.discrete_layer.solving.linear_solver import BACKENDS
 from fem_reference.elastic.answer import contact_path
-from fem_reference.elastic.beside_contact import refuse_pulled_contacts, refuse_touching_contacts
-from fem_reference.elastic.error_estimate import ContactWithErrors, solve_contact_with_errors
-from fem_reference.elastic.many_loads.scenes import are_many
-from fem_reference.elastic.path import (
-    ContactSolver,
-    FemEquilibrium,
-    equilibria_at_radii,
-    flat_punch_equilibria,
-    smooth_equilibrium,
-)
+from fem_reference.elastic.equilibria import elastic_equilibria, refuse_other_contacts
+from fem_reference.elastic.path import ContactSolver, FemEquilibrium, flat_punch_equilibria
+from fem_reference.elastic.prescribed_radius import PrescribedContact, solve_contact
 from fem_reference.elastic.surface_fields import FemFields
+from fem_reference.stated import path_with_errors
 
-if TYPE_CHECKING:
-    from fem_reference.elastic.at_load import Load
-
-S = TypeVar("S")
+Answer: TypeAlias = ContactPath | DetachmentPath | ImpactHistory | HistoryPath
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -146,11 +136,11 @@ class Fem:
     @overload
     def solve(self, scene: Scene[HistoryLoading]) -> HistoryPath: ...
     @overload
-    def solve(self, scene: Scene) -> ContactPath | DetachmentPath | ImpactHistory | HistoryPath: ...
+    def solve(self, scene: Scene) -> Answer: ...
     @one_thread
     @within_small_strains
     @without_contact
-    def solve(self, scene: Scene) -> ContactPath | DetachmentPath | ImpactHistory | HistoryPath:
+    def solve(self, scene: Scene) -> Answer:
         """The answer with its error estimates.
 
         Raises:
@@ -165,118 +155,97 @@ class Fem:
             answer = self._solve(scene, StageLog())
         return answer if self.accuracy is None else told_where_less(answer, self.accuracy, self.pressure_accuracy)
 
-    def _solve(self, scene: Scene, log: StageLog) -> ContactPath | DetachmentPath | ImpactHistory | HistoryPath:
-        if isinstance(scene.loading, Detachment):
-            from fem_reference.adhesion.detachment import detachment_path  # noqa: PLC0415 - only listed effects load
-
-            return detachment_path(scene, self._solver(scene, log), self.accuracy, asdict(self), log)
-        if scene.effect(Friction) is not None:
-            return self._solve_rubbed(scene, log)
-        if isinstance(scene.loading, Impact | DepthHistory | ForceHistory):
-            return self._solve_in_time(scene, scene.loading, log)
-        if are_many(scene):
-            from fem_reference.elastic.many_loads.answer import interpolated_path  # noqa: PLC0415 - only many loads pay
-
-            found, solve = partial(self._found_load, scene, log=log), self._solver(scene, log)
-            path = interpolated_path(scene, found, solve, accuracy=self.accuracy, settings=asdict(self), log=log)
-            if path is not None:
-                return path
-        equilibria = self._equilibria(scene, log)
-        if not scene.effects and not (scene.layer.is_uniform and isinstance(scene.indenter, FlatPunch)):
-            gap = partial(self._gap, scene, log=log)
-            refuse_pulled_contacts(scene, (state.contact for state in equilibria), gap)
-        refuse_touching_contacts(scene, ((state.contact, state.depth) for state in equilibria))
-        return contact_path(scene, equilibria, asdict(self), log, fields=FemFields)
-
-    def _solve_rubbed(self, scene: Scene, log: StageLog) -> ContactPath | HistoryPath:
-        if isinstance(scene.indenter, FlatPunch):
-            return self._solve_adhered(scene, log)
-        if isinstance(scene.loading, DepthHistory | ForceHistory):
-            from fem_reference.elastic.friction.histories import rubbed_history  # noqa: PLC0415 - only listed effects
-
-            def history(settings: Discretisation) -> HistoryPath:
-                return rubbed_history(scene, settings, asdict(self), log)
-
-            if self.accuracy is None:
-                return history(self.discretisation)
-            return solve_history_to_accuracy(history, self.accuracy)
-        from fem_reference.elastic.friction.answers import rubbed_path  # noqa: PLC0415 - only listed effects load
-
-        return self._to_accuracy(
-            lambda settings: rubbed_path(scene, settings, asdict(self), log),
-            lambda path: {name: float(error.max()) for name, error in path.error_estimate.items()},
-        )
-
-    def _gap(self, scene: Scene, contact: ContactWithErrors, log: StageLog) -> str:
-        """Where the surface lifts off below a contact that would be pulled, found without tension."""
-        if scene.layer.is_uniform:
-            return ""
-        from fem_reference.elastic.several_layers.lifting import gap_below  # noqa: PLC0415 - only stacks lift off
-
-        return gap_below(scene, contact, self.discretisation, self.solver, log)
-
-    def _solve_adhered(self, scene: Scene, log: StageLog) -> ContactPath:
-        from fem_reference.elastic.stick import adhered_punch as stick  # noqa: PLC0415 - only listed effects load
-
-        solve = partial(self.solve_contact, scene, log=log, problem=stick.AdheredProblem)
-        equilibria = stick.adhered_equilibria(scene, solve)
-        fields = partial(stick.AdheredFemFields, layer=scene.layer)
-        return contact_path(scene, equilibria, asdict(self), log, fields=fields)
-
-    def _solve_in_time(
-        self, scene: Scene, loading: Impact | DepthHistory | ForceHistory, log: StageLog
-    ) -> ImpactHistory | HistoryPath:
-        from fem_reference.in_time import solver as viscoelastic  # noqa: PLC0415 - only scenes in time load it
-        from fem_reference.in_time.setup import HistorySetup  # noqa: PLC0415
-
-        def attempt(settings: Discretisation) -> ImpactHistory | HistoryPath:
-            """The answer on one mesh and with one number of time steps."""
-            setup = HistorySetup(scene, settings, self.solver, log)
-            if isinstance(loading, Impact):
-                return viscoelastic.impact_history(setup, loading, asdict(self))
-            return viscoelastic.prescribed_history(setup, loading, asdict(self))
-
+    def _solve(self, scene: Scene, log: StageLog) -> Answer:
+        attempt = self._attempt(scene, log)
         if self.accuracy is None:
             return attempt(self.discretisation)
-        return solve_history_to_accuracy(attempt, self.accuracy)
+        moves = isinstance(scene.loading, Impact | DepthHistory | ForceHistory)
+        return solve_to_accuracy(attempt, self.accuracy, self.pressure_accuracy, moves=moves)
 
-    def _equilibria(self, scene: Scene, log: StageLog) -> list[FemEquilibrium]:
-        loading, solve = scene.loading, self._solver(scene, log)
+    def _attempt(self, scene: Scene, log: StageLog) -> Callable[[Discretisation], Answer]:
+        """What solves the scene with settings, and once more with coarser ones that tell its errors."""
+        if isinstance(scene.loading, Detachment):
+            return partial(self._detached, scene, log)
+        if scene.effect(Friction) is not None and not isinstance(scene.indenter, FlatPunch):
+            return partial(self._rubbed, scene, log)
+        if isinstance(scene.loading, Impact | DepthHistory | ForceHistory):
+            return self._moved(scene, scene.loading, log)
+        return partial(self._at_rest, scene, log)
+
+    def _at_rest(self, scene: Scene, log: StageLog, settings: Discretisation) -> ContactPath:
+        """Equilibria at prescribed radii, depths or forces."""
+        modulus, sticks = contact_modulus(scene.layer), scene.effect(Friction) is not None
+        coarser = self._states(scene, settings.coarser(), None, log)
+        states = self._states(scene, settings, coarser, log)
+        if not sticks:
+            refuse_other_contacts(scene, states, coarser)
+            fields: Fields = FemFields(states, modulus, coarser)
+        else:
+            from fem_reference.elastic.stick.adhered_punch import AdheredFemFields  # noqa: PLC0415 - only stick loads it
+
+            fields = AdheredFemFields(states, modulus, coarser, layer=scene.layer)
+        path, companion = (contact_path(scene, each, fields, asdict(self), log) for each in (states, coarser))
+        answer = path_with_errors(path, companion, states, coarser)
+        if sticks:
+            from fem_reference.elastic.stick.adhered_punch import with_shear_error  # noqa: PLC0415
+
+            return with_shear_error(answer, scene.layer, states[0], coarser[0])
+        return answer
+
+    def _states(
+        self, scene: Scene, settings: Discretisation, before: list[FemEquilibrium] | None, log: StageLog
+    ) -> list[FemEquilibrium]:
+        """Equilibria at one resolution; those ``before`` are of a coarser one."""
+        if scene.effect(Friction) is not None:
+            from fem_reference.elastic.stick.adhered_punch import AdheredProblem  # noqa: PLC0415 - only stick loads it
+
+            solve = self._solver(scene, settings, log, AdheredProblem)
+            return flat_punch_equilibria(scene, scene.indenter.flat_radius, solve)
+        solve = self._solver(scene, settings, log)
         if scene.effects:
             from fem_reference.adhesion.equilibria import adhesive_equilibria  # noqa: PLC0415 - only listed effects load
 
-            return adhesive_equilibria(scene, solve, self.accuracy)
-        if isinstance(loading, ContactRadii):
-            return equilibria_at_radii(loading.values, solve)
-        if isinstance(scene.indenter, FlatPunch):
-            return flat_punch_equilibria(scene, scene.indenter, solve)
-        if isinstance(loading, IndentationDepths):
-            return [self._equilibrium_at_load(scene, float(depth), log) for depth in loading.values]
-        if isinstance(loading, NormalForces):
-            modulus = contact_modulus(scene.layer)
-            return [self._equilibrium_at_load(scene, float(force) / modulus, log) for force in loading.values]
-        raise UnsupportedSceneError(f"fem has no elastic path for loading {type(loading).__name__}")
+            return adhesive_equilibria(scene, solve, settings.growth)
+        return elastic_equilibria(scene, solve, settings.coarsening, before, log)
 
-    def _equilibrium_at_load(self, scene: Scene, target: float, log: StageLog) -> FemEquilibrium:
-        """Searches the contact, then solves it at a prescribed radius; target is a depth [m] or a force / E* [m^2]."""
-        load = self._found_load(scene, target, log)
+    def _detached(self, scene: Scene, log: StageLog, settings: Discretisation) -> DetachmentPath:
+        from fem_reference.adhesion.detachment import Separation, detachment_path  # noqa: PLC0415 - as above
 
-        def attempt(settings: Discretisation) -> FemEquilibrium:
-            """A finer mesh begins at the radius found before: what its last correction errs by falls, too."""
-            nonlocal load
-            state = load.equilibrium(lambda radius: self._contact(scene, radius, settings, log))
-            load = replace(load, radius=state.radius_factor * state.contact.indenter.contact_radius)
-            return state
+        companion, found = (
+            Separation.of(scene, self._solver(scene, each, log), each.growth) for each in (settings.coarser(), settings)
+        )
+        return detachment_path(scene, found, companion, asdict(self), log)
 
-        return self._to_accuracy(attempt, lambda state: state.error)
+    def _rubbed(self, scene: Scene, log: StageLog, settings: Discretisation) -> ContactPath | HistoryPath:
+        if isinstance(scene.loading, DepthHistory | ForceHistory):
+            from fem_reference.elastic.friction.histories import rubbed_history  # noqa: PLC0415 - only listed effects
 
-    def _found_load(self, scene: Scene, target: float, log: StageLog) -> Load:
-        """A depth [m] or a force / E* [m^2] with the contact radius near which it is carried."""
-        from fem_reference.elastic.at_load import found_load  # noqa: PLC0415 - only scenes that search pay for it
-        from fem_reference.elastic.contact_search import searched_radius  # noqa: PLC0415
+            return rubbed_history(scene, settings, asdict(self), log)
+        from fem_reference.elastic.friction.answers import rubbed_path  # noqa: PLC0415 - only listed effects load
 
-        start = searched_radius(scene, target, self.discretisation, self.solver, log)
-        return found_load(scene, target, start, self.accuracy, log)
+        return rubbed_path(scene, settings, asdict(self), log)
+
+    def _moved(
+        self, scene: Scene, loading: Impact | DepthHistory | ForceHistory, log: StageLog
+    ) -> Callable[[Discretisation], Answer]:
+        from fem_reference.in_time.history import HistorySolver  # noqa: PLC0415 - only scenes in time load it
+        from fem_reference.in_time.impact import ImpactSolver  # noqa: PLC0415
+        from fem_reference.in_time.setup import HistorySetup  # noqa: PLC0415
+
+        def attempt(settings: Discretisation) -> ImpactHistory | HistoryPath:
+            """The answer, and its companions with half the cells and with half the steps as well."""
+            coarser, setup = (HistorySetup(scene, each, self.solver, log) for each in (settings.coarser(), settings))
+            cells = coarser.resolution
+            resolutions = (coarser, cells.half_the_steps()), (coarser, cells), (setup, setup.resolution)
+            if isinstance(loading, Impact):
+                impact = ImpactSolver(loading, asdict(self))
+                half_both, half_cells, fine = (impact.answer(*each) for each in resolutions)
+                return impact.with_errors(fine, half_cells, half_both, setup)
+            history = HistorySolver(scene, loading, asdict(self))
+            half_steps, half_strip, path = (history.answer(*each) for each in resolutions)
+            return history.with_errors(path, half_strip, half_steps, setup)
+
+        return attempt
 
     def refined(self) -> Self:
         """A copy with cells half as large; the edge cell shrinks by 2^(2k), so that errors fall at the formal order 2k.
@@ -285,44 +254,18 @@ class Fem:
         """
         if self.accuracy is not None:
             return replace(self, accuracy=max(self.accuracy / 4**self.order, 1e-9))
-        return replace(self, **asdict(self.discretisation.refined()))
+        finer = asdict(self.discretisation.refined())
+        return replace(self, **{name: value for name, value in finer.items() if name != "coarsening"})
 
-    def _solver(self, scene: Scene, log: StageLog) -> ContactSolver:
-        return partial(self.solve_contact, scene, log=log)
+    def _solver(
+        self, scene: Scene, settings: Discretisation, log: StageLog, kind: type[LayerProblem] = LayerProblem
+    ) -> ContactSolver:
+        """Solves the contact of a given radius [m]."""
 
-    def solve_contact(
-        self, scene: Scene, contact_radius: float, log: StageLog, problem: type[LayerProblem] = LayerProblem
-    ) -> ContactWithErrors:
-        """One contact radius [m] with error bars."""
+        def solve(radius: float) -> PrescribedContact:
+            return solve_contact(scene, radius, settings, log, backend=self.solver, kind=kind)
 
-        def attempt(settings: Discretisation) -> ContactWithErrors:
-            return self._contact(scene, contact_radius, settings, log, problem)
-
-        return self._to_accuracy(attempt, lambda contact: smooth_equilibrium(contact).error)
-
-    def _contact(
-        self,
-        scene: Scene,
-        radius: float,
-        settings: Discretisation,
-        log: StageLog,
-        problem: type[LayerProblem] = LayerProblem,
-    ) -> ContactWithErrors:
-        """A ring around a flat end that is too narrow for a mesh is taken from one that is not."""
-        flat, narrowest = scene.indenter.flat_radius, narrowest_radius(scene.layer, scene.indenter)
-        is_narrow = flat < radius < narrowest
-        indenter = ScaledIndenter(scene.indenter, narrowest if is_narrow else radius)
-        contact = solve_contact_with_errors(scene.layer, indenter, settings, self.solver, log, problem=problem)
-        return contact.narrowed(math.sqrt((radius - flat) / (narrowest - flat))) if is_narrow else contact
-
-    def _to_accuracy(self, attempt: Callable[[Discretisation], S], errors: Callable[[S], Mapping[str, float]]) -> S:
-        """As the settings say, or refined until the errors of all quantities that are asked for hold."""
-        if self.accuracy is None:
-            return attempt(self.discretisation)
-        wanted = dict.fromkeys(ContactPath.ASKED, self.accuracy)
-        if self.pressure_accuracy is not None:
-            wanted["pressure"] = self.pressure_accuracy
-        return solve_to_accuracy(attempt, errors, wanted)
+        return solve
 
 
 def _supports_friction(scene: Scene) -> Supported | Unsupported:

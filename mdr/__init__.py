@@ -1,7 +1,7 @@
 """The method of dimensionality reduction: layers and half-spaces as beds of independent springs.
 
-Enters: a scene. Leaves: its answer, with stated errors. Read `method` first, then `dispatch`, `springs.assembly` and
-`elastic`; coefficients of stated errors stand in `springs.error_model`.
+Enters: a scene. Leaves: its answer, with stated errors. Read `method` first, then `dispatch`, `spring_bed` and
+`equilibria`; `bem.equation` solves the layer's equation, `contact.stated` states errors.
 """
 
 from __future__ import annotations
@@ -11,16 +11,15 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from mdr.method import Mdr
-    from mdr.springs.assembly import SeveralContacts, equivalent_system
-    from mdr.springs.equivalent_system import EquivalentSystem
+    from mdr.radius_search import SeveralContacts
+    from mdr.spring_bed import Springs
 
-__all__ = ["EquivalentSystem", "Mdr", "SeveralContacts", "equivalent_system"]
+__all__ = ["Mdr", "SeveralContacts", "Springs"]
 
 _HOME = {
-    "EquivalentSystem": "mdr.springs.equivalent_system",
     "Mdr": "mdr.method",
-    "SeveralContacts": "mdr.springs.assembly",
-    "equivalent_system": "mdr.springs.assembly",
+    "SeveralContacts": "mdr.radius_search",
+    "Springs": "mdr.spring_bed",
 }
 
 

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
+from bem.flat_punch import IntegralEquation
 from bem.layer_equation.protocol import FlatPunchSource
 from contact import (
     ContactRadii,
@@ -26,9 +27,9 @@ from contact import (
 from contact.answer.one_thread import one_thread
 from contact.answer.small_strains import refuse_deep
 from contact.records.validation import FloatArray
-from mdr.elastic import solve_elastic
-from mdr.springs.many_layers.equilibria import equilibria_on_layers, takes_part
-from mdr.springs.shared_tables import power_law, reference
+from mdr.equilibria import sizes_of, solve_elastic
+from mdr.many_layers import equilibria_on_layers, takes_part
+from mdr.own_units import OwnUnits, own_units, power_law
 
 if TYPE_CHECKING:
     from mdr.impact.results import ImpactResults
@@ -36,9 +37,9 @@ if TYPE_CHECKING:
 Progress: TypeAlias = Callable[[int, int], None]
 
 _PRESCRIBED = (ContactRadii, IndentationDepths, NormalForces)
-# Scenes between two reports of progress; chosen.
+# Scenes between two reports of progress.
 _CHUNK = 512
-# From so many scenes with one indenter on, setting up what they share pays; chosen.
+# Number of scenes with one indenter from which on they are solved together.
 _SEVERAL = 4
 
 
@@ -102,7 +103,7 @@ def pull_offs(scenes: Sequence[Scene], flat_punch: FlatPunchSource, *, progress:
         InvalidInput: If a scene is no detachment.
         NotConvergedError: If an answer is not finite.
     """
-    from mdr.adhesion.batch import pull_off_groups  # noqa: PLC0415  # loaded only when asked for
+    from mdr.pull_offs import pull_off_groups  # noqa: PLC0415  # loaded only when asked for
 
     for number, scene in enumerate(scenes):
         if not isinstance(scene.loading, Detachment):
@@ -178,7 +179,7 @@ def _kind(number: int, scene: Scene) -> Hashable:
         layer = scene.layer.surface
         alike = type(scene.loading), layer.poissons_ratio, scene.layer.support, scene.indenter
         return alike if takes_part(scene) else number
-    shared = reference(scene.layer, scene.indenter, 1.0)
+    shared = own_units(scene.layer, scene.indenter)
     return type(scene.loading), shared.layer, shared.indenter
 
 
@@ -186,8 +187,8 @@ def _together(scenes: list[Scene], flat_punch: FlatPunchSource) -> FloatArray:
     """Radius, depth, force and stiffness of one group, shape (4, n), from one solution of the shared problem."""
     if power_law(scenes[0].indenter) is None:
         return _on_layers(scenes, flat_punch)
-    units = [reference(scene.layer, scene.indenter, 1.0) for scene in scenes]
-    length, depth, stiffness = (np.array([getattr(u, n) for u in units]) for n in ("length", "depth", "stiffness"))
+    units = [own_units(scene.layer, scene.indenter) for scene in scenes]
+    length, depth, stiffness = (np.array([getattr(one, name) for one in units]) for name in OwnUnits.SCALES)
     values = np.array([scene.loading.values[0] for scene in scenes if isinstance(scene.loading, _PRESCRIBED)])
     unit_of = {ContactRadii: length, IndentationDepths: depth, NormalForces: stiffness * depth}
     kind = next(kind for kind in _PRESCRIBED if isinstance(scenes[0].loading, kind))
@@ -201,8 +202,8 @@ def _together(scenes: list[Scene], flat_punch: FlatPunchSource) -> FloatArray:
 def _on_layers(scenes: list[Scene], flat_punch: FlatPunchSource) -> FloatArray:
     """The same of one indenter that is no power law, scenes that must be solved by themselves one by one."""
     found = np.full((4, len(scenes)), np.nan)
-    if takes_part(scenes[0]) and len(scenes) >= _SEVERAL:
-        found = equilibria_on_layers(scenes, flat_punch)
+    if isinstance(flat_punch, IntegralEquation) and takes_part(scenes[0]) and len(scenes) >= _SEVERAL:
+        found = equilibria_on_layers(scenes, sizes_of(flat_punch))
     for number in np.flatnonzero(np.isnan(found).any(axis=0)):
         path = solve_elastic(scenes[number], flat_punch, {})
         answers = path.contact_radius, path.indentation_depth, path.normal_force, path.contact_stiffness

@@ -16,11 +16,9 @@ from itertools import pairwise
 import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
-from scipy.linalg import cho_factor, cho_solve
-from scipy.special import j0
 
 from bem.equation import Radius
-from bem.numerics import even_bessel, even_legendre, gauss, graded, panels, spherical_bessel
+from bem.numerics import cholesky, even_bessel, even_legendre, gauss, graded, solve_factored, special, spherical_bessel
 from contact import InvalidInput
 from contact.records.validation import FloatArray
 from mdr.spring_bed import Springs
@@ -33,6 +31,8 @@ _HARD = 60.0
 _MOST_KINKS = 8
 # Share of the contact radius within which kinks make no patch of their own: around the axis there is nothing left.
 _CENTRE = 1e-3
+# Radius over a up to which all displacements outside share one table of wave numbers.
+_NEAR = 4.0
 # Wave numbers that are summed at a time.
 _CHUNK = 20_000
 # A graded layer's 1 - chi falls like 1/k: the displacement outside takes so many times more wave numbers.
@@ -48,6 +48,7 @@ def surface_of(springs: Springs, a: float, depth: float, *, is_singular: bool = 
     """Fields of the contact of radius a [m] at a depth [m]; p is singular at the edge if phi(a) is not zero."""
     inner = [b for b in springs.tip.breaks if _CENTRE * a < b < a]
     is_wide = not springs.kernel.is_uniform and a > _WIDE * springs.unit and not springs.kernel.tail
+    is_wide = is_wide and not springs.is_tabulated
     return (Patched if is_wide and 0 < len(inner) < _MOST_KINKS else Surface)(
         springs, a, depth, is_singular=is_singular
     )
@@ -73,6 +74,9 @@ class Surface:
         if is_singular:
             values = springs.at([a])
             self.edge = float(values.y1[0] * (depth - values.g[0]))
+        self._spectra: dict[float, tuple[FloatArray, FloatArray]] = {}
+        if not self.kernel.is_uniform:
+            self._radius: Radius = springs.radius(a)
         self._solve()
 
     def _solve(self) -> None:
@@ -84,9 +88,9 @@ class Surface:
         if self.kernel.is_uniform:
             self._phi = self._series = self._smooth = np.zeros(1)
             return
-        radius: Radius = self.springs.radius(self.a)
-        if self.kernel.tail and self.edge != 0:
-            radius = Radius(self.kernel, self.a / self.springs.unit, self.sizes, kinked=True)
+        if self.kernel.tail:  # phi' is smooth enough for pressures with many polynomials only
+            self._radius = Radius(self.kernel, self.a / self.springs.unit, self.sizes, kinked=True)
+        radius = self._radius
         load = -self.tip.moments(np.array([self.a]), radius.count, self.sizes.extra)[0]
         load[0] += self.depth
         phi = radius.solve(load)
@@ -102,14 +106,30 @@ class Surface:
         """psi [m] at t <= a [m]."""
         return np.asarray(even_legendre(t / self.a, self._series.size) @ self._series)
 
+    @property
+    def degree(self) -> int:
+        """Of psi."""
+        return 2 * self._smooth.size
+
+    @property
+    def corner(self) -> float:
+        """-1/ln[(a + t)/(a - t)] times what `smooth_slope` leaves out of psi'."""
+        return self._corner
+
+    def smooth_slope(self, t: FloatArray) -> FloatArray:
+        """psi' without the logarithm at the edge."""
+        full = np.zeros(2 * self._smooth.size)
+        full[::2] = self._smooth
+        return np.asarray(legendre.legval(t / self.a, legendre.legder(full)) / self.a)
+
+    def smooth_transform(self, k: FloatArray) -> FloatArray:
+        """int_0^a psi cos kt dt [m^2] at k [1/m]."""
+        alternating = self._series * (-1.0) ** np.arange(self._series.size)
+        return np.asarray(self.a * alternating @ even_bessel(k * self.a, self._series.size))
+
     def density(self, t: FloatArray) -> FloatArray:
         """phi [m] at t <= a [m]."""
         return np.asarray(self.depth - self.tip.quick(t) + self.psi(t))
-
-    def _spectrum(self, k: FloatArray) -> FloatArray:
-        """phi^(k) = int_0^a phi cos kt dt [m^2] at k [1/m]."""
-        alternating = self._phi * (-1.0) ** np.arange(self._phi.size)
-        return np.asarray(self.a * alternating @ even_bessel(k * self.a, self._phi.size))
 
     def _image(self, u: FloatArray) -> FloatArray:
         """Abel image of psi but for its edge value, at a u = sqrt(a^2 - r^2)."""
@@ -179,32 +199,52 @@ class Surface:
         return w
 
     def _outside(self, r: FloatArray) -> FloatArray:
+        """(2/pi) [depth arcsin(a/r) - int_0^a f'(s) arctan sqrt((a^2 - s^2)/(r^2 - a^2)) ds + ..] at r > a."""
         far, a = r[:, None], self.a
+        height = np.zeros_like(r)
+        ends = [self.tip.flat, *(b for b in self.tip.cuts if self.tip.flat < b < a), a]
+        for low, high in pairwise(ends):
+            # f' may be singular at the axis, the arctan has a root near the edge.
+            is_smooth = low > 0 and a - high > high - low
+            v, w = (gauss if is_smooth else graded)(20 + self.sizes.extra)
+            s, beside = low + (high - low) * v, a - high + (high - low) * v[::-1]  # v is symmetric: 1 - v
+            angle = np.arctan(np.sqrt(beside * (a + s) / ((far - a) * (far + a))))
+            height += angle @ (w * (high - low) * self.tip.slope(s))
         v, w = gauss(2 * self._phi.size + 16 + self.sizes.extra)
-        breaks = [b for b in self.tip.breaks if b < a]
-        ends = np.arcsin(np.minimum(np.array([0.0, *breaks, a]) / far, 1.0))
-        total = np.zeros_like(r)
-        for low, high in zip(ends.T[:-1, :, None], ends.T[1:, :, None], strict=True):
-            t = np.minimum(far * np.sin(low + (high - low) * v * v), a)
-            total = total + (2 * (high - low) * v * w * self.density(t)).sum(axis=1)
+        angles = np.arcsin(np.minimum(np.array([0.0, *self._inner(), a]) / far, 1.0))
+        total = self.depth * np.arcsin(a / r) - height
+        if not self.kernel.is_uniform:
+            for low, high in zip(angles.T[:-1, :, None], angles.T[1:, :, None], strict=True):
+                t = np.minimum(far * np.sin(low + (high - low) * v), a)
+                total = total + ((high - low) * w * self.psi(t)).sum(axis=1)
         return np.asarray(2 / np.pi * (total - self._softening(far)))
 
+    def _inner(self) -> list[float]:
+        """Radii [m] between which psi is analytic."""
+        return []
+
     def _softening(self, far: FloatArray) -> FloatArray | float:
-        """int_0^inf (1 - chi) phi^(k) J_0(kr) dk [m]: panels of four periods, octaves towards k = 0."""
+        """int_0^inf (1 - chi) phi^(k) J_0(kr) dk [m]."""
         if self.kernel.is_uniform:
             return 0.0
-        top = self.sizes.reach / self.springs.unit * (_SLOW_DECAY if self.kernel.tail else 1.0)
-        width = 8 * np.pi / (self.a + far.max())
-        octaves = top * 2.0 ** np.arange(-60.0, 1.0)
-        octaves = octaves[octaves < width]
-        even = np.linspace(octaves[-1], top, 1 + int(np.ceil((top - octaves[-1]) / width)))
-        k, w = panels(np.concatenate([[0.0], octaves, even[1:]]), self.sizes.nodes)
-        total = np.zeros(far.shape[0])
-        for part in range(0, k.size, _CHUNK):
-            some = k[part : part + _CHUNK]
-            weight = w[part : part + _CHUNK] * self.kernel.one_minus_chi(some * self.springs.unit)
-            total = total + j0(far * some) @ (weight * self._spectrum(some))
+        kappa, weighted = self._weighted_spectrum(2.0 ** np.ceil(np.log2(max(float(far.max()) / self.a, _NEAR))))
+        total, j0 = np.zeros(far.shape[0]), special().j0
+        for part in range(0, kappa.size, _CHUNK):
+            total = total + j0(far / self.a * kappa[part : part + _CHUNK]) @ weighted[part : part + _CHUNK]
         return total
+
+    def _weighted_spectrum(self, farthest: float) -> tuple[FloatArray, FloatArray]:
+        """Wave numbers k a, and (1 - chi) phi^(k) [m] with the weights of their quadrature."""
+        if farthest not in self._spectra:
+            reach = _SLOW_DECAY if self.kernel.tail else 1.0
+            kappa, w, table = self._radius.waves(farthest, reach)
+            rest = self.kernel.one_minus_chi(kappa / self.a * self.springs.unit)
+            self._spectra[farthest] = kappa, w * rest * self._spectrum(kappa, table)
+        return self._spectra[farthest]
+
+    def _spectrum(self, kappa: FloatArray, table: FloatArray) -> FloatArray:
+        """phi^/a = int_0^1 phi(a s) cos(kappa s) ds [m] at kappa = k a, from the transforms of the polynomials."""
+        return np.asarray((self._phi / self._radius.degree) @ table)
 
 
 class Patched(Surface):
@@ -220,13 +260,14 @@ class Patched(Surface):
             top = 2 * (sizes.least + int(1.25 * sizes.rate * np.sqrt(x * half)))
             self._patches.append((middle, half, np.arange(0, top, 2 if low == 0 else 1)))
         self._degree = max(int(n[-1]) for *_, n in self._patches)
-        kappa, w = self.springs.radius(a).waves
-        table = self._transforms(kappa)
+        kappa, w, _ = self._radius.waves(_NEAR)
+        self._table = self._transforms(kappa)
+        table = self._table
         smooth = (table * (2 / np.pi * w * self.kernel.one_minus_chi(kappa / x))) @ table.T
         load = np.concatenate([self._load(*patch) for patch in self._patches])
-        phi = cho_solve(cho_factor(np.eye(load.size) - smooth), load)
+        phi = solve_factored(cholesky(np.eye(load.size) - smooth), load)
         cuts = np.cumsum([n.size for *_, n in self._patches])[:-1]
-        self._phi, self._parts = phi, []
+        self._phi, self._psi, self._parts = phi, phi - load, []
         for (middle, half, n), part in zip(self._patches, np.split(phi - load, cuts), strict=True):
             full = np.zeros(n[-1] + 1)
             full[n] = part * self._norm(middle, half, n)
@@ -261,16 +302,34 @@ class Patched(Surface):
         s, total = t / self.a, np.zeros_like(t)
         which = np.clip(np.searchsorted(self._ends, s, "right") - 1, 0, len(self._patches) - 1)
         for i, ((middle, half, _), part) in enumerate(zip(self._patches, self._parts, strict=True)):
-            value = legendre.legval(np.clip((s - middle) / half, -1, 1), legendre.legder(part, derivative))
-            total += np.where(which == i, value, 0.0) / (half * self.a) ** derivative
+            here = which == i
+            value = legendre.legval(np.clip((s[here] - middle) / half, -1, 1), legendre.legder(part, derivative))
+            total[here] = value / (half * self.a) ** derivative
         return total
+
+    def _inner(self) -> list[float]:
+        return [float(b) for b in self.a * self._ends[1:-1]]
 
     def psi(self, t: FloatArray) -> FloatArray:
         """psi [m] at t <= a [m]."""
         return self._on_patches(t, 0)
 
-    def _spectrum(self, k: FloatArray) -> FloatArray:
-        return np.asarray(self.a * self._phi @ self._transforms(k * self.a))
+    @property
+    def degree(self) -> int:
+        """Of psi on one patch."""
+        return self._degree
+
+    def smooth_slope(self, t: FloatArray) -> FloatArray:
+        """psi'."""
+        return self._on_patches(t, 1)
+
+    def smooth_transform(self, k: FloatArray) -> FloatArray:
+        """int_0^a psi cos kt dt [m^2] at k [1/m]."""
+        return np.asarray(self.a * self._psi @ self._transforms(k * self.a))
+
+    def _spectrum(self, kappa: FloatArray, table: FloatArray) -> FloatArray:
+        ours = self._table if kappa.size == self._table.shape[1] else self._transforms(kappa)
+        return np.asarray(self._phi @ ours)
 
     def _image(self, u: FloatArray) -> FloatArray:
         """Nothing: psi' is integrated with g_hs'."""

@@ -59,9 +59,9 @@ class Solver:
 
 
 SOLVERS = (
-    Solver((), _EQUILIBRIA, "mdr.elastic", "solve_elastic"),
-    Solver((Adhesion,), _EQUILIBRIA, "mdr.adhesion.solver", "solve_adhesive"),
-    Solver((Adhesion,), (Detachment,), "mdr.adhesion.solver", "solve_detachment"),
+    Solver((), _EQUILIBRIA, "mdr.equilibria", "solve_elastic"),
+    Solver((Adhesion,), _EQUILIBRIA, "mdr.adhesive", "solve_adhesive"),
+    Solver((Adhesion,), (Detachment,), "mdr.detachment", "solve_detachment"),
     Solver((Friction,), _EQUILIBRIA, "mdr.friction.solver", "solve_stick"),
     Solver((), (Impact,), "mdr.impact.solver", "solve_impact"),
     Solver((Viscoelasticity,), (Impact,), "mdr.impact.solver", "solve_impact"),

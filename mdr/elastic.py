@@ -27,7 +27,8 @@ from contact.answer.friction import told_of_friction
 from contact.answer.inside import InteriorFields, KnownContact
 from contact.answer.solution import Setting
 from contact.records.validation import FloatArray
-from mdr.springs.assembly import SeveralContacts, contact_fields
+from mdr.radius_search import SeveralContacts
+from mdr.springs.assembly import contact_fields
 from mdr.springs.beside_contact import refuse_touching_beside
 from mdr.springs.equivalent_system import EquivalentSystem
 from mdr.springs.error_model import PRESSURE_ROUNDING, SAMPLED_ROUNDING
@@ -281,8 +282,6 @@ def _errors(
     contact_stiffness: FloatArray,
 ) -> dict[str, FloatArray]:
     """Relative errors of what was not prescribed; of the pressure in the norm weighted with 2 pi r."""
-    if system.variants:
-        return _table_errors(system, scene, radius, depth, force)
     errors, given = system.relative_errors(radius, of_springs=False), type(scene.loading).__name__
     stiffness, ratio, exact = errors["contact_stiffness"], radius / system.length_unit, np.zeros_like(radius)
     if isinstance(scene.indenter, FlatPunch):
@@ -337,18 +336,3 @@ def density_errors(system: EquivalentSystem, scene: Scene, radius: FloatArray) -
     # Closed slopes are as good as the quadrature over them, which fields inside state themselves.
     rounding = 0.0 if has_closed_slope(scene.indenter) else SAMPLED_ROUNDING
     return rounding + system.flat_punch.contact_density_error(ratio, depth_error)
-
-
-def _table_errors(
-    system: EquivalentSystem, scene: Scene, radius: FloatArray, depth: FloatArray, force: FloatArray
-) -> dict[str, FloatArray]:
-    """As `_errors`, from the table's own variants."""
-    # Other flat-punch data do not need these modules.
-    from mdr.springs.table_errors import elastic_errors  # noqa: PLC0415
-    from mdr.springs.table_pressure import pressure_errors  # noqa: PLC0415
-
-    is_punch = isinstance(scene.indenter, FlatPunch)
-    errors = elastic_errors(system, scene.loading, radius, depth, is_punch=is_punch)
-    values = (radius, depth, force, system.contact_stiffness(radius))
-    relative = {name: error / value for (name, error), value in zip(errors.items(), values, strict=True)}
-    return relative | {"pressure": pressure_errors(system, scene, radius, depth)}

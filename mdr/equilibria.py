@@ -6,19 +6,22 @@ Errors: the same states on finer springs (`contact.stated`), and rounding errors
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import partial
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bem.equation import USUAL, Sizes
-from bem.layer_equation.flat_punch_source import IntegralEquation
+from bem.flat_punch import IntegralEquation
 from bem.layer_equation.protocol import FlatPunchSource
 from bem.numerics import EPS, gauss
 from contact import (
     ContactPath,
     ContactRadii,
+    ElasticLayer,
     FlatPunch,
     IndentationDepths,
     InvalidInput,
@@ -30,7 +33,7 @@ from contact import (
 )
 from contact.answer.friction import told_of_friction
 from contact.answer.inside import InteriorFields, KnownContact
-from contact.answer.solution import Setting
+from contact.answer.solution import Setting, StatedErrors
 from contact.records.validation import FloatArray
 from contact.stated import stated_error
 from mdr.admissible import refuse_pulling, refuse_touching_outside
@@ -38,10 +41,12 @@ from mdr.contact_surface import Surface, is_hard, surface_of
 from mdr.radius_search import Quantity, RadiusSearch, refuse_too_wide
 from mdr.spring_bed import Springs, SpringValues, State
 
+# A stated error, or the function that computes it.
+StatedError: TypeAlias = FloatArray | Callable[[], FloatArray]
 # States of a path at which errors are computed and contacts are checked; the largest change counts for all of them.
-_COMPARED, _CHECKED = 3, 12
+_COMPARED, _CHECKED = 8, 12
 # Radii inside, and radii outside over the contact radius, at which fields are compared.
-_INSIDE, _OUTSIDE = 8, np.array([1.02, 1.5])
+_INSIDE, _OUTSIDE = 8, np.array([1.02, 2.0, 4.0])
 # Relative rounding error of pressure and displacement by their quadratures.
 _FIELD_ROUNDING = 2e-13
 
@@ -59,12 +64,8 @@ def solve_elastic(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
         SeveralContacts: If the contact would not be one circle.
         UnsupportedSceneError: If the surfaces would pull inside, or the indenter would touch outside.
     """
-    if not isinstance(flat_punch, IntegralEquation):
-        from mdr.elastic import solve_elastic as solve_by_table  # noqa: PLC0415 - loaded with tables only
-
-        return solve_by_table(scene, flat_punch, settings)
     log = StageLog()
-    springs = _springs(scene, flat_punch, log)
+    springs = springs_of(scene, flat_punch, log)
     with log.stage("mdr_profile"):
         radius = _radii(scene, springs)
     with log.stage("force"):
@@ -80,7 +81,7 @@ def solve_elastic(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
         indentation_depth=state.depth,
         normal_force=state.force,
         contact_stiffness=state.stiffness,
-        error_estimate=errors,
+        error_estimate=StatedErrors(errors, "mdr"),
         cost=log.cost(unknowns=springs.punches.unknowns(float(radius.max()) / springs.unit)),
         stages=log.records,
         notes=told_of_friction(scene.layer, state.radius),
@@ -88,14 +89,30 @@ def solve_elastic(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
     )
 
 
-def _springs(scene: Scene, flat_punch: IntegralEquation, log: StageLog) -> Springs:
-    """Springs of a scene; those of a layer are solutions of its equation."""
-    springs = Springs.of(scene.layer, scene.indenter, sizes_of(flat_punch))
+def springs_of(scene: Scene, flat_punch: FlatPunchSource, log: StageLog) -> Springs:
+    """Springs of a scene; those of a layer are solutions of its equation, or of a table."""
+    springs = springs_on(scene.layer, scene.indenter, flat_punch)
     if not scene.layer.is_half_space:
         with log.stage("flat_punch_data"):
             log.count("flat_punch_solutions")
             springs.punches.at(np.ones(1))
     return springs
+
+
+def springs_on(layer: ElasticLayer, indenter: Profile, flat_punch: FlatPunchSource) -> Springs:
+    """Springs of a layer under an indenter, by the equation of contact or by a table of flat punches.
+
+    Raises:
+        UnsupportedSceneError: If a table is asked for of a layer that is not uniform.
+        InvalidInput: If a stored table is of another layer.
+    """
+    if isinstance(flat_punch, IntegralEquation):
+        return Springs.of(layer, indenter, sizes_of(flat_punch))
+    if layer.is_half_space:
+        return Springs.of(layer, indenter)
+    from mdr.table_bed import TableSprings  # noqa: PLC0415 - loads the boundary elements
+
+    return TableSprings.of_table(layer, indenter, flat_punch)
 
 
 def is_simple(scene: Scene) -> bool:
@@ -200,8 +217,8 @@ class ElasticErrors:
     state: State
     values: SpringValues
 
-    def stated(self) -> dict[str, FloatArray]:
-        """Relative errors of what was not prescribed, each of shape (n,)."""
+    def stated(self) -> dict[str, StatedError]:
+        """Relative errors of what was not prescribed, each of shape (n,); those of fields when they are first read."""
         loading, count = self.scene.loading, self.state.radius.size
         some = _spread(self.state.radius, _COMPARED)
         seen = State(*(one[some] for one in self.state))
@@ -217,17 +234,20 @@ class ElasticErrors:
         stiffness = _largest(seen.stiffness, companion.stiffness, seen.stiffness) + whole
         moved = np.zeros(count) if by_radius or is_punch else depth * self._sensitivity(seen)
         zero = np.zeros(count)
-        pressure, displacement = self._fields(seen)
         of_depth, of_force = force if is_punch else force + depth, force + (depth if by_radius else 0.0)
+        # Between the rim of a flat end and the edge pressures go with a - b.
+        pressure = whole + moved / np.maximum(1 - self.springs.tip.flat / self.state.radius, 1e-12)
+        # Outside thin layers w is a small difference of terms of the size of phi, K/a times the depth.
+        displacement = (force if is_punch else depth) + moved + EPS * self.values.K / self.state.radius
+        # Functions outlive the answer's other arrays, so they refer to a few states only.
+        pair = partial(_pair, self.scene, self.springs, seen)
         return {
             "contact_radius": moved,
             "indentation_depth": zero if by_depth else of_depth,
             "normal_force": of_force if by_radius or by_depth else zero,
             "contact_stiffness": stiffness + moved * self._growth(),
-            # Between the rim of a flat end and the edge pressures go with a - b.
-            "pressure": pressure + whole + moved / np.maximum(1 - self.springs.tip.flat / self.state.radius, 1e-12),
-            # Outside thin layers w is a small difference of terms of the size of phi, K/a times the depth.
-            "surface_displacement": displacement + depth + moved + EPS * self.values.K / self.state.radius,
+            "pressure": lambda: _pressure_error(pair, seen) + pressure,
+            "surface_displacement": lambda: compared_displacement(pair(-1)) + displacement,
         }
 
     def _position_rounding(self) -> FloatArray | float:
@@ -253,19 +273,17 @@ class ElasticErrors:
         """d(ln k_N)/d(ln a) = a y_1^2/K."""
         return np.asarray(self.state.radius * self.values.y1**2 / self.values.K)
 
-    def _fields(self, seen: State) -> tuple[float, float]:
-        """Errors of pressure, relative to its mean, and of displacement, relative to the depth.
 
-        Pressures are compared in the smallest and the widest contact, the slower displacements in the widest.
-        """
-        pressure = displacement = 0.0
-        for step in sorted({0, seen.radius.size - 1}):
-            a, depth, force = (float(one[step]) for one in seen[:3])
-            singular = is_singular(self.scene, a)
-            pair = surface_pair(self.springs, a, depth, is_singular=singular)
-            pressure = max(pressure, compared_pressure(pair, force / (np.pi * a**2)))
-            displacement = compared_displacement(pair)
-        return pressure, displacement
+def _pair(scene: Scene, springs: Springs, seen: State, step: int) -> list[Surface]:
+    a, depth = float(seen.radius[step]), float(seen.depth[step])
+    return surface_pair(springs, a, depth, is_singular=is_singular(scene, a))
+
+
+def _pressure_error(pair: Callable[[int], list[Surface]], seen: State) -> float:
+    """Error of the pressure over its mean, compared in the first and the last contact."""
+    steps = sorted({0, seen.radius.size - 1})
+    means = [float(seen.force[step] / (np.pi * seen.radius[step] ** 2)) for step in steps]
+    return max(compared_pressure(pair(step), mean) for step, mean in zip(steps, means, strict=True))
 
 
 def surface_pair(springs: Springs, a: float, depth: float, *, is_singular: bool) -> list[Surface]:
@@ -342,15 +360,10 @@ class PathFields:
         return self.surface(step).displacement(radius)
 
     def inside(self, step: int, known: KnownContact) -> InteriorFields:
-        """The body under one step, by the panels' density of the same contact."""
-        # Only those who look inside load it.
-        if self.adheres:
-            from mdr.adhesion.solver import solve_adhesive as solve  # noqa: PLC0415
-        else:
-            from mdr.elastic import solve_elastic as solve  # noqa: PLC0415
-        by_depth = isinstance(self.scene.indenter, FlatPunch)
-        loading = IndentationDepths(self.depth[[step]]) if by_depth else ContactRadii(self.radius[[step]])
-        path = solve(self.scene.replace(loading=loading), self.flat_punch, self.settings)
-        assert path.fields is not None
-        found: InteriorFields = path.fields.inside(0, known)  # type: ignore[attr-defined]
-        return found
+        """The body under one step."""
+        from mdr.inside import interior  # noqa: PLC0415 - only those who look inside load it
+
+        singular = self.adheres or is_singular(self.scene, known.radius)
+        if not self.adheres:  # two resolutions of the contact itself tell more
+            known = known._replace(density_error=0.0)
+        return interior(self.springs, self.scene.layer, known, float(self.depth[step]), is_singular=singular)

@@ -7,7 +7,7 @@ from typing import Annotated, ClassVar, Self, overload
 
 from pydantic import Field
 
-from bem.layer_equation.flat_punch_source import IntegralEquation
+from bem.flat_punch import IntegralEquation
 from bem.layer_equation.protocol import FlatPunchSource
 from contact import (
     ContactPath,
@@ -18,7 +18,6 @@ from contact import (
     HistoryPath,
     Impact,
     ImpactHistory,
-    LayerStack,
     Scene,
     Solution,
     Supported,
@@ -86,9 +85,6 @@ class Mdr(Record):
         solver = solver_of(scene)
         if isinstance(solver, Unsupported):
             raise UnsupportedSceneError(solver.reason)
-        if isinstance(scene.layer, LayerStack) and not isinstance(self.flat_punch, IntegralEquation):
-            # Where a contact pulls or touches beside by less than a table's errors, the integral equation refuses.
-            solver.load()(scene, IntegralEquation(), self._settings())
         compiled: dict[str, Setting] = {"compiled": True} if self.compiled and isinstance(scene.loading, Impact) else {}
         return solver.load()(scene, self.flat_punch, self._settings() | compiled)
 

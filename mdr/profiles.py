@@ -18,9 +18,8 @@ from itertools import pairwise
 import numpy as np
 from numpy.polynomial import Chebyshev
 from numpy.typing import NDArray
-from scipy.special import beta
 
-from bem.numerics import EPS, abel_legendre, gauss
+from bem.numerics import EPS, abel_legendre, gauss, special
 from contact.records.validation import FloatArray
 from contact.scene.profiles import (
     Cone,
@@ -167,7 +166,7 @@ class PowerTip(Tip):
     def __init__(self, profile: Profile, height: float, radius: float, exponent: float) -> None:
         super().__init__(profile)
         self.exponent, self._radius = exponent, radius
-        self._gain = height * exponent / 2 * float(beta(exponent / 2, 0.5))
+        self._gain = height * exponent / 2 * float(special().beta(exponent / 2, 0.5))
 
     def transform(self, x: FloatArray) -> FloatArray:
         """g_hs = H (n/2) B(n/2, 1/2) (x/R)^n."""

@@ -7,26 +7,29 @@ several radii have one depth, and the caller says which of them is a contact.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Iterator
 from typing import Literal
 
 import numpy as np
 
 from bem.numerics import EPS
-from contact import InvalidInput, UnsupportedSceneError
+from contact import InvalidInput, Profile, UnsupportedSceneError
 from contact.records.validation import FloatArray
 from mdr.spring_bed import Springs
 
 Quantity = Literal["depth", "force"]
 
-# Contact radius over the thickness of the surface material up to which contacts are answered.
-LARGEST_RATIO = 1000.0
+# Trial radii double up to this share of an upright end's radius, and come closer to it by these shares.
+_NEAR_END, _CLOSER = 0.7, (0.2, 0.05, 0.01, 1e-3, 1e-6)
 # Radii per e-fold of the rough table. Half as many cost one more secant step.
 _DENSITY = 6
 # Secant steps before a search gives up; four are usual.
 _MOST_STEPS = 12
 # ln(a/h) below which the layers under the first change g too little to let it fall.
 _WITHIN_LAYER = -5.0
+# Places around each maximum of g. Half as many miss depths within 0.3 % of the maximum.
+_AROUND_TOP = 41
 # Breaks of a profile between which a table is refined; more are measured points, whose steps are small.
 _PER_BREAK = 4
 
@@ -45,21 +48,37 @@ class SeveralContacts(UnsupportedSceneError):
 
 
 def largest_radius(springs: Springs) -> float:
-    """Largest contact radius [m] that is answered: the indenter's end, or `LARGEST_RATIO` thicknesses."""
+    """Largest contact radius [m] that is answered: the indenter's end, or the largest ratio of the springs."""
     thickest = np.inf if springs.kernel.is_uniform else springs.unit * springs.kernel.units
-    return min(springs.tip.end, LARGEST_RATIO * thickest)
+    return min(springs.tip.end, springs.largest_ratio * thickest)
+
+
+def growing_radii(indenter: Profile, first: float) -> Iterator[float]:
+    """Trial radii [m], each way from the flat end twice the one before, up to the end.
+
+    A end where the flank is upright is approached, not reached.
+    """
+    flat, end = indenter.flat_radius, indenter.max_radius
+    way = first - flat
+    while math.isinf(end) or flat + way < _NEAR_END * end:
+        yield flat + way
+        way *= 2.0
+    upright = not np.isfinite(indenter.slope_at(end))
+    yield from (end * (1.0 - share) for share in _CLOSER if upright)
+    if not upright:
+        yield end
 
 
 def refuse_too_wide(springs: Springs, radius: float) -> None:
-    """Refuse contact radii [m] beyond `LARGEST_RATIO` thicknesses, or an upright end of the indenter.
+    """Refuse contact radii [m] beyond the largest ratio of the springs, or an upright end of the indenter.
 
     Raises:
         InvalidInput: With the ratio or the radius.
     """
     thickness = springs.unit * springs.kernel.units
-    if not springs.kernel.is_uniform and radius > LARGEST_RATIO * thickness * (1 + 1e-9):
+    if not springs.kernel.is_uniform and radius > springs.largest_ratio * thickness * (1 + 1e-9):
         raise InvalidInput(
-            f"a/h = {radius / thickness:g}: contacts are answered up to {LARGEST_RATIO:g} times the thickness "
+            f"a/h = {radius / thickness:g}: contacts are answered up to {springs.largest_ratio:g} times the thickness "
             f"{thickness:g} m of the material at the surface; ask for smaller contacts"
         )
     profile = springs.tip.profile
@@ -77,20 +96,21 @@ class RadiusSearch:
 
     def __init__(self, springs: Springs, *, may_fall: bool) -> None:
         self.springs, self.may_fall = springs, may_fall
+        self._unit = springs.unit * springs.thickness
 
     def place(self, z: FloatArray) -> FloatArray:
         """Contact radii [m] on a scale without ends: flat + unit e^z, bent to stay within the indenter."""
         tip = self.springs.tip
-        grown, room = self.springs.unit * np.exp(z), tip.end - tip.flat
+        grown, room = self._unit * np.exp(z), tip.end - tip.flat
         return np.asarray(tip.flat + grown / (1 + grown / room))
 
-    def _scale(self, radius: FloatArray) -> FloatArray:
+    def scale(self, radius: FloatArray) -> FloatArray:
         """z of contact radii [m], the inverse of `place`."""
         tip = self.springs.tip
         grown = np.maximum(radius - tip.flat, 1e-300)
-        return np.asarray(np.log(grown / np.maximum(1 - grown / (tip.end - tip.flat), EPS) / self.springs.unit))
+        return np.asarray(np.log(grown / np.maximum(1 - grown / (tip.end - tip.flat), EPS) / self._unit))
 
-    def _logarithm(self, springs: Springs, quantity: Quantity, z: FloatArray) -> FloatArray:
+    def logarithm(self, springs: Springs, quantity: Quantity, z: FloatArray) -> FloatArray:
         """ln(depth or force) at z."""
         state = springs.states(self.place(np.atleast_1d(z)))
         return np.asarray(np.log(np.maximum(getattr(state, quantity), 1e-300)))
@@ -103,9 +123,9 @@ class RadiusSearch:
         """
         if not self.may_fall:
             return
-        top = float(self._scale(np.array([largest]))[0])
+        top = float(self.scale(np.array([largest]))[0])
         z = self._grid(min(self._least(), top - 1.0), top)
-        fall = self._fall(z, self._logarithm(self.springs.coarse, "depth", z))
+        fall = self._fall(z, self.logarithm(self.springs.coarse, "depth", z))
         if fall is not None:
             raise SeveralContacts(fall)
 
@@ -116,7 +136,7 @@ class RadiusSearch:
             return z
         breaks = np.array([self.springs.tip.flat, *self.springs.tip.breaks])
         share = np.arange(1, _PER_BREAK + 1) / _PER_BREAK
-        more = self._scale((breaks[:-1, None] + share * np.diff(breaks)[:, None]).ravel())
+        more = self.scale((breaks[:-1, None] + share * np.diff(breaks)[:, None]).ravel())
         return np.array(sorted({*z.tolist(), *more[(more > low) & (more < high)].tolist()}))
 
     def _fall(self, z: FloatArray, logarithm: FloatArray) -> float | None:
@@ -125,7 +145,7 @@ class RadiusSearch:
         apart = radius > self.springs.tip.flat * (1 + 1e-12)
         if (np.diff(logarithm[apart]) > 0).all():
             return None
-        exact = self._logarithm(self.springs, "depth", z[apart])
+        exact = self.logarithm(self.springs, "depth", z[apart])
         falls = np.flatnonzero(np.diff(exact) <= 0)
         return float(radius[apart][falls[0]]) if falls.size else None
 
@@ -134,17 +154,17 @@ class RadiusSearch:
         coarse = self.springs.coarse
         last = self._last()
         top, step = min(0.0, last), 1.0
-        while (reached := float(self._logarithm(coarse, quantity, np.array([top]))[0])) < most + 1e-2:
+        while (reached := float(self.logarithm(coarse, quantity, np.array([top]))[0])) < most + 1e-2:
             if top >= last:
                 if reached < most:
                     self._refuse_reach(quantity, most, top)
                 break
             top, step = min(top + step, last), step * (2.0 if self.springs.kernel.is_uniform else 1.0)
         low, step = top - 1.0, 1.0
-        while self._logarithm(coarse, quantity, np.array([low]))[0] > least - 1e-2:
+        while self.logarithm(coarse, quantity, np.array([low]))[0] > least - 1e-2:
             low, step = low - step, 2 * step
         z = self._grid(min(low, self._least()), top)
-        return z, self._logarithm(coarse, quantity, z)
+        return z, self.logarithm(coarse, quantity, z)
 
     def _least(self) -> float:
         """Place below which g surely rises: small contacts within the first layer and the first break."""
@@ -152,7 +172,7 @@ class RadiusSearch:
             return float("inf")
         inner = [b for b in self.springs.tip.breaks if b > self.springs.tip.flat][:1]
         return (
-            min(_WITHIN_LAYER, *(float(self._scale(np.array([b]))[0]) - 1.0 for b in inner)) if inner else _WITHIN_LAYER
+            min(_WITHIN_LAYER, *(float(self.scale(np.array([b]))[0]) - 1.0 for b in inner)) if inner else _WITHIN_LAYER
         )
 
     def _last(self) -> float:
@@ -161,7 +181,7 @@ class RadiusSearch:
         if not np.isfinite(largest):
             return float("inf")
         rounded = 36.0 + np.log(largest / self.springs.unit)
-        return min(float(self._scale(np.array([largest]))[0]), float(rounded))
+        return min(float(self.scale(np.array([largest]))[0]), float(rounded))
 
     def _refuse_reach(self, quantity: Quantity, most: float, top: float) -> None:
         """Refuse a depth [m] or force [N] that the last place does not reach, by the accurate springs.
@@ -176,8 +196,8 @@ class RadiusSearch:
         wanted, profile = float(np.exp(most)), self.springs.tip.profile
         if radius[0] < profile.max_radius * (1 - 1e-9):
             raise InvalidInput(
-                f"loading.values = {wanted:g}: only {reached:g} is reached at a/h = {LARGEST_RATIO:g}, up to which "
-                "contacts are answered; press less"
+                f"loading.values = {wanted:g}: only {reached:g} is reached at a/h = {self.springs.largest_ratio:g}, "
+                "up to which contacts are answered; press less"
             )
         if profile.ends_upright:
             raise InvalidInput(f"loading.values = {wanted:g}: {profile.upright_end}; press less")
@@ -201,7 +221,7 @@ class RadiusSearch:
         y = np.log(targets)
         z, table = self._table(quantity, float(y.min()), float(y.max()))
         if self.may_fall:
-            depth = table if quantity == "depth" else self._logarithm(self.springs.coarse, "depth", z)
+            depth = table if quantity == "depth" else self.logarithm(self.springs.coarse, "depth", z)
             fall = self._fall(z, depth)
             if fall is not None and self.springs.kernel.is_single:
                 before = self.place(z) < fall
@@ -211,7 +231,7 @@ class RadiusSearch:
             elif fall is not None:
                 return self._beyond_falls(quantity, y, (z, table), is_contact, SeveralContacts(fall))
         table = np.maximum.accumulate(table)
-        return self._refined(quantity, y, np.interp(y, table, z), np.interp(y, table, np.gradient(table, z)))
+        return self.refined(quantity, y, np.interp(y, table, z), np.interp(y, table, np.gradient(table, z)))
 
     def _beyond_falls(
         self,
@@ -222,13 +242,17 @@ class RadiusSearch:
         ring: SeveralContacts,
     ) -> FloatArray:
         """Of all radii with one depth or force the one that is a contact; the contact problem has one solution only."""
-        (z, table), found = rough, np.empty_like(y)
+        z, found = rough[0], np.empty_like(y)
+        tops = 1 + np.flatnonzero((np.diff(rough[1])[:-1] > 0) & (np.diff(rough[1])[1:] <= 0))
+        close = [np.linspace(z[i - 1], z[i + 1], _AROUND_TOP) for i in tops.tolist()]
+        z = np.unique(np.concatenate([z, *close]))
+        table = self.logarithm(self.springs.coarse, quantity, z)
         for i, target in enumerate(y.tolist()):
             rises = np.flatnonzero((table[:-1] < target) & (table[1:] >= target))[::-1]
             slope = (table[rises + 1] - table[rises]) / (z[rises + 1] - z[rises])
             start = z[rises] + (target - table[rises]) / slope
             radii = [
-                float(self._refined(quantity, np.array([target]), s, k)[0])
+                float(self.refined(quantity, np.array([target]), s, k)[0])
                 for s, k in zip(start[:, None], slope[:, None], strict=True)
             ]
             found[i] = self._only_contact(radii, is_contact, ring)
@@ -240,21 +264,21 @@ class RadiusSearch:
             try:
                 is_contact(radius)
             except UnsupportedSceneError as own:
-                # A circle short of the falling stretch has its own reason.
-                objection = own if radius < ring.radius else objection
+                # A circle short of the falling stretch, known to one step of the table, has its own reason.
+                objection = own if radius < ring.radius * np.exp(1 / _DENSITY) else objection
                 continue
             return radius
         raise objection
 
-    def _refined(self, quantity: Quantity, y: FloatArray, z: FloatArray, slope: FloatArray) -> FloatArray:
+    def refined(self, quantity: Quantity, y: FloatArray, z: FloatArray, slope: FloatArray) -> FloatArray:
         """Radii [m] with these logarithms by secants from a start and its slope."""
         tip = self.springs.tip
         slope = np.maximum(slope, 1e-3)
         least, most, missed = 0.5 * slope, 2 * slope, np.inf
         new, old, f_old = z, z, z
         for number in range(_MOST_STEPS):
-            f = self._logarithm(self.springs, quantity, new) - y
-            worst = float(np.abs(f).max())
+            f = self.logarithm(self.springs, quantity, new) - y
+            worst = float(np.abs(f).max(initial=0.0))
             if worst < 16 * EPS or (worst < 1e-12 and worst > 0.5 * missed):
                 break
             if number > 0:

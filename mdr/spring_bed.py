@@ -8,14 +8,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bem.equation import COARSE, USUAL, FlatPunches, Radius, Sizes, flat_punches
+from bem.equation import COARSE, USUAL, FlatPunches, Radius, Rows, Sizes, flat_punches
 from bem.kernels.moduli import contact_modulus
 from bem.kernels.of_contact import ContactKernel, contact_kernel, unit_of
 from bem.numerics import EPS, graded
@@ -28,6 +29,8 @@ from mdr.profiles import Tip, tip_of
 _ROUNDINGS = 16.0
 # Relative error of a graded layer's tabulated kernel, which both resolutions share: 6e-13 of k_N at most was seen.
 _GRADED_KERNEL = 2e-12
+# Contact radius over the thickness of the surface material up to which contacts are answered.
+LARGEST_RATIO = 1000.0
 # Radii that are answered at a time: their rows stay in the cache.
 _BLOCK = 2048
 
@@ -67,6 +70,8 @@ class Springs:
         modulus: E* [Pa].
         tip: The profile.
         sizes: Resolution.
+        thickness: Thickness of the layer under each radius that is asked for, in units of `unit`, shape (n,); one where
+            all radii are on the same layer.
     """
 
     kernel: ContactKernel
@@ -74,6 +79,13 @@ class Springs:
     modulus: float
     tip: Tip
     sizes: Sizes = USUAL
+    thickness: FloatArray | float = 1.0
+    is_tabulated: ClassVar[bool] = False
+
+    @property
+    def largest_ratio(self) -> float:
+        """Contact radius over the thickness of the surface material up to which contacts are answered."""
+        return LARGEST_RATIO
 
     @classmethod
     def of(cls, layer: ElasticLayer, indenter: Profile, sizes: Sizes = USUAL) -> Springs:
@@ -86,7 +98,7 @@ class Springs:
 
     def at_sizes(self, sizes: Sizes) -> Springs:
         """The same springs at another resolution."""
-        return Springs(self.kernel, self.unit, self.modulus, self.tip, sizes)
+        return replace(self, sizes=sizes)
 
     @cached_property
     def finer(self) -> Springs:
@@ -110,13 +122,8 @@ class Springs:
     def at(self, radii: ArrayLike, excess: FloatArray | None = None) -> SpringValues:
         """y_1, g, K, M at radii > 0 [m], shape (n,); an excess a - b [m] has digits that a loses beside a flat end."""
         x = np.atleast_1d(np.asarray(radii, dtype=np.float64))
-        if x.size > _BLOCK:
-            count = -(-x.size // _BLOCK)
-            beyond = [None] * count if excess is None else np.array_split(excess, count)
-            blocks = [self.at(*block) for block in zip(np.array_split(x, count), beyond, strict=True)]
-            return SpringValues(*(np.concatenate(one) for one in zip(*blocks, strict=True)))
         found = SpringValues(*np.empty((4, x.size)))
-        for index, punch, resolvent, _ in self.punches.at(x / self.unit):
+        for index, punch, resolvent, _ in self._rows(x):
             a = x[index]
             moments = self.tip.moments(a, punch.shape[1], self.sizes.extra)
             y1 = 1 + resolvent[:, 0]
@@ -125,6 +132,13 @@ class Springs:
             found.y1[index], found.g[index] = y1, transform / y1
             found.K[index], found.M[index] = a * punch[:, 0], a * (punch * moments).sum(axis=1)
         return found
+
+    def _rows(self, x: FloatArray) -> Iterator[Rows]:
+        """Flat punches of radii [m], a block and an octave at a time."""
+        ratios = x / (self.unit * self.thickness)
+        for start in range(0, x.size, _BLOCK):
+            for rows in self.punches.at(ratios[start : start + _BLOCK]):
+                yield rows._replace(which=start + rows.which)
 
     def _beyond_polynomials(self, a: FloatArray, moments: FloatArray) -> FloatArray | float:
         """What polynomials miss of int B(a, t) g_hs dt on graded layers under kinked profiles.
@@ -147,12 +161,8 @@ class Springs:
 
     def floor(self, radii: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Relative rounding errors of depth, and of force and stiffness, at radii [m], shape (n,)."""
-        if radii.size > _BLOCK:
-            blocks = [self.floor(block) for block in np.array_split(radii, -(-radii.size // _BLOCK))]
-            edge, whole = (np.concatenate(one) for one in zip(*blocks, strict=True))
-            return edge, whole
         floor = np.empty((2, radii.size))
-        for index, *_, noise in self.punches.at(radii / self.unit):
+        for index, *_, noise in self._rows(radii):
             floor[:, index] = _ROUNDINGS * EPS * (1 + noise.T)
         if self.kernel.is_graded:
             floor += _GRADED_KERNEL

@@ -355,7 +355,7 @@ def schema(
     import json  # noqa: PLC0415
 
     from cases.results.files import json_schema  # noqa: PLC0415
-    from contact.files.scene_schema import scene_schema  # noqa: PLC0415
+    from contact.files.scene_file import scene_schema  # noqa: PLC0415
 
     chosen = scene_schema() if what == "scene" else json_schema()
     typer.echo(json.dumps(chosen, indent=1, sort_keys=True))

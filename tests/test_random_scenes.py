@@ -8,7 +8,7 @@ import pytest
 
 import contact
 from contact import CoatedPair, DepthFunction, Effect, ElasticLayer, Loading, Profile, scene_from_mapping
-from contact.files.scene_schema import scene_schema
+from contact.files.scene_file import scene_schema
 from contact.records.record import record
 from tests import random_scenes
 from tests.random_scenes import Around, UnknownField, concrete, drawn_record, drawn_scene

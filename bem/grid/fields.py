@@ -10,7 +10,7 @@ from typing import Final
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
-from bem.grid.discs import EDGE_CELLS, Punch
+from bem.grid.discs import EDGE_CELLS, Punch, Unresolved
 from bem.grid.influence import REACH, kernel_of, point_response
 from bem.kernels.moduli import contact_modulus
 from contact import ElasticLayer, Profile
@@ -80,15 +80,21 @@ class ContactFields:
 
         Raises:
             UnsupportedSceneError: With the place.
+            Unresolved: With the place, where the only such cells lie beside an edge or a kink.
         """
         rings, quotient = self._rings
         other_rings, other = coarser._rings
         marks = [self.radius, *(k for k in self.indenter.kinks if k < self.radius)]
         away = np.min([np.abs(rings - mark / self.radius) for mark in marks], axis=0) * self.punch.disc.radius
-        for place in rings[(away > BESIDE_KINKS) & (quotient < -PULLED * quotient.max())]:
-            near = np.abs(other_rings - place) * coarser.punch.disc.radius < NEARBY
-            if other[near].min(initial=np.inf) < -PULLED * other.max():
-                raise no_single_circle(self.radius, f"would be pulled at r = {self.radius * place:g} m")
+        near = np.abs(rings[:, None] - other_rings) * coarser.punch.disc.radius < NEARBY
+        on_both = (near & (other < -PULLED * other.max())).any(axis=1) & (quotient < -PULLED * quotient.max())
+        for place in self.radius * rings[on_both & (away > BESIDE_KINKS)]:
+            raise no_single_circle(self.radius, f"would be pulled at r = {place:g} m")
+        for place in self.radius * rings[on_both]:
+            raise Unresolved(
+                f"a contact of radius {self.radius:g} m would be pulled at r = {place:g} m, less than "
+                f"{BESIDE_KINKS:g} cells from an edge or a kink, where cells are too large to tell; take more points"
+            )
 
     def over_half_space(self, share: FloatArray) -> FloatArray:
         """Pressure at r/a over that of the half-space under a unit depth [m]."""

@@ -1,43 +1,72 @@
-"""Compliance of a layer whose constants change with depth, by the Riccati equation of its surface compliance.
+"""A layer whose constants change with depth: Riccati's equation of its reflection, upwards and downwards.
 
-With C the compliance of all that lies below a plane, in units of 1/(2 G(z) k), and g = G'/G,
+At every depth the field splits into waves of the local half-space that fade downwards, with tractions d, and waves that
+fade upwards, with tractions g = R d: t = d + g and 2 G k (U, W) = C_0 d - C_0~ g. C_0 is the half-space's compliance,
+C_0~ the same with the other sign beside the diagonal; C_0 + C_0~ = 4 beta, beta = 1 - nu. So
 
-    C' = g C + k [A C + C A^T - diag(2, (1 - 2 nu)/(1 - nu)) + C diag(1/(1 - nu), 0) C],
-    A = [[0, 1], [-nu/(1 - nu), 0]].
+    C = C_0 - 4 beta S,   S = R (1 + R)^-1,   1 - chi = 2 S_WW at the surface.
 
-It is integrated from below upwards, where errors die like exp(-2kz), and for the difference ``D = k (C - C_0)`` to the
-half-space of the local material: so 1 - chi, which falls like 1/k only, keeps its relative accuracy. At depths beyond
-`DEEP`/k nothing is felt. Above a frictionless base C is infinite; there the mixed form (Q, W) = M (U, P) is integrated.
+With L = [[2, 1], [-1, 0]], gamma = G'/G, f = -(beta gamma + nu')/(2 beta), h = ((1 - 2 nu) gamma + 2 nu')/(4 beta) and
+F = [[f, h], [h, f]],
+
+    R' = k (L R + R L^T) + (1 + R) F (1 + R) + (gamma + nu'/beta) (R + R^2)
+
+which is linear where nothing changes, bounded for every base (a frictionless one has R_UU = -1), and integrated
+upwards, where errors fade like exp(-2kz). R, and with it 1 - chi ~ c_1/k, keeps its relative accuracy for large k.
+Downwards d' = -k L^T d + (gamma (C_0 - C_0~ R) - 2 nu' J (1 + R)) d/(4 beta) + (nu'/beta) d, J = ones. Lengths count in
+thicknesses.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 from math import inf
-from typing import Any, Final, Protocol
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
+from bem.kernels.stack import Material, Transfer
+from bem.numerics import Octaves, barycentric
 from contact.records.errors import NotConvergedError
+from contact.records.validation import FloatArray
 from contact.scene.graded_layer import GradedLayer
 from contact.scene.layer_stack import ElasticBase
 
-# Depth times |k| at which a half-space is assumed below: exp(-2 DEEP cos(15 degrees)) is 1e-17.
-DEEP: Final = 21.0
-# Relative tolerance of the integration; with 1e-12 stiffnesses were off by 9e-14 k_bar of themselves, with this one by
-# 6.5e-15 (a power law without bond, against 3e-14, 2026-11-23).
-TOLERANCE: Final = 1e-13
-# The same, absolute, against quantities of order one.
-ABSOLUTE: Final = 1e-14
+# Depth times |k| below which nothing is felt: exp(-2 DEEP cos(15 degrees)) is 1e-17, with half of it 1e-9.
+DEEP = 21.0
+# Depth times k down to which the inside is followed: exp(-40) is below all digits, exp(-20) would be seen.
+_FADED = 40.0
+# Relative and absolute tolerance of the integration; ten times as much costs a digit and saves a tenth of the time.
+TOLERANCE, ABSOLUTE = 1e-13, 1e-15
+# Chebyshev nodes over the depth between two breakpoints: exp(-61 z) is resolved by 64 to 1e-14, by 32 to 1e-5.
+_NODES = 64
+# Nodes per octave of wave numbers: 18 leave 1e-13, 9 leave 1e-7.
+_WAVES = 18
+# Wave number from which the tail's coefficients are fitted. Half of it leaves ten times the error, twice loses digits.
+_FAR = 80.0
 
 
-class Rates(Protocol):
-    """Slopes of what is integrated over the depth."""
+# What is integrated as a function of the share of the way, and its slope there.
+_Followed: TypeAlias = Callable[[float], NDArray[Any]]
+_Rate: TypeAlias = Callable[[float, NDArray[Any]], NDArray[Any]]
 
-    def __call__(self, depth: NDArray[Any], values: NDArray[Any], /) -> NDArray[Any]:
-        """Slopes of the values at depths."""
+
+class _Local(NamedTuple):
+    """nu, d nu/dz and d ln G/dz at depths."""
+
+    nu: NDArray[Any]
+    turns: NDArray[Any]
+    stiffens: NDArray[Any]
+
+    @classmethod
+    def at(cls, layer: GradedLayer, z: NDArray[Any]) -> _Local:
+        """In a layer."""
+        nu, turns, modulus = layer.ratio_at(z), layer.ratio_slope(z), layer.youngs_modulus
+        return cls(nu, turns, modulus.slope(z, 1.0) / modulus.at(z, 1.0) - turns / (1 + nu))
 
 
 @dataclass(frozen=True)
@@ -53,9 +82,7 @@ class GradedKernel:
     @property
     def longest(self) -> float:
         """The thickness, or what stretches farther: stiff parts spread a load."""
-        depths = np.linspace(0.0, 1.0, 257)
-        moduli = self.layer.youngs_modulus.at(depths, 1.0)
-        base = self.layer.support
+        moduli, base = self.layer.youngs_modulus.at(np.linspace(0.0, 1.0, 257), 1.0), self.layer.support
         if isinstance(base, ElasticBase):
             moduli = np.append(moduli, base.youngs_modulus)
         return float(moduli.max() / moduli.min())
@@ -66,8 +93,13 @@ class GradedKernel:
         return False
 
     @property
+    def poissons_ratio(self) -> float:
+        """Of the surface material."""
+        return float(self.layer.ratio_at(0.0))
+
+    @property
     def zero_mode(self) -> float:
-        """chi/k at k = 0, from a wavenumber that is small enough; infinite on an elastic base."""
+        """chi/k at k = 0, from a wave number that is small enough; infinite on an elastic base."""
         if isinstance(self.layer.support, ElasticBase):
             return inf
         k = 1e-6 / self.longest
@@ -75,152 +107,183 @@ class GradedKernel:
 
     @property
     def edge_slope(self) -> float:
-        """c1 in chi = 1 + c1/k + ...: -[(2 - nu) E'/E ...]/(2 (1 - nu)) at the surface, in terms of G."""
-        nu, g = float(self.layer.ratio_at(0.0)), float(logarithmic_slope(self.layer, np.zeros(1))[0])
-        return -((2 - nu) * g + float(self.layer.ratio_slope(0.0))) / (2 * (1 - nu))
+        """c_1 in chi = 1 + c_1/k + ..: -[(2 - nu) G'/G + nu']/(2 (1 - nu)) at the surface."""
+        nu, turns, stiffens = (float(one) for one in _Local.at(self.layer, np.array(0.0)))
+        return -((2 - nu) * stiffens + turns) / (2 * (1 - nu))
 
-    def chi(self, wavenumber: NDArray[Any]) -> NDArray[Any]:
-        """chi at wavenumbers k > 0 or 0 <= arg k < pi/2, any shape."""
-        return np.asarray(1 - self.one_minus_chi(wavenumber))
+    @cached_property
+    def tail(self) -> tuple[float, ...]:
+        """c_1, c_2, .. of 1 - chi ~ sum c_j/k^j for large k; the first is known exactly, the others are fitted."""
+        x = np.cos(np.linspace(0.0, np.pi / 2.4, 24)) / _FAR
+        rest = self.one_minus_chi(1 / x) + self.edge_slope * x
+        fitted = np.linalg.lstsq((x[:, None] * _FAR) ** np.arange(2, 12), rest, rcond=None)[0]
+        return (-self.edge_slope, *(fitted * _FAR ** np.arange(2.0, 12))[:4].tolist())
 
-    def one_minus_chi(self, wavenumber: NDArray[Any]) -> NDArray[Any]:
+    def __getstate__(self) -> dict[str, Any]:
+        """Without tables, which are made again where they are needed."""
+        return {"layer": self.layer}
+
+    def chi(self, k: NDArray[Any]) -> NDArray[Any]:
+        """chi at wave numbers k > 0 or 0 <= arg k < pi/2, any shape."""
+        return np.asarray(1 - self.one_minus_chi(k))
+
+    def one_minus_chi(self, k: NDArray[Any]) -> NDArray[Any]:
         """1 - chi, with its relative accuracy for large k too."""
-        k = np.ravel(wavenumber)
-        values = np.empty_like(k)
-        deep = np.abs(k) > DEEP
-        if deep.any():
-            values[deep] = self._difference(k[deep], DEEP / np.abs(k[deep]), None)
-        if not deep.all():
-            values[~deep] = self._above_base(k[~deep])
-        return values.reshape(np.shape(wavenumber))
+        flat = np.ravel(k)
+        R = self.reflection(flat, DEEP)[0](0.0)
+        return np.asarray(2 * _unreflected(R)[2]).reshape(np.shape(k))
 
-    def _above_base(self, k: NDArray[Any]) -> NDArray[Any]:
-        slips, base = self.below
-        return self._mixed(k, base) if slips else self._difference(k, np.ones(k.shape), base, on_base=True)
+    def reflection(self, k: NDArray[Any], deep: float, *, dense: bool = False) -> list[_Followed]:
+        """R from the base, or from where k z = `deep`, upwards, shape (3, k.size) at each depth.
 
-    @property
-    def below(self) -> tuple[bool, ElasticBase | None]:
-        """Whether the layer slides on its base, and the base where it is elastic."""
-        support = self.layer.support
-        slips = support.interface == "unbonded" if isinstance(support, ElasticBase) else support == "unbonded"
-        return slips, support if isinstance(support, ElasticBase) else None
+        Returns:
+            For each stretch between breakpoints, the top first, R as a function of the share of the depth; without
+            `dense` only its value at the top, share 0.
+        """
+        start = np.minimum(1.0, deep / np.abs(k))
+        R = np.where(start < 1.0, 0.0, self._at_base(k))
+        found: list[_Followed] = []
+        for low, high in self.stretches(start)[::-1]:
+            upwards = _integrated(self._upwards(k, low, high), R, dense=dense)
+            found.append(lambda share, upwards=upwards: upwards(1.0 - share))  # type: ignore[misc]
+            R = upwards(1.0)
+        return found[::-1]
 
-    def _difference(
-        self, k: NDArray[Any], start: NDArray[Any], base: ElasticBase | None, *, on_base: bool = False
-    ) -> NDArray[Any]:
-        """-D_WW/(2 (1 - nu) k) at the surface, from the local half-space, or from the base, at depths `start`."""
-        beta0 = 1 - float(self.layer.ratio_at(0.0))
-        D = self.difference_on(k, base) if on_base else np.zeros((3, k.size), dtype=k.dtype)
-        top = _integrated(self.difference_rates(k), D, start, self.layer.breakpoints)
-        return np.asarray(-top[2] / (2 * beta0 * k))
+    def _upwards(self, k: NDArray[Any], low: FloatArray, high: FloatArray) -> _Rate:
+        return lambda way, R: (low - high) * self._slope(k, high + (low - high) * way, R)
 
-    def difference_on(self, k: NDArray[Any], base: ElasticBase | None) -> NDArray[Any]:
-        """D at a bonded base."""
-        below = (
-            np.zeros((3, k.size)) if base is None else uniform_compliance(base.poissons_ratio, k) * self._softer(base)
-        )
-        return np.asarray(k * (below - uniform_compliance(self.layer.ratio_at(np.ones(k.shape)), k)))
+    def stretches(self, start: FloatArray) -> list[tuple[FloatArray, FloatArray]]:
+        """Beginnings and ends of depths between breakpoints, down to `start`, shape (n,) each."""
+        ends = [0.0, *self.layer.breakpoints, 1.0]
+        return [
+            (np.minimum(low, start), np.minimum(high, start)) for low, high in pairwise(ends) if np.any(low < start)
+        ]
 
-    def difference_rates(self, k: NDArray[Any]) -> Rates:
-        """Of D = k (C - C_0)."""
-
-        def rates(z: NDArray[Any], D: NDArray[Any]) -> NDArray[Any]:
-            """Slope dD/dz of the scaled excess over the half-space, by Riccati's equation."""
-            nu, slope, g = self.layer.ratio_at(z), self.layer.ratio_slope(z), logarithmic_slope(self.layer, z)
-            beta, eta, m = 1 - nu, 1 - 2 * nu, nu / (1 - nu)
-            uu, uw, ww = D
-            drive = k * np.stack([2 * beta * g + 2 * slope, -eta * g - 2 * slope, 2 * beta * g + 2 * slope])
-            # The first column of C_0 is (2 beta, -eta).
-            linear = k * np.stack(
-                [
-                    2 * uw + 4 * uu,
-                    ww - m * uu + 2 * uw - eta / beta * uu,
-                    -2 * m * uw - 2 * eta / beta * uw,
-                ]
+    def _at_base(self, k: NDArray[Any]) -> NDArray[Any]:
+        """R = 4 beta (C + C_0~)^-1 - 1 on what lies below."""
+        nu, base = float(self.layer.ratio_at(1.0)), self.layer.support
+        face, own, side = base, 0.0, 0.0
+        if isinstance(base, ElasticBase):
+            G = float(self.layer.youngs_modulus.at(1.0, 1.0)) / (1 + nu)
+            softer = G * (1 + base.poissons_ratio) / base.youngs_modulus
+            face, own, side = (
+                base.interface,
+                2 * (1 - base.poissons_ratio) * softer,
+                (2 * base.poissons_ratio - 1) * softer,
             )
-            square = np.stack([uu * uu, uu * uw, uw * uw]) / beta
-            return np.asarray(drive + linear + g * D + square)
+        own, side = own + 2 * (1 - nu), side + 1 - 2 * nu
+        size = 4 * (1 - nu) / (own**2 - side**2) if face == "bonded" else 0.0
+        R = (size * own - 1, -size * side, size * own - 1) if size else (-1.0, 0.0, 4 * (1 - nu) / own - 1)
+        return np.outer(R, np.ones_like(k))
 
-        return rates
-
-    def _mixed(self, k: NDArray[Any], base: ElasticBase | None) -> NDArray[Any]:
-        """1 - C_WW/(2 (1 - nu)) by the mixed form, from a frictionless base upwards."""
-        beta0 = 1 - float(self.layer.ratio_at(0.0))
-        qu, qp, wu, wp = _integrated(
-            self.mixed_rates(k), self.mixed_on(k, base), np.ones(k.shape), self.layer.breakpoints
+    def _slope(self, k: NDArray[Any], z: FloatArray, R: NDArray[Any]) -> NDArray[Any]:
+        """dR/dz, shape (3, n)."""
+        uu, uw, ww = R
+        nu, turns, stiffens = _Local.at(self.layer, z)
+        beta = 1 - nu
+        f, h = -(beta * stiffens + turns) / (2 * beta), ((1 - 2 * nu) * stiffens + 2 * turns) / (4 * beta)
+        grows, a, b = stiffens + turns / beta, 1 + uu, 1 + ww
+        return np.array(
+            [
+                k * (4 * uu + 2 * uw) + f * (a * a + uw * uw) + 2 * h * a * uw + grows * (uu * a + uw * uw),
+                k * (2 * uw + ww - uu) + f * uw * (a + b) + h * (a * b + uw * uw) + grows * uw * (a + ww),
+                -2 * k * uw + f * (b * b + uw * uw) + 2 * h * b * uw + grows * (ww * b + uw * uw),
+            ]
         )
-        return np.asarray(1 - (wp - qp * wu / qu) / (2 * beta0))
 
-    def mixed_on(self, k: NDArray[Any], base: ElasticBase | None) -> NDArray[Any]:
-        """M at a frictionless base."""
-        M = np.zeros((4, k.size), dtype=k.dtype)
-        if base is not None:
-            M[3] = uniform_compliance(base.poissons_ratio, k)[2] * self._softer(base)
-        return M
+    def descent(self, k: FloatArray) -> GradedDescent:
+        """The inside at wave numbers k, shape (n,)."""
+        return GradedDescent(self, k)
 
-    def mixed_rates(self, k: NDArray[Any]) -> Rates:
-        """Of the mixed form (Q, W) = M (U, P)."""
+    @cached_property
+    def transfers(self) -> Octaves:
+        """U, W, Q, P times exp(kz) at nodes of the depth, over octaves of k: shape (n, fields x stretches x nodes)."""
+        lowest = -2 - int(np.ceil(np.log2(self.longest)))
+        return Octaves(lambda k, _: self._followed(k), lowest, _WAVES)
 
-        def rates(z: NDArray[Any], M: NDArray[Any]) -> NDArray[Any]:
-            """Slope dM/dz of the mixed form, displacements beside tractions."""
-            nu, g = self.layer.ratio_at(z), logarithmic_slope(self.layer, z)
-            beta, eta, m = 1 - nu, 1 - 2 * nu, nu / (1 - nu)
-            qu, qp, wu, wp = M
-            # M B with B = [[-2k, k], [-k, 0]].
-            left = np.stack([-2 * qu - qp, qu, -2 * wu - wp, wu])
-            product = np.stack(
-                [
-                    left[0] * qu + left[1] * wu,
-                    left[0] * qp + left[1] * wp,
-                    left[2] * qu + left[3] * wu,
-                    left[2] * qp + left[3] * wp,
-                ]
-            )
-            drive = np.stack([-1 / beta, m, -m, -eta / beta]) * np.ones(k.size)
-            stretched = np.stack([-g * qu, 0 * qp, 0 * wu, g * wp])
-            return np.asarray(k * (drive - product) + stretched)
+    def _followed(self, k: FloatArray) -> FloatArray:
+        """The same at some wave numbers; stretches that they do not reach hold zeros."""
+        reflected = self.reflection(k, _FADED + DEEP, dense=True)
+        stretches = self.stretches(np.minimum(1.0, (_FADED + DEEP) / k))
+        found = np.zeros((k.size, 4, len(self.layer.breakpoints) + 1, _NODES))
+        S = _unreflected(reflected[0](0.0))
+        d = np.array([-S[1], 1 - S[2]])  # (1 + R)^-1 (0, 1)
+        for number, ((low, high), R) in enumerate(zip(stretches, reflected, strict=True)):
+            downwards = _integrated(self._downwards(k, low, high, R), d, dense=True)
+            for i, share in enumerate(_SHARES.tolist()):
+                nu = self.layer.ratio_at(low + (high - low) * share)
+                found[:, :, number, i] = np.transpose(_fields(nu, R(share), downwards(share)))
+            d = downwards(1.0)
+        return found.reshape(k.size, -1)
 
-        return rates
+    def _downwards(self, k: FloatArray, low: FloatArray, high: FloatArray, R: _Followed) -> _Rate:
+        return lambda share, d: (high - low) * self._fading(k, low + (high - low) * share, R(share), d)
 
-    def _softer(self, base: ElasticBase) -> float:
-        """G at the bottom of the layer over the base's."""
-        bottom = float(self.layer.youngs_modulus.at(1.0, 1.0)) / (2 * (1 + float(self.layer.ratio_at(1.0))))
-        return bottom / (base.youngs_modulus / (2 * (1 + base.poissons_ratio)))
+    def _fading(self, k: FloatArray, z: FloatArray, R: FloatArray, d: FloatArray) -> FloatArray:
+        """Slope of d exp(kz)."""
+        nu, turns, stiffens = _Local.at(self.layer, z)
+        u, w, q, p = _fields(nu, R, d)
+        both = k * (d[1] - d[0]) - 2 * turns * (q + p) / (4 * (1 - nu))
+        return np.asarray(both + stiffens * np.array([u, w]) / (4 * (1 - nu)) + turns / (1 - nu) * d)
 
 
-def uniform_compliance(nu: NDArray[Any] | float, k: NDArray[Any]) -> NDArray[Any]:
-    """UU, UW, WW of a half-space times 2Gk."""
-    one = np.ones(k.size)
-    return np.stack([2 * (1 - nu) * one, -(1 - 2 * nu) * one, 2 * (1 - nu) * one])
+_SHARES = (1 - np.cos(np.pi * np.arange(1, 2 * _NODES, 2) / (2 * _NODES))) / 2
+_WEIGHTS = barycentric(_SHARES)
 
 
-def logarithmic_slope(layer: GradedLayer, depth: NDArray[Any]) -> NDArray[Any]:
-    """G'/G at depths, G = E/(2 (1 + nu))."""
-    modulus = layer.youngs_modulus
-    slope = modulus.slope(depth, 1.0) / modulus.at(depth, 1.0)
-    return np.asarray(slope - layer.ratio_slope(depth) / (1 + layer.ratio_at(depth)))
+class GradedDescent:
+    """The inside of a graded layer under a unit pressure of wave numbers k > 0, shape (n,), on the surface."""
+
+    def __init__(self, kernel: GradedKernel, k: FloatArray) -> None:
+        self.kernel, self.k = kernel, k
+        self._ends = np.array([0.0, *kernel.layer.breakpoints, 1.0])
+        self._rows = np.empty((k.size, 4, self._ends.size - 1, _NODES))
+        for octave, index in kernel.transfers.groups(k):
+            self._rows[index] = kernel.transfers(k[index], octave).reshape(-1, *self._rows.shape[1:])
+
+    def places(self, z: FloatArray) -> NDArray[np.intp]:
+        """One place for all depths."""
+        return np.zeros(z.shape, dtype=np.intp)
+
+    def material(self, place: int, z: FloatArray) -> Material:
+        """At depths z."""
+        layer = self.kernel.layer
+        nu, turns, stiffens = _Local.at(layer, z)
+        modulus = layer.youngs_modulus.at(z, 1.0) / float(layer.youngs_modulus.at(0.0, 1.0))
+        return Material(modulus * (1 + self.kernel.poissons_ratio) / (1 + nu), nu, stiffens, turns, is_top=True)
+
+    def at(self, place: int, z: FloatArray) -> Transfer:
+        """At depths z, shape (m, 1): arrays of shape (m, n)."""
+        return Transfer(*np.stack([self._at(depth) for depth in z.ravel().tolist()], axis=1))
+
+    def _at(self, z: float) -> FloatArray:
+        """At one depth, shape (4, n)."""
+        i = min(max(int(np.searchsorted(self._ends, z)) - 1, 0), self._ends.size - 2)
+        low = self._ends[i]
+        high = np.minimum(self._ends[i + 1], np.maximum((_FADED + DEEP) / self.k, low + 1e-9))
+        gap = np.clip((z - low) / (high - low), 0.0, 1.0)[:, None] - _SHARES
+        weights = _WEIGHTS / np.where(gap == 0, 1e-200, gap)
+        found = np.einsum("ks,kfs->fk", weights, self._rows[:, :, i]) / weights.sum(axis=1)
+        return np.asarray(found * np.where(self.k * z < _FADED, np.exp(-self.k * z), 0.0))
 
 
-def _integrated(
-    rates: Rates, start_values: NDArray[Any], start: NDArray[Any], breakpoints: tuple[float, ...]
-) -> NDArray[Any]:
-    """Values at the surface of all wavenumbers together; between breakpoints each goes its own way in the same shares.
-
-    Steps that hit a breakpoint shrink until it does not matter, and every wavenumber would hit it at another share.
-    """
-    values = start_values
-    for upper, lower in pairwise((inf, *reversed(breakpoints), 0.0)):
-        # A wavenumber whose way starts above a stretch stays where it is.
-        begin, end = np.minimum(start, upper), np.minimum(start, lower)
-        if np.any(begin > end):
-            values = _integrated_between(rates, values, begin, end)
-    return values
+def _unreflected(R: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any]]:
+    """S = R (1 + R)^-1 by entries."""
+    uu, uw, ww = R
+    det = (1 + uu) * (1 + ww) - uw**2
+    return (uu * (1 + ww) - uw**2) / det, uw / det, (ww * (1 + uu) - uw**2) / det
 
 
-def _integrated_between(
-    rates: Rates, start_values: NDArray[Any], begin: NDArray[Any], end: NDArray[Any]
-) -> NDArray[Any]:
-    """Values at the depths `end` from those at `begin`, where the constants are analytic.
+def _fields(nu: FloatArray, R: FloatArray, d: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """U and W times 2 G k, Q, P of fading waves d with what is reflected of them."""
+    g = R[0] * d[0] + R[1] * d[1], R[1] * d[0] + R[2] * d[1]
+    away, whole, eta = d - np.array(g), d + np.array(g), 1 - 2 * nu
+    u, w = 2 * (1 - nu) * away
+    return u - eta * whole[1], w - eta * whole[0], whole[0], whole[1]
+
+
+def _integrated(rate: _Rate, start: NDArray[Any], *, dense: bool) -> _Followed:
+    """Values over the way from 0 to 1 of all wave numbers together; without `dense` at its end only.
 
     Raises:
         NotConvergedError: If the tolerance is not met.
@@ -228,15 +291,20 @@ def _integrated_between(
     # Only graded layers pay for this import.
     from scipy.integrate import solve_ivp  # noqa: PLC0415
 
-    shape, way = start_values.shape, begin - end
-
-    def shared(share: float, values: NDArray[Any]) -> NDArray[Any]:
-        slopes = rates(begin - way * share, values.reshape(shape))
-        return np.asarray((-way * slopes).ravel())
-
+    shape = start.shape
     found = solve_ivp(
-        shared, (0.0, 1.0), start_values.ravel(), method="DOP853", rtol=TOLERANCE, atol=ABSOLUTE, t_eval=[1.0]
+        lambda way, values: rate(way, values.reshape(shape)).ravel(),
+        (0.0, 1.0),
+        start.ravel(),
+        method="DOP853",
+        rtol=TOLERANCE,
+        atol=ABSOLUTE,
+        dense_output=dense,
     )
     if not found.success:
-        raise NotConvergedError(f"the kernel of the graded layer was not integrated: {found.message}")
-    return np.asarray(found.y[:, -1].reshape(shape))
+        raise NotConvergedError(f"the graded layer was not integrated over its depth: {found.message}")
+    if not dense:
+        return lambda way: np.asarray(found.y[:, -1].reshape(shape))
+    values = found.sol
+    assert values is not None
+    return lambda way: np.asarray(values(way).reshape(shape))

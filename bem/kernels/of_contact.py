@@ -12,8 +12,9 @@ from typing import Any
 
 import numpy as np
 
-from bem.kernels.of_layer import UniformKernel, surface_kernel
+from bem.kernels.of_layer import surface_kernel
 from bem.kernels.protocol import SurfaceKernel
+from bem.kernels.stack import StackKernel
 from bem.numerics import Octaves
 from contact.records.validation import FloatArray
 from contact.scene.elastic_layer import ElasticLayer
@@ -22,9 +23,6 @@ from contact.scene.elastic_layer import ElasticLayer
 _GRADED_UNITS = 8.0
 # Nodes per octave of the table of a graded kernel: 18 leave 1e-13, 9 leave 1e-7.
 _NODES = 18
-# Wave number over 1/thickness beyond which the tail's coefficients are fitted. Half of it leaves ten times the error of
-# the tail, twice of it loses their digits.
-_FAR = 80.0
 
 
 @dataclass(frozen=True)
@@ -45,7 +43,8 @@ class ContactKernel:
     @property
     def is_single(self) -> bool:
         """Whether it is a half-space or one layer on a rigid base: contacts of convex profiles never pull there."""
-        return self.surface is None or isinstance(self.surface, UniformKernel)
+        surface = self.surface
+        return surface is None or (isinstance(surface, StackKernel) and len(surface.sheets) == 1 and not surface.base)
 
     @property
     def is_graded(self) -> bool:
@@ -76,15 +75,9 @@ class ContactKernel:
 
     @cached_property
     def tail(self) -> tuple[float, ...]:
-        """c_1, c_2, .. of 1 - chi ~ sum c_j/k^j for large k; the first is known exactly, the others are fitted."""
-        if self.surface is None or not self.is_graded:
-            return ()
-        first = -self.surface.edge_slope
-        x = np.cos(np.linspace(0.0, np.pi / 2.4, 24)) / _FAR
-        rest = np.asarray(self.surface.one_minus_chi(1 / x)) - first * x
-        fitted = np.linalg.lstsq((x[:, None] * _FAR) ** np.arange(2, 12), rest, rcond=None)[0]
-        ours = np.array([first, *(fitted * _FAR ** np.arange(2.0, 12))[:4]]) * self.units ** -np.arange(1.0, 6)
-        return tuple(ours.tolist())
+        """c_1, c_2, .. of 1 - chi ~ sum c_j/k^j for large k."""
+        tail = () if self.surface is None else self.surface.tail
+        return tuple(c / self.units**power for power, c in enumerate(tail, 1))
 
     @cached_property
     def _table(self) -> Octaves:
@@ -124,10 +117,9 @@ def contact_kernel(layer: ElasticLayer) -> ContactKernel:
     """
     if layer.is_half_space:
         return ContactKernel(None)
-    surface = surface_kernel(layer)
-    if isinstance(surface, UniformKernel) and surface.support == "unbonded":
-        surface = UniformKernel("unbonded", 0.0)  # nu has no influence on it
-    return _kernel(surface)
+    # Poisson's ratio has no influence on one layer without bond.
+    slides = layer.is_uniform and layer.support == "unbonded"  # type: ignore[attr-defined]
+    return _kernel(StackKernel.single("unbonded", 0.0) if slides else surface_kernel(layer))
 
 
 def unit_of(layer: ElasticLayer) -> float:

@@ -1,7 +1,7 @@
 """What the equations behind it ask of the kernel of any layer.
 
-A surface pressure ``p^(k)`` displaces the surface by ``u^(k) = 2 chi(k)/(k E*) p^(k)``. Wavenumbers k count in units of
-1/h, h being the thickness of the uniform material at the surface (`ElasticLayer.surface`); chi tends to 1 for large k.
+A surface pressure p^(k) displaces the surface by u^(k) = 2 chi(k)/(k E*) p^(k). Wave numbers k count in units of 1/h, h
+being the thickness of the uniform material at the surface (`ElasticLayer.surface`); chi tends to 1 for large k.
 """
 
 from __future__ import annotations
@@ -9,7 +9,24 @@ from __future__ import annotations
 from collections.abc import Hashable
 from typing import Any, Protocol
 
+import numpy as np
 from numpy.typing import NDArray
+
+from bem.kernels.stack import Material, Transfer
+from contact.records.validation import FloatArray
+
+
+class Descent(Protocol):
+    """The inside of a layer under a unit pressure of wave numbers k, shape (n,), on the surface; depths over h."""
+
+    def places(self, z: FloatArray) -> NDArray[np.intp]:
+        """What holds each depth, shape (m,): depths of one place are asked together."""
+
+    def material(self, place: int, z: FloatArray) -> Material:
+        """The material at depths of one place."""
+
+    def at(self, place: int, z: FloatArray) -> Transfer:
+        """Displacements and tractions at depths of one place, shape (m, 1): arrays of shape (m, n)."""
 
 
 class SurfaceKernel(Hashable, Protocol):
@@ -29,10 +46,17 @@ class SurfaceKernel(Hashable, Protocol):
 
     @property
     def edge_slope(self) -> float:
-        """c_1 in chi = 1 + c_1/(k h) + ..., zero where 1 - chi falls exponentially."""
+        """c_1 in chi = 1 + c_1/k + ..; zero where 1 - chi falls exponentially."""
+
+    @property
+    def tail(self) -> tuple[float, ...]:
+        """c_1, c_2, .. of 1 - chi ~ sum c_j/k^j for large k; none where it falls exponentially."""
 
     def chi(self, wavenumber: NDArray[Any]) -> NDArray[Any]:
-        """chi at wavenumbers k > 0, or complex ones with 0 <= arg k < pi/2, any shape."""
+        """chi at wave numbers k > 0, or complex ones with 0 <= arg k < pi/2, any shape."""
 
     def one_minus_chi(self, wavenumber: NDArray[Any]) -> NDArray[Any]:
         """1 - chi, also where it is exponentially small."""
+
+    def descent(self, k: FloatArray) -> Descent:
+        """The inside at wave numbers k > 0, shape (n,)."""

@@ -1,44 +1,175 @@
-"""Compliance of a stack of layers in wavenumber space, by a recursion without subtraction of large numbers.
+"""Layers on top of each other in wave number space: one recursion upwards for the surface, downwards for the inside.
 
-Displacements v = (U, W) and tractions t = (Q, P) belong to the Bessel functions (J1, J0). What lies below a plane is
-``v = C t`` with a symmetric positive C. In units ``tau = t/(2 G k)`` of a layer, and q = kh,
+With u_r = int U J1(kr) k dk, u_z = int W J0 k dk, sigma_rz = -int Q J1 k dk and sigma_zz = -int P J0 k dk all
+that lies below a plane is a compliance C: 2 G k (U, W) = C (Q, P), symmetric and positive. One layer with q = k h,
 
-    v_top = N tau_top + A v_bottom,    tau_bottom = A^T tau_top - K v_bottom,    C_top = N + A (C^-1 + K)^-1 A^T,
+    v_top = N t_top + A v_bottom,    t_bottom = A^T t_top - K v_bottom,        v = 2 G k (U, W), t = (Q, P)
 
-N being the compliance of the layer glued to a rigid base, K the stiffness of its lower face under a free top, and A
-what passes through. All are sums of positive terms, divided by exp(2q). The surface answers with
-``chi = C_WW/(2 (1 - nu))`` (Redheffer's star product, as for waves in stratified media; there is no transfer matrix).
+adds itself to what lies below by C_top = N + A M A^T, M = (C^-1 + K)^-1 (Redheffer's star product, as for waves in
+stratified media). Downwards b = A^T t_top, v_bottom = M b, t_bottom = b - K v_bottom. All are sums of positive terms
+that fade: nothing grows, nothing cancels. The surface answers with chi = C_WW/(2 (1 - nu)), of which Eqs. (29) and (31)
+are the cases of one layer.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from math import factorial, inf
-from typing import Any, Final, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.polynomial.polynomial import polyval
 from numpy.typing import NDArray
 
-from bem.kernels.layer import SERIES_LIMIT, SERIES_TERMS, one_minus_kernel, shear_bracket_over_q
-from bem.kernels.tangential import TangentialKernel, beyond_half_space
+from contact.records.validation import FloatArray
+
+# q up to which differences of hyperbolic functions are summed as series; with half of it they lose two digits, with
+# twice of it the series does.
+_SERIES = 1.5
+# Their terms: 17 leave 1e-20 at `_SERIES`, half as many 1e-7.
+_ODD, _EVEN = ([1 / factorial(2 * k + first) for k in range(17)] for first in (3, 4))
+# Roundings of a depth within which it lies at an interface: one for each of some thicknesses, and two of the unit.
+_ROUNDINGS = 32.0 * float(np.finfo(float).eps)
 
 
 class Symmetric(NamedTuple):
-    """A symmetric matrix of two rows at every wavenumber."""
+    """A symmetric matrix of two rows at every wave number."""
 
     uu: NDArray[Any]
     uw: NDArray[Any]
     ww: NDArray[Any]
 
-    @property
-    def determinant(self) -> NDArray[Any]:
-        """Of each matrix."""
-        difference: NDArray[Any] = self.uu * self.ww - self.uw**2
-        return difference
-
     def times(self, factor: float) -> Symmetric:
         """Each entry times a factor."""
         return Symmetric(self.uu * factor, self.uw * factor, self.ww * factor)
+
+    def plus(self, other: Symmetric) -> Symmetric:
+        """The sum of two."""
+        return Symmetric(self.uu + other.uu, self.uw + other.uw, self.ww + other.ww)
+
+
+class Transfer(NamedTuple):
+    """At one depth under a unit pressure of the surface: U and W times 2 G k of the material there, Q and P."""
+
+    radial: NDArray[Any]
+    axial: NDArray[Any]
+    shear: NDArray[Any]
+    normal: NDArray[Any]
+
+
+class Material(NamedTuple):
+    """At some depths of one layer: G over the surface's, nu, d ln G/dz, d nu/dz, and whether it is the top one."""
+
+    shear_modulus: FloatArray | float
+    poissons_ratio: FloatArray | float
+    stiffens: FloatArray | float
+    turns: FloatArray | float
+    is_top: bool
+
+
+def half_space(nu: float, k: NDArray[Any]) -> Symmetric:
+    """C of a half-space."""
+    one = np.ones_like(k)
+    return Symmetric(2 * (1 - nu) * one, -(1 - 2 * nu) * one, 2 * (1 - nu) * one)
+
+
+def half_space_at(
+    q: FloatArray, nu: float, shear: FloatArray | float = 0.0, normal: FloatArray | float = 1.0
+) -> Transfer:
+    """The inside of a half-space under tractions of its surface, at q = k z."""
+    q_down = ((1 - q) * shear + q * normal) * np.exp(-q)
+    p_down = ((1 + q) * normal - q * shear) * np.exp(-q)
+    c, s = 2 * (1 - nu), -(1 - 2 * nu)
+    return Transfer(c * q_down + s * p_down, s * q_down + c * p_down, q_down, p_down)
+
+
+class Step(NamedTuple):
+    """One layer.
+
+    Attributes:
+        glued: N, its compliance on a rigid base.
+        beyond: N less the compliance of the half-space, which falls exponentially.
+        free: K, the stiffness of its lower face under a free top.
+        free_determinant: det K.
+        uu, uw, wu, ww: A by row at the top and column at the bottom.
+    """
+
+    glued: Symmetric
+    beyond: Symmetric
+    free: Symmetric
+    free_determinant: NDArray[Any]
+    uu: NDArray[Any]
+    uw: NDArray[Any]
+    wu: NDArray[Any]
+    ww: NDArray[Any]
+
+    @classmethod
+    def of(cls, q: NDArray[Any], nu: float) -> Step:
+        """The layer of nu at q = k h; numerators and denominators times exp(-2q), in A times exp(-q)."""
+        kap, eta, beta = 3 - 4 * nu, 1 - 2 * nu, 1 - nu
+        root = np.exp(-q)
+        e, qe = root**2, q * root
+        linear, square, ss = qe * root, qe**2, np.expm1(-2 * q) ** 2 / 4
+        excess, excess_of_squares = _differences(q, e)
+        d = kap * (1 + e) ** 2 / 4 + eta**2 * e + square
+        glued = Symmetric(
+            2 * beta * (kap * excess + (kap + 1) * linear) / d,
+            (square - eta * kap * ss) / d,
+            2 * beta * (kap * excess + 2 * eta * linear) / d,
+        )
+        even = kap * (1 + e) / 2 * e + eta**2 * e + square
+        beyond = Symmetric(even - linear, -square - 2 * beta * eta * e, even + linear)
+        free = Symmetric(2 * beta * (excess + 2 * linear) / d, -(eta * ss + square) / d, 2 * beta * excess / d)
+        along, across = root * 2 * beta / d, qe * 2 * beta / d
+        c, s = (1 + e) / 2, -np.expm1(-2 * q) / 2
+        return cls(
+            glued,
+            Symmetric(*(-2 * beta / d * one for one in beyond)),
+            free,
+            excess_of_squares / d,
+            2 * beta * along * c - across * s,
+            -(across * c + along * eta * s),
+            across * c - along * eta * s,
+            2 * beta * along * c + across * s,
+        )
+
+    def joined(self, below: Symmetric, *, slips: bool) -> Symmetric:
+        """M = (C^-1 + K)^-1, compliance of the lower face; across a frictionless interface passes pressure only."""
+        K, c = self.free, below
+        if slips:
+            d = K.uu + c.ww * self.free_determinant
+            return Symmetric((1 + c.ww * K.ww) / d, -c.ww * K.uw / d, c.ww * K.uu / d)
+        det = c.uu * c.ww - c.uw**2
+        d = 1 + K.uu * c.uu + 2 * K.uw * c.uw + K.ww * c.ww + self.free_determinant * det
+        return Symmetric((c.uu + det * K.ww) / d, (c.uw - det * K.uw) / d, (c.ww + det * K.uu) / d)
+
+    def through(self, below: Symmetric, *, slips: bool) -> Symmetric:
+        """A M A^T: what the layers below add to N."""
+        M = self.joined(below, slips=slips)
+        return Symmetric(
+            self.uu**2 * M.uu + 2 * self.uu * self.uw * M.uw + self.uw**2 * M.ww,
+            self.uu * self.wu * M.uu + (self.uu * self.ww + self.uw * self.wu) * M.uw + self.uw * self.ww * M.ww,
+            self.wu**2 * M.uu + 2 * self.wu * self.ww * M.uw + self.ww**2 * M.ww,
+        )
+
+    def down(self, below: Symmetric, shear: FloatArray, normal: FloatArray, *, slips: bool) -> Transfer:
+        """The lower face under tractions of the upper one."""
+        K, M = self.free, self.joined(below, slips=slips)
+        b_u, b_w = self.uu * shear + self.wu * normal, self.uw * shear + self.ww * normal
+        u, w = M.uu * b_u + M.uw * b_w, M.uw * b_u + M.ww * b_w
+        return Transfer(u, w, b_u - K.uu * u - K.uw * w, b_w - K.uw * u - K.ww * w)
+
+
+def _differences(q: NDArray[Any], e: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
+    """(sinh 2q - 2q)/2 and sinh^2 q - q^2, times e = exp(-2q): series of positive terms where they cancel."""
+    small = np.abs(q) < _SERIES
+    t = np.where(small, 2 * q, 0)
+    odd, even = (polyval(t * t, np.array(series)) for series in (_ODD, _EVEN))
+    far = np.where(small, 1, q)
+    faded = np.where(small, 0, far * np.exp(-far))
+    first = np.where(small, t**3 * odd * e / 2, -np.expm1(-4 * far) / 4 - faded * np.exp(-far))
+    second = np.where(small, t**4 * even * e / 2, np.expm1(-2 * far) ** 2 / 4 - faded**2)
+    return first, second
 
 
 @dataclass(frozen=True)
@@ -65,7 +196,7 @@ class Sheet:
 
 @dataclass(frozen=True)
 class StackKernel:
-    """Kernel of layers on a rigid base or on an elastic half-space.
+    """Kernel of layers on a rigid base or on an elastic half-space; without layers, of the half-space.
 
     Attributes:
         sheets: From the top.
@@ -75,189 +206,144 @@ class StackKernel:
     sheets: tuple[Sheet, ...]
     base: Sheet | None
 
-    @property
-    def longest(self) -> float:
-        """Total thickness, or what stretches farther: a stiff film spreads a load over (E1/E2) h."""
-        stiffness = [sheet.shear_modulus for sheet in (*self.sheets, *([self.base] if self.base else []))]
-        total = sum(sheet.thickness for sheet in self.sheets)
-        return total * max(1.0, max(stiffness) / min(stiffness))
+    @classmethod
+    def single(cls, support: str, nu: float) -> StackKernel:
+        """One layer, "bonded" or "unbonded" to a rigid base."""
+        return cls((Sheet(1.0, 1.0, nu, support == "unbonded"),), None)
 
     @property
     def is_smooth(self) -> bool:
         """1 - chi falls exponentially."""
         return True
 
-    @property
-    def poissons_ratio(self) -> float:
-        """Of the first layer."""
-        return self.sheets[0].poissons_ratio
+    edge_slope = 0.0
+    tail: tuple[float, ...] = ()
 
     @property
-    def edge_slope(self) -> float:
-        """Zero: 1 - chi falls exponentially."""
-        return 0.0
+    def is_half_space(self) -> bool:
+        """Whether there is nothing but the base."""
+        return not self.sheets
+
+    @property
+    def _top(self) -> Sheet:
+        return (*self.sheets, self.base)[0]  # type: ignore[return-value]
+
+    @property
+    def poissons_ratio(self) -> float:
+        """Of the surface material."""
+        return self._top.poissons_ratio
+
+    @property
+    def longest(self) -> float:
+        """Total thickness, or what stretches farther: a stiff film spreads a load over (E1/E2) h."""
+        stiffness = [sheet.shear_modulus for sheet in (*self.sheets, *([self.base] if self.base else []))]
+        total = sum(sheet.thickness for sheet in self.sheets)
+        return total * max(stiffness) / min(stiffness) if self.sheets else 1.0
 
     @property
     def zero_mode(self) -> float:
         """chi/k at k = 0: uniaxial strain, less what groups of layers give that may slide sideways."""
         if self.base is not None:
             return inf
-        strain = sum(one.thickness * _uniaxial_compliance(one) for one in self.sheets)
-        return self.sheets[0].plane_modulus / 2 * (strain + sum(_sideways(group) for group in _free_groups(self)))
+        strain = sum(
+            one.thickness * (1 - 2 * one.poissons_ratio) / (2 * one.shear_modulus * (1 - one.poissons_ratio))
+            for one in self.sheets
+        )
+        return self._top.plane_modulus / 2 * (strain + self._sideways())
 
-    def chi(self, wavenumber: NDArray[Any]) -> NDArray[Any]:
-        """chi at wavenumbers with Re k > 0, any shape."""
-        top = self.sheets[0]
-        q = top.thickness * wavenumber
-        own = step(q, top.poissons_ratio)
-        chi: NDArray[Any] = (own.glued.ww + self._through(own, wavenumber)) / (2 * (1 - top.poissons_ratio))
-        return chi
+    def _sideways(self) -> float:
+        """(sum m_i h_i)^2/(sum E*_i h_i), m = nu/(1 - nu), of each group of bonded layers on a frictionless face."""
+        found = push = stiffness = 0.0
+        for one in self.sheets:
+            push += one.poissons_ratio / (1 - one.poissons_ratio) * one.thickness
+            stiffness += one.plane_modulus * one.thickness
+            if one.slips_below:
+                found, push, stiffness = found + push**2 / stiffness, 0.0, 0.0
+        return found
 
-    def one_minus_chi(self, wavenumber: NDArray[Any]) -> NDArray[Any]:
-        """1 - chi: that of the first layer alone, less what comes through it."""
-        top = self.sheets[0]
-        q = top.thickness * wavenumber
-        own = step(q, top.poissons_ratio)
-        alone = one_minus_kernel(q, "bonded", top.poissons_ratio)
-        rest: NDArray[Any] = alone - self._through(own, wavenumber) / (2 * (1 - top.poissons_ratio))
-        return rest
+    def chi(self, k: NDArray[Any]) -> NDArray[Any]:
+        """chi at wave numbers k, real or with Re k > 0, any shape."""
+        return np.asarray(self.compliance(k).ww / (2 * (1 - self.poissons_ratio)))
 
-    def beyond_half_space(self, wavenumber: NDArray[Any]) -> TangentialKernel:
-        """D = C - C_hs for both tractions: that of the first layer alone, and what comes through it."""
-        top = self.sheets[0]
-        q = top.thickness * wavenumber
-        own = step(q, top.poissons_ratio)
-        alone = beyond_half_space(q, "bonded", top.poissons_ratio)
-        nothing = own._replace(glued=_rigid(wavenumber))
-        more = passed(nothing, coupled(self._below(wavenumber), own, slips=top.slips_below))
-        return TangentialKernel(alone.radial + more.uu, alone.coupling + more.uw, alone.normal + more.ww)
+    def one_minus_chi(self, k: NDArray[Any]) -> NDArray[Any]:
+        """1 - chi, also where it is exponentially small."""
+        return np.asarray(-self.beyond_half_space(k).ww / (2 * (1 - self.poissons_ratio)))
 
-    def _through(self, own: Step, wavenumber: NDArray[Any]) -> NDArray[Any]:
-        """What the layers below add to C_WW of the first."""
-        M = coupled(self._below(wavenumber), own, slips=self.sheets[0].slips_below)
-        through: NDArray[Any] = own.wu**2 * M.uu + 2 * own.wu * own.ww * M.uw + own.ww**2 * M.ww
-        return through
+    def compliance(self, k: NDArray[Any]) -> Symmetric:
+        """C of the surface."""
+        if not self.sheets:
+            return half_space(self.poissons_ratio, k)
+        own = Step.of(self._top.thickness * k, self.poissons_ratio)
+        return own.glued.plus(own.through(self.below(k)[0], slips=self._top.slips_below))
 
-    def _below(self, wavenumber: NDArray[Any]) -> Symmetric:
-        """C of all that lies below the first layer, in its units."""
-        below = base_compliance(self, wavenumber)
-        for lower in self.sheets[:0:-1]:
-            one = step(lower.thickness * wavenumber, lower.poissons_ratio)
-            inside = below.times(lower.shear_modulus)
-            through = passed(one, coupled(inside, one, slips=lower.slips_below))
-            below = through.times(1 / lower.shear_modulus)
-        return below.times(self.sheets[0].shear_modulus)
+    def beyond_half_space(self, k: NDArray[Any]) -> Symmetric:
+        """C less that of the half-space of the surface material."""
+        if not self.sheets:
+            return Symmetric(*np.zeros((3, *np.shape(k))))
+        own = Step.of(self._top.thickness * k, self.poissons_ratio)
+        return own.beyond.plus(own.through(self.below(k)[0], slips=self._top.slips_below))
 
+    def below(self, k: NDArray[Any]) -> list[Symmetric]:
+        """C of all that lies below each layer, in units of that layer."""
+        base = self.base
+        C = Symmetric(*np.zeros((3, *np.shape(k)))) if base is None else half_space(base.poissons_ratio, k)
+        unit, found = 1.0 if base is None else base.shear_modulus, []
+        for sheet in reversed(self.sheets):
+            C = C.times(sheet.shear_modulus / unit)
+            found.append(C)
+            if len(found) < len(self.sheets):
+                own = Step.of(sheet.thickness * k, sheet.poissons_ratio)
+                C = own.glued.plus(own.through(C, slips=sheet.slips_below))
+            unit = sheet.shear_modulus
+        return found[::-1]
 
-class Step(NamedTuple):
-    """N, K and det K of one layer, and A by (row at the top, column at the bottom)."""
-
-    glued: Symmetric
-    free: Symmetric
-    free_determinant: NDArray[Any]
-    uu: NDArray[Any]
-    uw: NDArray[Any]
-    wu: NDArray[Any]
-    ww: NDArray[Any]
+    def descent(self, k: FloatArray) -> StackDescent:
+        """The inside at wave numbers k, shape (n,)."""
+        return StackDescent(self, k)
 
 
-def step(q: NDArray[Any], nu: float) -> Step:
-    """Equations of THEORY for one layer; numerators and denominator times exp(-2q), A times exp(-q) twice."""
-    kap, eta, beta = 3 - 4 * nu, 1 - 2 * nu, 1 - nu
-    root = np.exp(-q)
-    e, qe = root**2, q * root
-    # The products c^2, s^2 and s c - q of c = cosh q and s = sinh q, all times exp(-2q).
-    cc, ss, excess = (1 + e) ** 2 / 4, np.expm1(-2 * q) ** 2 / 4, q * shear_bracket_over_q(q) / 4
-    D = kap * cc + eta**2 * e + qe**2
-    linear, square = qe * root, qe**2
-    double = excess + 2 * linear
-    glued = Symmetric(
-        2 * beta * (kap * excess + (kap + 1) * linear) / D,
-        (square - eta * kap * ss) / D,
-        2 * beta * (kap * excess + 2 * eta * linear) / D,
-    )
-    free = Symmetric(2 * beta * double / D, -(eta * ss + square) / D, 2 * beta * excess / D)
-    c, s = (1 + e) / 2, -np.expm1(-2 * q) / 2
-    along, across = root * 2 * beta / D, qe * 2 * beta / D
-    return Step(
-        glued,
-        free,
-        _squares_apart(q, ss, square) / D,
-        2 * beta * along * c - across * s,
-        -(across * c + along * eta * s),
-        across * c - along * eta * s,
-        2 * beta * along * c + across * s,
-    )
+class StackDescent:
+    """The inside of a stack under a unit pressure of wave numbers k > 0, shape (n,), on the surface.
 
+    Depths count in thicknesses of the first layer.
+    """
 
-def _squares_apart(q: NDArray[Any], ss: NDArray[Any], square: NDArray[Any]) -> NDArray[Any]:
-    """(sinh^2 q - q^2) exp(-2q): a series of positive terms where the difference cancels."""
-    small = np.abs(q) < SERIES_LIMIT
-    t2 = np.where(small, 2 * q, 0) ** 2
-    series = np.zeros_like(t2)
-    for k in reversed(range(SERIES_TERMS)):
-        series = series * t2 + _EVEN[k]
-    result: NDArray[Any] = np.where(small, t2**2 * series * np.exp(-2 * np.where(small, q, 0)) / 2, ss - square)
-    return result
+    def __init__(self, kernel: StackKernel, k: FloatArray) -> None:
+        self.kernel, self.k = kernel, k
+        self._below = kernel.below(k)
+        self._faces = np.cumsum([sheet.thickness for sheet in kernel.sheets])
+        self._tops = np.concatenate([[0.0], self._faces])
+        self._loads = [(np.zeros_like(k), np.ones_like(k))]
+        for sheet, below in zip(kernel.sheets, self._below, strict=True):
+            own = Step.of(sheet.thickness * k, sheet.poissons_ratio)
+            self._loads.append(own.down(below, *self._loads[-1], slips=sheet.slips_below)[2:])
 
+    def places(self, z: FloatArray) -> NDArray[np.intp]:
+        """Twice the number of the layer that holds each depth, and one more on its lower face.
 
-_EVEN: Final = tuple(1 / factorial(2 * k + 4) for k in range(SERIES_TERMS))
+        A depth that differs from a sum of thicknesses by roundings lies at the interface, which is the upper layer's.
+        """
+        layer = np.searchsorted(self._faces * (1 + _ROUNDINGS), z)
+        if self.kernel.base is None:
+            layer = np.minimum(layer, self._faces.size - 1)
+        return 2 * layer + (z >= np.append(self._faces, inf)[layer] * (1 - _ROUNDINGS))
 
+    def material(self, place: int, z: FloatArray) -> Material:
+        """Of depths z at one place."""
+        sheet = (*self.kernel.sheets, self.kernel.base)[place // 2]
+        assert sheet is not None
+        return Material(sheet.shear_modulus, sheet.poissons_ratio, 0.0, 0.0, place < 2)
 
-def coupled(below: Symmetric, step: Step, *, slips: bool) -> Symmetric:
-    """M = (C^-1 + K)^-1, or its limit for a frictionless interface, which passes pressure only."""
-    K, det_K = step.free, step.free_determinant
-    if slips:
-        c = below.ww
-        d = K.uu + c * det_K
-        return Symmetric((1 + c * K.ww) / d, -c * K.uw / d, c * K.uu / d)
-    det_C = below.determinant
-    d = 1 + K.uu * below.uu + 2 * K.uw * below.uw + K.ww * below.ww + det_K * det_C
-    return Symmetric((below.uu + det_C * K.ww) / d, (below.uw - det_C * K.uw) / d, (below.ww + det_C * K.uu) / d)
-
-
-def passed(step: Step, M: Symmetric) -> Symmetric:
-    """N + A M A^T."""
-    uu, uw, wu, ww = step.uu, step.uw, step.wu, step.ww
-    return Symmetric(
-        step.glued.uu + uu**2 * M.uu + 2 * uu * uw * M.uw + uw**2 * M.ww,
-        step.glued.uw + uu * wu * M.uu + (uu * ww + uw * wu) * M.uw + uw * ww * M.ww,
-        step.glued.ww + wu**2 * M.uu + 2 * wu * ww * M.uw + ww**2 * M.ww,
-    )
-
-
-def base_compliance(kernel: StackKernel, wavenumber: NDArray[Any]) -> Symmetric:
-    """C of the base times 2k, over the first layer's modulus."""
-    return _rigid(wavenumber) if kernel.base is None else _half_space(wavenumber, kernel.base)
-
-
-def _rigid(wavenumber: NDArray[Any]) -> Symmetric:
-    zero = np.zeros_like(wavenumber)
-    return Symmetric(zero, zero, zero)
-
-
-def _half_space(wavenumber: NDArray[Any], base: Sheet) -> Symmetric:
-    """C of a half-space, times 2k: [[2 (1 - nu), -(1 - 2 nu)], [-(1 - 2 nu), 2 (1 - nu)]]/G."""
-    one, nu = np.ones_like(wavenumber) / base.shear_modulus, base.poissons_ratio
-    return Symmetric(2 * (1 - nu) * one, -(1 - 2 * nu) * one, 2 * (1 - nu) * one)
-
-
-def _uniaxial_compliance(sheet: Sheet) -> float:
-    nu = sheet.poissons_ratio
-    return (1 - 2 * nu) / (2 * sheet.shear_modulus * (1 - nu))
-
-
-def _free_groups(kernel: StackKernel) -> list[list[Sheet]]:
-    """Groups of bonded layers that a frictionless face lets slide."""
-    groups: list[list[Sheet]] = [[]]
-    for sheet in kernel.sheets:
-        groups[-1].append(sheet)
-        if sheet.slips_below:
-            groups.append([])
-    return groups[:-1]
-
-
-def _sideways(group: list[Sheet]) -> float:
-    """(sum m_i h_i)^2/(sum E*_i h_i), m = nu/(1 - nu)."""
-    push = sum(one.poissons_ratio / (1 - one.poissons_ratio) * one.thickness for one in group)
-    return push**2 / sum(one.plane_modulus * one.thickness for one in group)
+    def at(self, place: int, z: FloatArray) -> Transfer:
+        """Of depths z at one place, shape (m, 1): arrays of shape (m, n)."""
+        number, on_face = divmod(place, 2)
+        depth, load = self.k * (z - self._tops[number]), self._loads[number]
+        if number == len(self.kernel.sheets):
+            assert self.kernel.base is not None
+            return half_space_at(depth, self.kernel.base.poissons_ratio, *load)
+        sheet, below = self.kernel.sheets[number], self._below[number]
+        upper, slips = Step.of(depth, sheet.poissons_ratio), sheet.slips_below
+        if not on_face:
+            rest = Step.of(self.k * (self._faces[number] - z), sheet.poissons_ratio)
+            below, slips = rest.glued.plus(rest.through(below, slips=slips)), False
+        return upper.down(below, *load, slips=slips)

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import TYPE_CHECKING, Annotated, Final, Self
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
-from pydantic import Field
 
+from bem.flat_punch import USUAL_NODES, IntegralEquation
 from bem.kernels.of_layer import surface_kernel
 from bem.kernels.protocol import SurfaceKernel
 from bem.layer_equation.flat_punch_solution import IntegralEquationSolution
@@ -16,14 +16,13 @@ from bem.layer_equation.one_factorisation import VolterraFactor
 from bem.layer_equation.protocol import LARGEST_FACTORISED_RATIO, FlatPunchSolution, RatioNotCovered
 from bem.layer_equation.thin_layers import LARGEST_RATIO, ROUNDING, LargeRatioSolution
 from contact import ElasticLayer, Layer
-from contact.answer.one_thread import one_thread
-from contact.records.record import Record, record
-from contact.records.validation import positive
 from contact.scene.layer import Support
 
 if TYPE_CHECKING:
     from bem.layer_equation.any_layer.graded_panels_factor import AnyLayerSolution
     from bem.layer_equation.any_layer.graded_solution import GradedSolution
+
+__all__ = ["RUNGS", "IntegralEquation", "panel_solution"]
 
 # Ratios are rounded up to these, so that a larger cached factor never changes an answer's last digits.
 RUNGS: Final = (1.0, 2.0, 5.0, 10.0, 20.0, 40.0, 80.0, LARGEST_FACTORISED_RATIO)
@@ -40,58 +39,33 @@ GRADED_RUNGS: Final = (1.0, 2.0, 4.0, 8.0, 16.0)
 # Wavenumbers at which sup chi is looked for, times the longest length and times the first thickness: twice as many
 # change it by less than 1 %.
 LONGEST_WAVE, SHORTEST_WAVE, SAMPLED_WAVES = 1e-4, 10.0, 200
-# Nodes of a panel by default, and the most.
-USUAL_NODES: Final = 24
-MOST_NODES: Final = 64
-# Nodes that a refined setting has more: they leave 4.2^-4 of what was left out; two leave 4.2^-2.
-MORE_NODES: Final = 4
 # Nodes of a graded layer's panel by default, and the fewest: one more for two nodes more of other layers' panels.
 GRADED_COUNT: Final = 12
 GRADED_FEWEST: Final = 2
 
 
-@record
-class IntegralEquation(Record):
-    """Settings of the flat punch by the integral equation.
+def panel_solution(settings: IntegralEquation, layer: ElasticLayer, max_ratio: float) -> FlatPunchSolution:
+    """The flat punch on this layer up to at least a/h = max_ratio, cached.
 
-    Attributes:
-        nodes: Gauss nodes on each panel, m.
-        panel_width: H in units of the layer thickness; the kernel is analytic within 2 of the real axis.
+    Raises:
+        RatioNotCovered: If the ratio is beyond `LARGEST_RATIO`, or `ANY_RUNGS` on a stack.
+        NotConvergedError: If the equation is singular to double precision.
     """
-
-    nodes: int = Field(default=USUAL_NODES, ge=4, le=MOST_NODES)
-    panel_width: Annotated[float, *positive("panels about as wide as the layer is thick")] = 1.0
-
-    @one_thread
-    def solution(self, layer: ElasticLayer, max_ratio: float) -> FlatPunchSolution:
-        """The flat punch on this layer up to at least a/h = max_ratio, cached.
-
-        On a plain layer answers beyond a/h = 160 come from `thin_layers`. On a stack h is the first sublayer's
-        thickness, which sets how smooth its kernel is.
-
-        Raises:
-            RatioNotCovered: If the ratio is beyond `LARGEST_RATIO`, or `ANY_RUNGS` on a stack.
-            NotConvergedError: If the equation is singular to double precision.
-        """
-        if not 0 < max_ratio <= LARGEST_RATIO * (1 + ROUNDING):
-            message = f"a/h = {max_ratio:g}: the integral equation covers ratios up to {LARGEST_RATIO:g}"
-            raise RatioNotCovered(message, LARGEST_RATIO)
-        if not isinstance(layer, Layer):
-            surface = surface_kernel(layer)
-            if not surface.is_smooth:
-                count = GRADED_COUNT + (int(self.nodes) - USUAL_NODES) // 2
-                return _graded_solution(surface, _any_rung(layer, max_ratio, GRADED_RUNGS), max(count, GRADED_FEWEST))
-            return _any_solution(self, surface, _any_rung(layer, max_ratio, ANY_RUNGS))
-        rung = next((rung for rung in RUNGS if rung >= max_ratio), None)
-        # Poisson's ratio has no influence on the unbonded layer.
-        nu = layer.poissons_ratio if layer.support == "bonded" else 0.0
-        if rung is None:
-            return _large_solution(self, layer.support, nu)
-        return _solution(self, layer.support, nu, rung)
-
-    def refined(self) -> Self:
-        """Panels half as wide with more nodes, since panels towards the axis and of graded layers keep their widths."""
-        return self.replace(panel_width=self.panel_width / 2, nodes=min(self.nodes + MORE_NODES, MOST_NODES))
+    if not 0 < max_ratio <= LARGEST_RATIO * (1 + ROUNDING):
+        message = f"a/h = {max_ratio:g}: the integral equation covers ratios up to {LARGEST_RATIO:g}"
+        raise RatioNotCovered(message, LARGEST_RATIO)
+    if not isinstance(layer, Layer):
+        surface = surface_kernel(layer)
+        if not surface.is_smooth:
+            count = GRADED_COUNT + (int(settings.nodes) - USUAL_NODES) // 2
+            return _graded_solution(surface, _any_rung(layer, max_ratio, GRADED_RUNGS), max(count, GRADED_FEWEST))
+        return _any_solution(settings, surface, _any_rung(layer, max_ratio, ANY_RUNGS))
+    rung = next((rung for rung in RUNGS if rung >= max_ratio), None)
+    # Poisson's ratio has no influence on the unbonded layer.
+    nu = layer.poissons_ratio if layer.support == "bonded" else 0.0
+    if rung is None:
+        return _large_solution(settings, layer.support, nu)
+    return _solution(settings, layer.support, nu, rung)
 
 
 def _any_rung(layer: ElasticLayer, ratio: float, rungs: tuple[float, ...]) -> float:

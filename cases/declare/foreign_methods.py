@@ -18,7 +18,7 @@ from cases.judgement.claims.declared import PerMethod
 from cases.judgement.claims.exact import Exact
 from cases.judgement.claims.own_laws import Residual
 from contact import InvalidInput
-from contact.records.record import shown
+from contact.records.errors import shown
 
 # Largest accuracy, relative, that a method may claim for itself: agreement within more than a tenth tells nothing.
 LARGEST_CLAIM: Final = 0.1

@@ -23,7 +23,7 @@ from contact import (
     UnsupportedSceneError,
 )
 from contact.answer.small_strains import with_depth_note
-from contact.records.record import shown
+from contact.records.errors import shown
 
 # Relative difference of a prescribed quantity beyond which an answer is one to another question.
 ANOTHER_QUESTION: Final = 1e-2

@@ -15,8 +15,8 @@ from typing import Any, Final
 
 from cases.declare.shared import used_by
 from contact import InvalidInput, Method
+from contact.records.errors import shown
 from contact.records.extras import missing_extra
-from contact.records.record import shown
 
 ENTRY_POINT_GROUP = "contact_verification.methods"
 

@@ -99,22 +99,9 @@ SHARED: tuple[Shared, ...] = (
     ),
     Shared(
         name="springs and profile of MDR",
-        place="mdr.springs",
+        place="mdr.spring_bed",
         methods=FAST,
         guard="agreement with finite elements and with the integral equation",
-    ),
-    Shared(
-        name="slopes of the half-space transform",
-        place="bem.layer_equation.profiles.half_space_slope",
-        methods=("mdr",),
-        guard="agreement with finite elements",
-        quantities=("pressure",),
-    ),
-    Shared(
-        name="Gauss rules and Chebyshev panels",
-        place="bem.polynomials",
-        methods=(*EQUATIONS, "mdr_table"),
-        guard="agreement with finite elements; closed forms of the half-space",
     ),
     Shared(
         name="boundary elements on a grid",

@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 
 from contact import InvalidInput, Scene
-from contact.files.units import in_si, unit_of
-from contact.records.record import shown
+from contact.records.errors import shown
+from contact.records.record import unit_of
+from contact.records.units import read_quantity
 from contact.records.validation import FloatArray
 
 PARTS = ("layer", "indenter", "loading")
@@ -144,7 +145,7 @@ def range_ends(place: str, ends: tuple[str, str], unit: str | None, with_units: 
     """
     if unit is None:
         return ends
-    low, high = (str(in_si(end, unit, place)) for end in ends)
+    low, high = (str(read_quantity(end, unit, place)) for end in ends)
     bare = [end for end, number in zip(ends, (low, high), strict=True) if end == number and end.strip("+-0.")]
     if bare and (with_units or (low, high) != ends):
         raise InvalidInput(f"{place} = {bare[0]}: no unit, but the scene or the other end has; write {bare[0]}{unit}")

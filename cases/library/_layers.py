@@ -93,8 +93,7 @@ def in_millimetres(scene: Scene) -> Scene:
 def _scaled_profile(profile: Profile, factor: float) -> Profile:
     """Scale the lengths of a profile; slopes have no unit."""
     lengths = {"radius", "flat_radius", "radius_of_curvature"}
-    # Every profile is a dataclass.
-    own = {field.name for field in dataclasses.fields(profile)}  # type: ignore[arg-type]
+    own = {field.name for field in dataclasses.fields(profile)}
     return profile.replace(**{name: factor * getattr(profile, name) for name in own & lengths})
 
 

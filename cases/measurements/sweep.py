@@ -13,10 +13,9 @@ from cases.declare.quantities import single_numbers
 from cases.declare.uncertain_inputs import part_of, place_of, range_ends
 from cases.results.csv_table import csv_text
 from contact import UNITS, ContactError, InvalidInput, Method, Scene, Solution
-from contact.files.units import unit_of
-from contact.files.values import vector
-from contact.records.record import shown
-from contact.records.validation import FloatArray
+from contact.records.errors import shown
+from contact.records.record import unit_of
+from contact.records.validation import FloatArray, range_of
 
 if TYPE_CHECKING:
     import pandas
@@ -95,7 +94,10 @@ def read_range(text: str, scene: Scene, *, with_units: bool = False) -> Swept:
     unit = unit_of(type(record), field)
     start, stop = range_ends(f"over {name}", (start, stop), unit, with_units)
     span = {"start": _end(start), "stop": _end(stop), "count": int(count), "spacing": "log" if log else "linear"}
-    return Swept(name=name, values=vector(span, unit, f"over {name}"), unit=unit or "")
+    try:
+        return Swept(name=name, values=range_of(span, unit), unit=unit or "")
+    except ValueError as error:
+        raise InvalidInput(f"over {name}: {error}") from None
 
 
 def sweep(scene: Scene, over: str | Swept, method: Method, progress: Callable[[int, int], None] | None = None) -> Sweep:

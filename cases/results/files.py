@@ -11,7 +11,7 @@ from cases.results.records.run import SCHEMA_VERSION, CaseResult, RunResult
 from cases.results.strict_json import json_object, json_text, read_json, validated
 from contact import InvalidInput
 from contact.files.storage import write_tree
-from contact.records.record import shown
+from contact.records.errors import shown
 
 _RUN: TypeAdapter[RunResult] = TypeAdapter(RunResult)
 _NAME = "results.json"

@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 from pydantic import TypeAdapter, ValidationError
 
 from contact import InvalidInput
-from contact.records.record import shown
+from contact.records.errors import shown
 
 T = TypeVar("T")
 

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any, ClassVar, Final
 import numpy as np
 
 from contact.answer.summary import quantity_cells, scene_line
-from contact.files.units import prefix_for
 from contact.records.extras import missing_extra
+from contact.records.units import prefix_for
 from contact.records.validation import FloatArray
 from contact.scene.loading import ForceHistory
 from contact.scene.scene import Scene

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import ClassVar, Protocol, TypeAlias
 
@@ -47,6 +47,52 @@ class InstantFields(Protocol):
         """At one of them, at which something touches."""
 
 
+class StatedErrors(Mapping[str, FloatArray]):
+    """Stated errors by quantity; those of surface fields may be functions, computed when they are first read.
+
+    Args:
+        errors: Arrays, or functions without arguments that return them.
+        method: Name of the method, for refusals.
+    """
+
+    def __init__(self, errors: Mapping[str, ArrayLike | Callable[[], FloatArray]], method: str) -> None:
+        self._method = method
+        self._errors: dict[str, FloatArray | Callable[[], FloatArray]] = {}
+        if isinstance(errors, StatedErrors):
+            self._errors |= errors._errors
+            return
+        for name, error in errors.items():
+            self._errors[name] = error if callable(error) else self._refused(name, error)
+
+    def _refused(self, name: str, error: ArrayLike) -> FloatArray:
+        return _frozen(f"error of {name}", error, self._method)
+
+    @one_thread
+    def __getitem__(self, name: str) -> FloatArray:
+        """The error of one quantity, read-only.
+
+        Raises:
+            NotConvergedError: If it is not finite.
+        """
+        error = self._errors[name]
+        if callable(error):
+            error = self._errors[name] = self._refused(name, error())
+        return error
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._errors)
+
+    def __len__(self) -> int:
+        return len(self._errors)
+
+    def __repr__(self) -> str:
+        return repr(dict(self))
+
+    def __reduce__(self) -> tuple[type[StatedErrors], tuple[dict[str, FloatArray], str]]:
+        """Computed values alone travel to other processes."""
+        return StatedErrors, (dict(self), self._method)
+
+
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class Solution(Shown):
     """What every answer carries.
@@ -83,8 +129,7 @@ class Solution(Shown):
             raise InvalidInput(f"{type(self).__name__}: all arrays need one length, got {lengths}")
         for name in self.SCALARS:
             _frozen(name, np.atleast_1d(getattr(self, name)), self.method)
-        estimates = {name: _frozen(f"error of {name}", e, self.method) for name, e in self.error_estimate.items()}
-        object.__setattr__(self, "error_estimate", estimates)
+        object.__setattr__(self, "error_estimate", StatedErrors(self.error_estimate, self.method))
 
     def __len__(self) -> int:
         """Number of states."""

@@ -6,8 +6,9 @@ import dataclasses
 
 import numpy as np
 
-from contact.files.units import prefix_for, unit_of
-from contact.records.record import Record, shown
+from contact.records.errors import shown
+from contact.records.record import Record, unit_of
+from contact.records.units import prefix_for
 from contact.records.validation import FloatArray
 from contact.scene.scene import Scene
 
@@ -47,7 +48,7 @@ def _ends(values: FloatArray, form: str) -> str:
 
 
 def _call(item: Record) -> str:
-    fields = dataclasses.fields(item)  # type: ignore[arg-type]  # every record is a dataclass
+    fields = dataclasses.fields(item)
     parts = ((field.name, getattr(item, field.name)) for field in fields)
     shown_fields = (f"{name}={_value(value, unit_of(type(item), name))}" for name, value in parts if value is not None)
     return f"{type(item).__name__}({', '.join(shown_fields)})"

@@ -21,8 +21,7 @@ from contact.answer.friction import FrictionHistory, FrictionPath
 from contact.answer.solution import ContactPath, CriticalPoint, DetachmentPath, HistoryPath, ImpactHistory, Solution
 from contact.answer.stages import Cost, StageRecord
 from contact.files.scene_file import scene_from_mapping, scene_to_mapping
-from contact.records.errors import InvalidInput
-from contact.records.record import shown
+from contact.records.errors import InvalidInput, shown
 from contact.records.validation import FloatArray
 
 # The values are arrays, numbers, strings, None, or mappings of the same.

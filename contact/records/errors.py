@@ -5,6 +5,14 @@ from __future__ import annotations
 import unicodedata
 from collections.abc import Mapping
 
+import numpy as np
+from pydantic_core import PydanticCustomError
+
+# An error shows so many characters of an offending value: about one line of a terminal.
+SHOWN = 80
+# Kind of an error whose lines name parts of a value.
+OF_PARTS = "of_parts"
+
 
 def printable(text: str, *, keep: str = "") -> str:
     r"""The text with control, format and surrogate characters as escapes, such as ``\x1b``; `keep` names exceptions."""
@@ -17,6 +25,22 @@ def _acts(character: str) -> bool:
     """Whether a character moves the cursor, changes the direction of reading, or is no character at all."""
     category = unicodedata.category(character)
     return category in ("Zl", "Zp") or (category.startswith("C") and category != "Cn")
+
+
+def shown(value: object) -> str:
+    """The value as an error message shows it: at most 80 characters, however large it is."""
+    head = value[: SHOWN + 1] if isinstance(value, str | bytes) else value
+    try:
+        text = np.array2string(head, threshold=8) if isinstance(head, np.ndarray) else repr(head)
+    except (ValueError, RecursionError):
+        # An integer has more digits than Python prints, or tables are nested too deeply.
+        text = f"a huge {type(value).__name__}"
+    return text if len(text) <= SHOWN else f"{text[:SHOWN]}..."
+
+
+def refused(*lines: str) -> PydanticCustomError:
+    """What a validator raises of parts of its value: each line begins with the name of one, as in "count = 1: ..."."""
+    return PydanticCustomError(OF_PARTS, "{told}", {"lines": lines, "told": "; ".join(lines)})
 
 
 class ContactError(Exception):

@@ -1,24 +1,27 @@
-"""`record`: a frozen, keyword-only, validated dataclass whose errors say value, place and remedy."""
+"""`record`: a frozen, keyword-only dataclass of pydantic whose errors say value, place and remedy."""
 
 from __future__ import annotations
 
 import dataclasses
 import functools
 import inspect
-from typing import Any, Self, TypeVar, dataclass_transform
+import re
+from collections.abc import Iterable, Mapping
+from typing import Annotated, Any, ClassVar, Self, TypeVar, Union, dataclass_transform, get_args, get_type_hints
 
 import numpy as np
 import pydantic
 import pydantic.dataclasses
+from pydantic import Discriminator, InstanceOf, Tag, TypeAdapter, model_validator
 from pydantic.fields import FieldInfo
-from pydantic_core import PydanticUndefined
+from pydantic.json_schema import SkipJsonSchema
+from pydantic_core import ArgsKwargs, PydanticUndefined
 
-from contact.records.errors import InvalidInput, printable
+from contact.records.errors import OF_PARTS, SHOWN, InvalidInput, printable, refused, shown
+from contact.records.units import Unit
 
 # Validators are built when the first record of a class is made: scenes use few of the classes.
 _CONFIG = pydantic.ConfigDict(arbitrary_types_allowed=True, extra="forbid", strict=True, defer_build=True)
-# An error shows so many characters of an offending value: about one line of a terminal.
-_SHOWN = 80
 # Fields by other names that books and users give them.
 _MEANT = {
     "base": "support",
@@ -31,15 +34,21 @@ _MEANT = {
 }
 # One error tells so many problems: as many as a user mends before trying again.
 _MOST_LINES = 8
+# How pydantic calls the members of a union in the path of an error; users do not see it.
+_TAG = "kind:"
 
 
+@pydantic.dataclasses.dataclass(frozen=True, kw_only=True, eq=False, config=_CONFIG)
 class Record:
     """Base of all records: equality, hash and change by copying, by content (arrays included)."""
 
+    NAMED: ClassVar[bool] = False
+    """Whether files tell by the entry `kind` which record is meant."""
+    WRITTEN: ClassVar[Mapping[str, Any]] = {}
+    """Of the JSON Schema: properties that files may have instead of fields, and which fields those may replace."""
+
     def _content(self) -> tuple[Any, ...]:
-        # A class is hashable, whatever its instances are.
-        names = _names(type(self))  # type: ignore[arg-type]
-        values = [getattr(self, name) for name in names]
+        values = [getattr(self, field.name) for field in dataclasses.fields(self)]
         return type(self), *[value.tobytes() if isinstance(value, np.ndarray) else value for value in values]
 
     def __eq__(self, other: object) -> bool:
@@ -50,14 +59,43 @@ class Record:
 
     def replace(self, **changes: Any) -> Self:
         """A copy with some fields changed, validated like a new one."""
-        return dataclasses.replace(self, **changes)  # type: ignore[type-var]  # see _content
+        return dataclasses.replace(self, **changes)
 
+    @classmethod
+    def kind(cls) -> str:
+        """The name by which files call a record: TruncatedCone is "truncated_cone"."""
+        return re.sub(r"(?<!^)(?=[A-Z])", "_", cls.__name__).lower()
 
-@functools.cache
-def _names(cls: type[Record]) -> tuple[str, ...]:
-    """Of a record's fields."""
-    # Every subclass is made a dataclass by `record`.
-    return tuple(field.name for field in dataclasses.fields(cls))  # type: ignore[arg-type]
+    @model_validator(mode="before")
+    @classmethod
+    def _known_fields(cls, given: Any) -> Any:
+        """Fields without the entry `kind` that chose the class, or one message on all that are none."""
+        fields = given.kwargs if isinstance(given, ArgsKwargs) else given
+        if not isinstance(fields, Mapping):
+            return given
+        if not isinstance(given, ArgsKwargs) and fields.get("kind") == cls.kind():
+            given = fields = {name: value for name, value in fields.items() if name != "kind"}
+        known = [field.name for field in dataclasses.fields(cls)]
+        unknown = [name for name in fields or () if name not in known]
+        if unknown:
+            raise refused(*(f"{_key(name)} = {shown(fields[name])}: {_no_such(name, known)}" for name in unknown))
+        return given
+
+    @classmethod
+    def __get_pydantic_json_schema__(cls, core: Any, handler: Any) -> dict[str, Any]:
+        """Its fields, each with its line of the docstring, and `kind`."""
+        schema: dict[str, Any] = handler.resolve_ref_schema(handler(core))
+        text = inspect.cleandoc(cls.__doc__ or "")
+        schema["description"] = text.partition("\n")[0]
+        for name, field in schema.get("properties", {}).items():
+            lines = [line for line in text.splitlines() if line.strip().startswith(f"{name}: ")]
+            field["description"] = lines[0].partition(": ")[2] if lines else ""
+        further = dict(cls.WRITTEN)
+        own = {"kind": {"const": cls.kind()}} if cls.NAMED else {}
+        schema["properties"] = own | schema.get("properties", {}) | further.pop("properties", {})
+        replaced = further.pop("replaced", ())
+        required = [name for name in schema.get("required", ()) if name not in replaced]
+        return schema | further | {"required": [*(["kind"] if cls.NAMED else []), *required]}
 
 
 R = TypeVar("R", bound=Record)
@@ -80,7 +118,8 @@ def record(cls: type[R]) -> type[R]:
         try:
             unchecked(self, *args, **kwargs)
         except pydantic.ValidationError as error:
-            raise InvalidInput(describe(error, made)) from None
+            names = [field.name for field in dataclasses.fields(made)]
+            raise InvalidInput(describe(error, made.__name__, names)) from None
 
     made.__init__, made.__signature__ = checked, _Signature()
     # pydantic returns the class that it was given.
@@ -121,52 +160,116 @@ def _parameter(field: dataclasses.Field[Any]) -> inspect.Parameter:
     )
 
 
-def describe(error: pydantic.ValidationError, cls: type[Any]) -> str:
-    """One line for each problem: path of the field, its value, what is required, how to mend it."""
-    lines = [_line(dict(detail), cls) for detail in error.errors()[:_MOST_LINES]]
-    more = error.error_count() - len(lines)
-    return "\n".join([*lines, f"{cls.__name__}: {more} more problems"] if more else lines)
+class OneOf:
+    """Annotation of a field: an instance of its class, or a table whose entry `kind` names one of these records."""
+
+    def __init__(self, *kinds: type[Record], plain: type[Record] | None = None, **further: type[Record]) -> None:
+        """`plain` is meant where the table has no kind; `further` are other names of kinds."""
+        self.kinds, self.plain = kinds, plain
+        self.names = {cls.kind(): cls for cls in kinds} | further
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> Any:
+        """A union of the kinds, by their names."""
+        members = [Annotated[cls, Tag(f"{_TAG}{cls.kind()}")] for cls in self.kinds]
+        instance = Annotated[SkipJsonSchema[InstanceOf[source]], Tag(f"{_TAG}instance")]
+        return handler.generate_schema(Annotated[Union[*members, instance], Discriminator(self._tag)])
+
+    def _tag(self, value: object) -> str:
+        if not isinstance(value, Mapping):
+            return f"{_TAG}instance"
+        kind = value.get("kind")
+        if kind is None and self.plain is not None:
+            return f"{_TAG}{self.plain.kind()}"
+        return f"{_TAG}{self.names[kind].kind()}" if isinstance(kind, str) and kind in self.names else "none of them"
 
 
-def _line(detail: dict[str, Any], cls: type[Any]) -> str:
-    place, kind = _place(detail["loc"], cls), detail["type"]
+def read(cls: type[R], table: Mapping[str, Any], name: str, context: object = None) -> R:
+    """A record from nested tables of a file.
+
+    Raises:
+        InvalidInput: One line for each problem, with its place in the tables; the record itself is called by the name.
+    """
+    try:
+        return TypeAdapter(cls).validate_python(table, strict=False, context=context)
+    except pydantic.ValidationError as error:
+        raise InvalidInput(describe(error, "", top=name)) from None
+
+
+def unit_of(cls: type[Record], field: str) -> str | None:
+    """SI unit of a field of a record; None where it is a pure number or no number."""
+    return _units(cls).get(field)  # type: ignore[arg-type]  # a class is hashable, whatever its instances are
+
+
+@functools.cache
+def _units(cls: type[Record]) -> dict[str, str]:
+    parts = {name: _parts(hint) for name, hint in get_type_hints(cls, include_extras=True).items()}
+    return {name: part.name for name, found in parts.items() for part in found if isinstance(part, Unit)}
+
+
+def _parts(annotation: Any) -> Iterable[Any]:
+    yield annotation
+    for part in get_args(annotation):
+        yield from _parts(part)
+
+
+def describe(error: pydantic.ValidationError, place: str, names: list[str] | None = None, top: str = "") -> str:
+    """One line for each problem: path of the field below a place, its value, what is required, how to mend it.
+
+    Args:
+        error: Of pydantic.
+        place: What every path begins with.
+        names: Of fields that may be given by position.
+        top: Name of the whole in a message that is not about one field; by default the place.
+    """
+    lines: list[str] = []
+    for detail in error.errors():
+        path = [step for step in detail["loc"] if not str(step).startswith(_TAG)]
+        if names and path and isinstance(path[0], int) and path[0] < len(names):
+            path[0] = names[path[0]]
+        lines += _lines(_path(place, path) or top, dict(detail), in_file=not place, is_top=not place and not path)
+    more = len(lines) - _MOST_LINES
+    return "\n".join([*lines[:_MOST_LINES], f"{place or top}: {more} more problems"] if more > 0 else lines)
+
+
+def _path(place: str, steps: Iterable[str | int]) -> str:
+    """As in layer.sublayers[0].thickness."""
+    text = place
+    for step in steps:
+        text += f"[{step}]" if isinstance(step, int) else f".{_key(step)}" if text else _key(step)
+    return text
+
+
+def _lines(place: str, detail: dict[str, Any], *, in_file: bool, is_top: bool) -> list[str]:
+    value, kind = detail["input"], detail["type"]
+    if kind == "union_tag_invalid":
+        names = re.findall(rf"{_TAG}(\w+)", detail["ctx"]["expected_tags"])
+        known = ", ".join(sorted(name for name in names if name != "instance"))
+        return [f"{place}.kind = {shown(value.get('kind'))}: must be one of {known}"]
+    if kind == OF_PARTS:
+        return [line if is_top else f"{place}.{line}" for line in detail["ctx"]["lines"]]
     if kind.startswith("missing"):
-        return f"{place} is missing; add it"
-    if kind == "unexpected_keyword_argument":
-        meant = _nearest(str(detail["loc"][-1]), [field.name for field in dataclasses.fields(cls)])
-        remedy = f"write {meant} instead" if meant else "remove it or correct its spelling"
-        return f"{place} = {shown(detail['input'])}: no such field; {remedy}"
+        return [f"{place} is missing; add it"]
     if kind == "unexpected_positional_argument":
-        return f"{cls.__name__}: {shown(detail['input'])} came without a name; write the fields as name=value"
+        return [f"{place}: {shown(value)} came without a name; write the fields as name=value"]
     message = detail["msg"].removeprefix("Value error, ")
-    return f"{place} = {shown(detail['input'])}: {message}" if detail["loc"] else f"{place}: {message}"
+    if kind == "dataclass_type" or (kind == "is_instance_of" and in_file):
+        message = f"must be a table of named values; write [{place}]"
+    if kind == "tuple_type":
+        message = "must be a list"
+    is_whole = is_top or isinstance(value, ArgsKwargs | Record)
+    return [f"{place}: {message}" if is_whole else f"{place} = {shown(value)}: {message}"]
 
 
-def _nearest(written: str, names: list[str]) -> str | None:
-    """The field that was meant by a name that is none; None if no field is close to it."""
+def _no_such(written: object, names: list[str]) -> str:
+    """The remedy for a name that no field has: the one that was meant, if one is close to it."""
     # Only a scene with a mistake pays for this import.
     from difflib import get_close_matches  # noqa: PLC0415
 
-    meant = [name for name in (_MEANT.get(written), *get_close_matches(written, names, n=1)) if name in names]
-    return meant[0] if meant else None
+    close = get_close_matches(written, names, n=1) if isinstance(written, str) else []
+    meant = [name for name in (_MEANT.get(str(written)), *close) if name in names]
+    return f"no such field; {f'write {meant[0]} instead' if meant else 'remove it or correct its spelling'}"
 
 
-def _place(path: tuple[str | int, ...], cls: type[Any]) -> str:
-    """The path of a field; an argument that came by position is called by its field's name."""
-    names = [field.name for field in dataclasses.fields(cls)]
-    steps = [
-        names[s] if isinstance(s, int) and s < len(names) and i == 0 else printable(str(s)[:_SHOWN])
-        for i, s in enumerate(path)
-    ]
-    return ".".join([cls.__name__, *steps])
-
-
-def shown(value: object) -> str:
-    """The value as an error message shows it: at most 80 characters, however large it is."""
-    head = value[: _SHOWN + 1] if isinstance(value, str | bytes) else value
-    try:
-        text = np.array2string(head, threshold=8) if isinstance(head, np.ndarray) else repr(head)
-    except (ValueError, RecursionError):
-        # An integer has more digits than Python prints, or tables are nested too deeply.
-        text = f"a huge {type(value).__name__}"
-    return text if len(text) <= _SHOWN else f"{text[:_SHOWN]}..."
+def _key(name: object) -> str:
+    """A key as messages show it."""
+    return printable(name[:SHOWN]) if isinstance(name, str) else shown(name)

@@ -31,11 +31,11 @@ class CoatedPair(Record):
         effects: As in a scene.
     """
 
-    first_radius: Annotated[float, *positive_or_infinite("give the radius of curvature in metres")]
-    second_radius: Annotated[float, *positive_or_infinite("give the radius of curvature in metres")]
+    first_radius: Annotated[float, *positive_or_infinite("give the radius of curvature in metres", "m")]
+    second_radius: Annotated[float, *positive_or_infinite("give the radius of curvature in metres", "m")]
     first_thickness: PositiveLength
     second_thickness: PositiveLength
-    youngs_modulus: Annotated[float, *positive("give Young's modulus of the coatings in pascals")]
+    youngs_modulus: Annotated[float, *positive("give Young's modulus of the coatings in pascals", "Pa")]
     poissons_ratio: Annotated[float, *in_range(0.0, 0.5, "Poisson's ratio is 0.5 for incompressible coatings")]
     support: Support = "bonded"
     loading: Loading

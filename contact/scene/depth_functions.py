@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from functools import cached_property
-from typing import TYPE_CHECKING, Annotated, Self
+from typing import TYPE_CHECKING, Annotated, ClassVar, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -33,6 +33,8 @@ NO_ZERO = (
 class DepthFunction(Record):
     """Base of the functions of depth; z [m] lies in [0, thickness]."""
 
+    NAMED: ClassVar[bool] = True
+
     def at(self, depth: ArrayLike, thickness: float) -> FloatArray:
         """Values at depths z [m] of any shape in a layer of this thickness [m]."""
         raise TypeError(f"{type(self).__name__} declares no values")
@@ -54,8 +56,8 @@ class DepthFunction(Record):
 class _BetweenFaces(DepthFunction):
     """Base of those that are known by their values at both faces, whatever the thickness."""
 
-    surface: Annotated[float, *positive(NO_ZERO)]
-    base: Annotated[float, *positive("give the value at the base of the layer")]
+    surface: Annotated[float, *positive(NO_ZERO, "Pa")]
+    base: Annotated[float, *positive("give the value at the base of the layer", "Pa")]
 
     def scaled(self, length: float, value: float) -> Self:
         return self.replace(surface=self.surface / value, base=self.base / value)
@@ -107,7 +109,7 @@ class PowerLawDepth(DepthFunction):
         exponent: m, of either sign.
     """
 
-    surface: Annotated[float, *positive(NO_ZERO)]
+    surface: Annotated[float, *positive(NO_ZERO, "Pa")]
     reference_depth: PositiveLength
     exponent: Annotated[float, *in_range(-10.0, 10.0, "give the exponent m of surface (1 + z/z0)^m")]
 
@@ -131,8 +133,8 @@ class TabulatedDepth(DepthFunction):
         values: There, shape (n,).
     """
 
-    depths: Annotated[Vector, *increasing_vector("give depths in metres, from the surface down", least=0.0)]
-    values: Annotated[Vector, *bounded_vector("give one value for each depth", least=0.0)]
+    depths: Annotated[Vector, *increasing_vector("give depths in metres, from the surface down", "m", least=0.0)]
+    values: Annotated[Vector, *bounded_vector("give one value for each depth", "Pa", least=0.0)]
 
     @model_validator(mode="after")
     def _check(self) -> Self:

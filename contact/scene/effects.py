@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import numpy as np
 from pydantic import model_validator
@@ -18,6 +18,8 @@ _VISCOSITY = "give the viscosity in pascal seconds"
 
 class Effect(Record):
     """Base of every effect."""
+
+    NAMED: ClassVar[bool] = True
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -59,7 +61,9 @@ class Adhesion(Effect):
         work_of_adhesion: dgamma [J/m^2].
     """
 
-    work_of_adhesion: Annotated[float, *in_range(0.0, math.inf, "give the work of adhesion in joules per square metre")]
+    work_of_adhesion: Annotated[
+        float, *in_range(0.0, math.inf, "give the work of adhesion in joules per square metre", "J/m^2")
+    ]
 
 
 @record
@@ -87,8 +91,8 @@ class KelvinVoigt(Viscoelasticity):
         viscosity: eta [Pa s].
     """
 
-    shear_modulus: Annotated[float, *positive(_MODULUS)]
-    viscosity: Annotated[float, *in_range(0.0, math.inf, _VISCOSITY)]
+    shear_modulus: Annotated[float, *positive(_MODULUS, "Pa")]
+    viscosity: Annotated[float, *in_range(0.0, math.inf, _VISCOSITY, "Pa s")]
 
     @property
     def relaxation(self) -> Relaxation:
@@ -108,9 +112,9 @@ class StandardSolid(Viscoelasticity):
         viscosity: eta [Pa s] of the Maxwell element; it relaxes in eta / G_1.
     """
 
-    long_term_shear_modulus: Annotated[float, *in_range(0.0, math.inf, _MODULUS)]
-    maxwell_shear_modulus: Annotated[float, *positive(_MODULUS)]
-    viscosity: Annotated[float, *positive(_VISCOSITY)]
+    long_term_shear_modulus: Annotated[float, *in_range(0.0, math.inf, _MODULUS, "Pa")]
+    maxwell_shear_modulus: Annotated[float, *positive(_MODULUS, "Pa")]
+    viscosity: Annotated[float, *positive(_VISCOSITY, "Pa s")]
 
     @property
     def relaxation(self) -> Relaxation:
@@ -131,9 +135,11 @@ class PronySeries(Viscoelasticity):
         relaxation_times: tau_j [s], shape (m,).
     """
 
-    long_term_shear_modulus: Annotated[float, *in_range(0.0, math.inf, _MODULUS)]
-    shear_moduli: Annotated[Vector, *bounded_vector("give the shear moduli in pascals", least=0.0)]
-    relaxation_times: Annotated[Vector, *bounded_vector("give the relaxation times in seconds", least=0.0, strict=True)]
+    long_term_shear_modulus: Annotated[float, *in_range(0.0, math.inf, _MODULUS, "Pa")]
+    shear_moduli: Annotated[Vector, *bounded_vector("give the shear moduli in pascals", "Pa", least=0.0)]
+    relaxation_times: Annotated[
+        Vector, *bounded_vector("give the relaxation times in seconds", "s", least=0.0, strict=True)
+    ]
 
     @model_validator(mode="after")
     def _check(self) -> PronySeries:

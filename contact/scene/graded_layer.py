@@ -2,30 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Annotated, Self, cast
+from collections.abc import Mapping
+from typing import Annotated, ClassVar, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
-from pydantic import PlainValidator, model_validator
+from pydantic import Discriminator, Tag, model_validator
 
-from contact.records.record import record
+from contact.records.errors import refused
+from contact.records.record import OneOf, record
 from contact.records.validation import FloatArray, PositiveLength, in_range
-from contact.scene.depth_functions import NO_ZERO, DepthFunction, TabulatedDepth
+from contact.scene.depth_functions import DEPTH_FUNCTIONS, NO_ZERO, DepthFunction, TabulatedDepth
 from contact.scene.elastic_layer import ElasticLayer
-from contact.scene.layer import Support
-from contact.scene.layer_stack import ElasticBase, Sublayer
+from contact.scene.layer_stack import ElasticBase, Sublayer, Supported
 
-_NUMBER = in_range(0.0, 0.5, "give Poisson's ratio, or a TabulatedDepth of it")[0].func
+_NUMBER = in_range(0.0, 0.5, "give Poisson's ratio, or a TabulatedDepth of it")
 
 
-def _ratio(value: object) -> float | TabulatedDepth:
-    """Poisson's ratio: a number in [0, 0.5], or a table of such numbers."""
-    if not isinstance(value, TabulatedDepth):
-        return cast("Callable[[object], float]", _NUMBER)(value)
-    if (worst := float(value.values.max())) > 0.5:
-        raise ValueError(f"Poisson's ratio must lie in [0, 0.5], but the table holds {worst:g}")
-    return value
+def _kind_of_ratio(value: object) -> str:
+    return "kind:table" if isinstance(value, Mapping | TabulatedDepth) else "kind:number"
 
 
 @record
@@ -39,10 +34,15 @@ class GradedLayer(ElasticLayer):
         support: "bonded" or "unbonded" to a rigid base, or an `ElasticBase`.
     """
 
+    NAMED: ClassVar[bool] = True
+
     thickness: PositiveLength
-    youngs_modulus: DepthFunction
-    poissons_ratio: Annotated[float | TabulatedDepth, PlainValidator(_ratio)]
-    support: Support | ElasticBase = "bonded"
+    youngs_modulus: Annotated[DepthFunction, OneOf(*DEPTH_FUNCTIONS)]
+    poissons_ratio: Annotated[
+        Annotated[float, *_NUMBER, Tag("kind:number")] | Annotated[TabulatedDepth, Tag("kind:table")],
+        Discriminator(_kind_of_ratio),
+    ]
+    support: Supported = "bonded"
 
     @model_validator(mode="after")
     def _check(self) -> Self:
@@ -53,6 +53,9 @@ class GradedLayer(ElasticLayer):
                 raise ValueError(f"{reach}; tabulate the whole layer")
         if isinstance(self.youngs_modulus, TabulatedDepth):
             _refuse_zero(self.youngs_modulus)
+        ratio = self.poissons_ratio
+        if isinstance(ratio, TabulatedDepth) and (worst := float(ratio.values.max())) > 0.5:
+            raise refused(f"poissons_ratio: must lie in [0, 0.5], but the table holds {worst:g}")
         return self
 
     @property

@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Literal, Self
+from collections.abc import Mapping
+from typing import Annotated, Any, ClassVar, Literal, Self
 
+from pydantic import model_validator
+
+from contact.records.errors import refused, shown
 from contact.records.record import record
 from contact.records.validation import in_range, positive, positive_or_infinite
 from contact.scene.elastic_layer import ElasticLayer
@@ -23,12 +27,37 @@ class Layer(ElasticLayer):
         support: "bonded" (no displacement at the base) or "unbonded" (frictionless base, no lift-off).
     """
 
+    WRITTEN: ClassVar[Mapping[str, Any]] = {
+        "properties": {"half_space": {"type": "boolean", "description": "instead of a thickness"}},
+        # A viscoelastic effect may give the modulus.
+        "replaced": ("thickness", "youngs_modulus"),
+        "oneOf": [
+            {"required": ["thickness"]},
+            {"properties": {"half_space": {"const": True}}, "required": ["half_space"]},
+        ],
+    }
+
     thickness: Annotated[
-        float, *positive_or_infinite("give the thickness in metres, or use Layer.half_space for an infinite one")
+        float, *positive_or_infinite("give the thickness in metres, or use Layer.half_space for an infinite one", "m")
     ]
-    youngs_modulus: Annotated[float, *positive("give Young's modulus in pascals")]
+    youngs_modulus: Annotated[float, *positive("give Young's modulus in pascals", "Pa")]
     poissons_ratio: Annotated[float, *in_range(0.0, 0.5, "Poisson's ratio is 0.5 for an incompressible layer")]
     support: Support = "bonded"
+
+    @model_validator(mode="before")
+    @classmethod
+    def _half_space(cls, given: Any) -> Any:
+        """In files `half_space = true` stands for an infinite thickness."""
+        if not isinstance(given, Mapping) or "half_space" not in given:
+            return given
+        rest = {name: value for name, value in given.items() if name != "half_space"}
+        if not isinstance(given["half_space"], bool):
+            raise refused(f"half_space = {shown(given['half_space'])}: must be true or false")
+        if not given["half_space"]:
+            return rest
+        if "thickness" in rest:
+            raise refused(f"thickness = {shown(rest['thickness'])}: a half-space has none; drop one of the two")
+        return rest | {"thickness": math.inf}
 
     @classmethod
     def half_space(cls, *, youngs_modulus: float, poissons_ratio: float) -> Self:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any, Literal, Self, TypeAlias
+from collections.abc import Mapping
+from typing import Annotated, ClassVar, Literal, Self, TypeAlias
 
-from pydantic import field_validator, model_validator
+from pydantic import Discriminator, Field, Tag, model_validator
 
 from contact.records.record import Record, record
 from contact.records.validation import PositiveLength, in_range, positive
@@ -29,7 +30,7 @@ class Sublayer(Record):
     """
 
     thickness: PositiveLength
-    youngs_modulus: Annotated[float, *positive("give Young's modulus in pascals")]
+    youngs_modulus: Annotated[float, *positive("give Young's modulus in pascals", "Pa")]
     poissons_ratio: Annotated[float, *in_range(0.0, 0.5, "Poisson's ratio is 0.5 for an incompressible layer")]
 
 
@@ -43,13 +44,23 @@ class ElasticBase(Record):
         interface: "bonded", or "unbonded" (frictionless, no lift-off), between base and layer.
     """
 
-    youngs_modulus: Annotated[float, *positive("give Young's modulus in pascals")]
+    youngs_modulus: Annotated[float, *positive("give Young's modulus in pascals", "Pa")]
     poissons_ratio: Annotated[float, *in_range(0.0, 0.5, "Poisson's ratio is 0.5 for an incompressible base")]
     interface: Interface = "bonded"
 
     def scaled(self, modulus: float) -> Self:
         """The same base with its modulus over another one [Pa]."""
         return self.replace(youngs_modulus=self.youngs_modulus / modulus)
+
+
+def _base(support: object) -> str:
+    return "kind:elastic" if isinstance(support, Mapping | ElasticBase) else "kind:rigid"
+
+
+Supported: TypeAlias = Annotated[
+    Annotated[Support, Tag("kind:rigid")] | Annotated[ElasticBase, Tag("kind:elastic")], Discriminator(_base)
+]
+"""A rigid base, by how the layer holds on to it, or an elastic one."""
 
 
 @record
@@ -62,15 +73,11 @@ class LayerStack(ElasticLayer):
         support: "bonded" or "unbonded" to a rigid base, or an `ElasticBase`.
     """
 
-    sublayers: tuple[Sublayer, ...]
-    interfaces: tuple[Interface, ...] = ()
-    support: Support | ElasticBase = "bonded"
+    NAMED: ClassVar[bool] = True
 
-    @field_validator("sublayers", "interfaces", mode="before")
-    @classmethod
-    def _listed(cls, given: Any) -> Any:
-        """A list as well as a tuple."""
-        return tuple(given) if isinstance(given, list) else given
+    sublayers: Annotated[tuple[Sublayer, ...], Field(max_length=MAX_SUBLAYERS, strict=False)]
+    interfaces: Annotated[tuple[Interface, ...], Field(strict=False)] = ()
+    support: Supported = "bonded"
 
     @model_validator(mode="after")
     def _check(self) -> Self:

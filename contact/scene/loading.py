@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, TypeAlias
+from typing import Annotated, ClassVar, Literal, TypeAlias
 
 from pydantic import Field, model_validator
 
@@ -16,6 +16,8 @@ Controlled: TypeAlias = Literal["displacement", "force", "machine"]
 class Loading(Record):
     """Base of every loading."""
 
+    NAMED: ClassVar[bool] = True
+
 
 @record
 class ContactRadii(Loading):
@@ -25,7 +27,7 @@ class ContactRadii(Loading):
         values: a [m], positive and increasing, shape (n,).
     """
 
-    values: Annotated[Vector, *increasing_vector("give contact radii in metres that increase", above=0.0)] = Field(
+    values: Annotated[Vector, *increasing_vector("give contact radii in metres that increase", "m", above=0.0)] = Field(
         kw_only=False
     )
 
@@ -42,7 +44,7 @@ class IndentationDepths(Loading):
         values: delta [m], shape (n,); negative only with adhesion.
     """
 
-    values: Annotated[Vector, *finite_vector("give indentation depths in metres")] = Field(kw_only=False)
+    values: Annotated[Vector, *finite_vector("give indentation depths in metres", "m")] = Field(kw_only=False)
 
 
 @record
@@ -53,7 +55,7 @@ class NormalForces(Loading):
         values: F_N [N], pressing positive, shape (n,); negative only with adhesion.
     """
 
-    values: Annotated[Vector, *finite_vector("give normal forces in newtons")] = Field(kw_only=False)
+    values: Annotated[Vector, *finite_vector("give normal forces in newtons", "N")] = Field(kw_only=False)
 
 
 @record
@@ -71,7 +73,9 @@ class Detachment(Loading):
     """
 
     control: Literal["displacement", "force"] = "displacement"
-    machine_stiffness: Annotated[float, *positive("give the machine's stiffness in newtons per metre")] | None = None
+    machine_stiffness: (
+        Annotated[float, *positive("give the machine's stiffness in newtons per metre", "N/m")] | None
+    ) = None
     initial_contact_radius: PositiveLength | None = None
 
     @model_validator(mode="after")
@@ -98,8 +102,8 @@ class Impact(Loading):
         velocity: v0 [m/s] at first touch, towards the layer.
     """
 
-    mass: Annotated[float, *positive("give the mass in kilograms")]
-    velocity: Annotated[float, *positive("give the approach velocity in metres per second")]
+    mass: Annotated[float, *positive("give the mass in kilograms", "kg")]
+    velocity: Annotated[float, *positive("give the approach velocity in metres per second", "m/s")]
 
 
 @record
@@ -111,8 +115,8 @@ class DepthHistory(Loading):
         depth: delta [m] at these instants, shape (n,).
     """
 
-    time: Annotated[Vector, *increasing_vector("give instants in seconds that increase")]
-    depth: Annotated[Vector, *finite_vector("give one depth in metres for each instant")]
+    time: Annotated[Vector, *increasing_vector("give instants in seconds that increase", "s")]
+    depth: Annotated[Vector, *finite_vector("give one depth in metres for each instant", "m")]
 
     @model_validator(mode="after")
     def _check(self) -> DepthHistory:
@@ -129,8 +133,8 @@ class ForceHistory(Loading):
         force: F_N [N] at these instants, shape (n,).
     """
 
-    time: Annotated[Vector, *increasing_vector("give instants in seconds that increase")]
-    force: Annotated[Vector, *finite_vector("give one force in newtons for each instant")]
+    time: Annotated[Vector, *increasing_vector("give instants in seconds that increase", "s")]
+    force: Annotated[Vector, *finite_vector("give one force in newtons for each instant", "N")]
 
     @model_validator(mode="after")
     def _check(self) -> ForceHistory:

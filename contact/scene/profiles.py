@@ -8,15 +8,17 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
+from collections.abc import Mapping
 from functools import cached_property
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 from pydantic import model_validator
 
-from contact.records.errors import InvalidInput
-from contact.records.record import Record, record, shown
+from contact.records.errors import InvalidInput, refused, shown
+from contact.records.record import Record, record
+from contact.records.units import in_si
 from contact.records.validation import (
     FloatArray,
     PositiveLength,
@@ -31,12 +33,34 @@ from contact.records.validation import (
 if TYPE_CHECKING:
     from scipy.interpolate import PchipInterpolator
 
+# Half angles beyond these are no indenter: in radians, a needle and a plane.
+_NARROWEST, _WIDEST = 1e-3, math.pi / 2 - 1e-6
+_SLOPED: dict[str, Any] = {
+    "properties": {"half_angle": {"type": "string", "description": 'from the axis to the flank, as in "35 deg"'}},
+    "replaced": ("slope",),
+    "oneOf": [{"required": ["slope"]}, {"required": ["half_angle"]}],
+}
+_FROM_FILE: Mapping[str, Any] = {
+    "properties": {
+        "file": {"type": "string", "description": "CSV: radii, heights"},
+        "unit": {"type": "string", "description": "of both columns, where the file names none"},
+        "noise": {"type": ["number", "string"], "description": "of the heights, smoothed away"},
+    },
+    "replaced": ("radii", "heights"),
+    "oneOf": [{"required": ["radii", "heights"]}, {"required": ["file"]}],
+}
+PYRAMID_NOTE = (
+    "the pyramid is solved as the cone of equal cross-sections; on a half-space the force of the square pyramid is "
+    "4 % larger (0.7453 in place of 0.7183 E* tan(alpha) d^2, Bilodeau 1992)"
+)
 # A cubic spline needs four points; with fewer than twice as many there is nothing to average.
 _FEWEST_TO_SMOOTH = 8
 
 
 class Profile(Record, ABC):
     """What every indenter of revolution answers. Radii r [m] may be arrays of any shape."""
+
+    NAMED: ClassVar[bool] = True
 
     @abstractmethod
     def height(self, radius: ArrayLike) -> FloatArray:
@@ -82,6 +106,33 @@ class Profile(Record, ABC):
         @property
         def flat_radius(self) -> float:
             """Radius [m] of the flat end; zero for a profile that starts in a point."""
+
+
+def sloped(given: Any) -> Any:
+    """A table with slope = 1/tan(half angle), the angle measured from the axis to the flank.
+
+    A square pyramid with the half angle alpha of its faces has at each height the cross-section 4 z^2 tan(alpha)^2; the
+    cone of equal cross-sections, pi z^2/slope^2, has the slope sqrt(pi)/2/tan(alpha).
+    """
+    if not isinstance(given, Mapping) or not ("half_angle" in given or given.get("kind") == "pyramid"):
+        return given
+    if "slope" in given:
+        raise refused(f"slope = {shown(given['slope'])}: follows from half_angle; drop one of the two")
+    written = given.get("half_angle")
+    try:
+        angle = in_si(written, "rad")
+    except InvalidInput as error:
+        raise refused(f"half_angle = {shown(written)}: {error}") from None
+    if written is None:
+        raise refused('half_angle is missing; a pyramid needs it, as in half_angle = "35 deg"')
+    if angle is written:
+        wrong = "must be an angle with its unit, from the axis to the flank"
+        raise refused(f'half_angle = {shown(written)}: {wrong}; write half_angle = "35 deg"')
+    if not _NARROWEST <= angle <= _WIDEST:
+        raise refused(f"half_angle = {shown(written)}: must lie between 0 and 90 degrees")
+    rest = {name: value for name, value in given.items() if name not in ("half_angle", "kind")}
+    is_pyramid = given.get("kind") == "pyramid"
+    return rest | {"slope": (math.sqrt(math.pi) / 2 if is_pyramid else 1.0) / math.tan(angle)}
 
 
 class Pointed(Profile):
@@ -175,7 +226,17 @@ class Cone(Pointed):
         slope: tan(theta) [-], theta the angle between the cone's flank and the surface.
     """
 
+    WRITTEN: ClassVar[Mapping[str, Any]] = _SLOPED | {
+        "properties": _SLOPED["properties"] | {"kind": {"enum": ["cone", "pyramid"]}}
+    }
+
     slope: Annotated[float, *positive("the slope is the tangent of the angle between flank and surface")]
+
+    @model_validator(mode="before")
+    @classmethod
+    def _half_angle(cls, given: Any) -> Any:
+        """In files an angle may stand for the slope."""
+        return sloped(given)
 
     def height(self, radius: ArrayLike) -> FloatArray:
         return self.slope * np.asarray(radius, dtype=np.float64)
@@ -193,8 +254,16 @@ class Spheroconical(Pointed):
         slope: tan(theta) [-], theta the angle between the cone's flank and the surface.
     """
 
+    WRITTEN: ClassVar[Mapping[str, Any]] = _SLOPED
+
     radius: PositiveLength
     slope: Annotated[float, *positive("the slope is the tangent of the angle between flank and surface")]
+
+    @model_validator(mode="before")
+    @classmethod
+    def _half_angle(cls, given: Any) -> Any:
+        """In files an angle may stand for the slope."""
+        return sloped(given)
 
     def height(self, radius: ArrayLike) -> FloatArray:
         r, b = np.asarray(radius, dtype=np.float64), self.tangent_radius
@@ -227,8 +296,16 @@ class TruncatedCone(Profile):
         slope: tan(theta) [-].
     """
 
+    WRITTEN: ClassVar[Mapping[str, Any]] = _SLOPED
+
     flat_radius: PositiveLength
     slope: Annotated[float, *positive("the slope is the tangent of the angle between flank and surface")]
+
+    @model_validator(mode="before")
+    @classmethod
+    def _half_angle(cls, given: Any) -> Any:
+        """In files an angle may stand for the slope."""
+        return sloped(given)
 
     def height(self, radius: ArrayLike) -> FloatArray:
         return self.slope * np.maximum(np.asarray(radius, dtype=np.float64) - self.flat_radius, 0.0)
@@ -299,9 +376,32 @@ class Tabulated(Pointed):
         smoothing: Largest change [m] of a height by `smoothed`; none for a table as it was measured.
     """
 
-    radii: Annotated[Vector, *increasing_vector("give radii in metres that start at 0 and increase", least=0.0)]
-    heights: Annotated[Vector, *finite_vector("give heights in metres, one for each radius")]
-    smoothing: Annotated[float | None, *not_negative_or_none("leave it to Tabulated.smoothed")] = None
+    WRITTEN: ClassVar[Mapping[str, Any]] = _FROM_FILE
+
+    radii: Annotated[Vector, *increasing_vector("give radii in metres that start at 0 and increase", "m", least=0.0)]
+    heights: Annotated[Vector, *finite_vector("give heights in metres, one for each radius", "m")]
+    smoothing: Annotated[float | None, *not_negative_or_none("leave it to Tabulated.smoothed", "m")] = None
+
+    @model_validator(mode="wrap")
+    @classmethod
+    def _from_file(cls, given: Any, handler: Any) -> Any:
+        """In files: the first two columns of a CSV file, and the noise that is smoothed away."""
+        if not isinstance(given, Mapping):
+            return handler(given)
+        table = dict(given)
+        noise = table.pop("noise", None)
+        if "file" in table:
+            twice = [
+                f"{name}: stands in the file already; drop one of the two"
+                for name in ("radii", "heights")
+                if name in table
+            ]
+            if twice:
+                raise refused(*twice)
+            source = {name: table.pop(name) for name in ("file", "unit") if name in table}
+            table |= {name: source | {"column": i} for i, name in enumerate(("radii", "heights"))}
+        made = handler(table)
+        return made if noise is None else made.smoothed(noise=in_si(noise, "m"))
 
     @model_validator(mode="after")
     def _check(self) -> Tabulated:

@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Annotated, Any, Generic, Self, TypeAlias, overload
 
 import numpy as np
-from pydantic import AfterValidator, field_validator, model_validator
+from pydantic import AfterValidator, BeforeValidator, field_validator, model_validator
 from typing_extensions import TypeVar
 
-from contact.records.record import Record, record
-from contact.scene.effects import Adhesion, Effect, Friction, Viscoelasticity
+from contact.records.record import OneOf, Record, record
+from contact.scene.effects import EFFECTS, Adhesion, Effect, Friction, Viscoelasticity
 from contact.scene.elastic_layer import ElasticLayer
+from contact.scene.graded_layer import GradedLayer
 from contact.scene.layer import Layer
-from contact.scene.loading import ContactRadii, Detachment, IndentationDepths, Loading, NormalForces
-from contact.scene.profiles import FlatPunch, Profile
+from contact.scene.layer_stack import LayerStack
+from contact.scene.loading import LOADINGS, ContactRadii, Detachment, IndentationDepths, Loading, NormalForces
+from contact.scene.profiles import PROFILES, Cone, FlatPunch, Profile
 
 # Two stated moduli may differ by this, relative: E = 2 (1 + nu) G is rounded to 1e-15, and typed numbers that agree
 # to fewer than nine digits are two different materials.
@@ -27,6 +30,23 @@ L = TypeVar("L", bound=Loading)
 LoadingT_co = TypeVar("LoadingT_co", bound=Loading, default=Loading, covariant=True)
 # Likewise the layer; `Scene` alone has a plain one.
 LayerT_co = TypeVar("LayerT_co", bound=ElasticLayer, default=Layer, covariant=True)
+
+
+def _truth(value: object) -> object:
+    if not isinstance(value, bool):
+        raise ValueError("must be true or false")
+    return value
+
+
+def _listed(effects: Any) -> Any:
+    """A list, or a single effect, as well as a tuple."""
+    if isinstance(effects, Effect):
+        return (effects,)
+    if isinstance(effects, str | bytes | Mapping) or not isinstance(effects, Sequence):
+        raise ValueError("must be a list of tables; write [[effects]]")
+    if len(effects) > len(EFFECTS):
+        raise ValueError(f"{len(effects)} are listed, but each of the {len(EFFECTS)} kinds stands only once")
+    return tuple(effects)
 
 
 @record
@@ -45,12 +65,19 @@ class Scene(Record, Generic[LoadingT_co, LayerT_co]):
 
     if TYPE_CHECKING:
         layer: LayerT_co
+        indenter: Profile
+        loading: LoadingT_co
+        effects: tuple[Effect, ...] = ()
     else:
-        layer: Annotated[ElasticLayer, AfterValidator(lambda layer: layer.simplest())]
-    indenter: Profile
-    loading: LoadingT_co
-    effects: tuple[Effect, ...] = ()
-    beyond_small_strains: bool = False
+        layer: Annotated[
+            ElasticLayer,
+            OneOf(LayerStack, GradedLayer, Layer, plain=Layer),
+            AfterValidator(lambda layer: layer.simplest()),
+        ]
+        indenter: Annotated[Profile, OneOf(*PROFILES, pyramid=Cone)]
+        loading: Annotated[Loading, OneOf(*LOADINGS)]
+        effects: Annotated[tuple[Annotated[Effect, OneOf(*EFFECTS)], ...], BeforeValidator(_listed)] = ()
+    beyond_small_strains: Annotated[bool, BeforeValidator(_truth)] = False
 
     def effect(self, kind: type[E]) -> E | None:
         """The listed effect of this kind, or None."""
@@ -64,12 +91,6 @@ class Scene(Record, Generic[LoadingT_co, LayerT_co]):
         def replace(self, **changes: Any) -> Self: ...
         def replace(self, **changes: Any) -> Any:
             """A copy with some fields changed, validated like a new one."""
-
-    @field_validator("effects", mode="before")
-    @classmethod
-    def _listed(cls, effects: Any) -> Any:
-        """A list, or a single effect, as well as a tuple."""
-        return (effects,) if isinstance(effects, Effect) else tuple(effects) if isinstance(effects, list) else effects
 
     @field_validator("effects")
     @classmethod

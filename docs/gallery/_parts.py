@@ -12,8 +12,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bem.layer_equation.flat_punch_source import IntegralEquation
-from bem.layer_equation.protocol import FlatPunchSolution
+from bem.flat_punch import FlatPunchValues, IntegralEquation
 from cases.results.records.figure import Figure, Series
 from contact import Layer
 from contact.records.validation import FloatArray
@@ -82,9 +81,9 @@ def name_of(one: Layer) -> str:
     return f"bonded nu={one.poissons_ratio:g}" if one.support == "bonded" else "unbonded"
 
 
-def punch(one: Layer, largest: float = LARGEST_RATIO) -> FlatPunchSolution:
-    """Flat-punch data up to a ratio a/h."""
-    return SOURCE.solution(one, largest)
+def punch(one: Layer) -> FlatPunchValues:
+    """Flat-punch data of a layer."""
+    return SOURCE.punch(one)
 
 
 def mdr_line(

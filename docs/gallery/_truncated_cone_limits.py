@@ -3,8 +3,8 @@
 from collections.abc import Iterator
 
 import numpy as np
+from numpy.polynomial.legendre import leggauss
 
-from bem.polynomials.gauss import legendre_rule
 from cases.library._layers import layer
 from cases.results.records.figure import Series
 from contact import TruncatedCone
@@ -13,7 +13,7 @@ from docs.gallery._parts import series
 from mdr.closed_forms.truncated_cone import thin_cone_force, thin_cone_pressure, thin_cone_profile
 
 HALF_SPACE, THIN_LAYER = "half-space", "thin layer"
-NODES, WEIGHTS = legendre_rule(60)
+NODES, WEIGHTS = leggauss(60)
 
 
 def profile_limits(label: str, cone: TruncatedCone, a: float, x: FloatArray) -> Iterator[Series]:

@@ -6,10 +6,10 @@ Fig. 5: exponent m and factor kappa of the contact stiffness, Eqs. (33) and (34)
 import numpy as np
 
 from cases.results.records.figure import Figure, Panel
-from contact import Layer, Paraboloid
+from contact import ContactRadii, Layer, Paraboloid, Scene
 from contact.records.validation import FloatArray
 from docs.gallery._parts import LARGEST_RATIO, SOURCE, UNBONDED, layer, mdr_line, name_of, punch, show
-from mdr import equivalent_system
+from mdr import Mdr
 
 LAYERS = (UNBONDED, layer(0.0), layer(0.3), layer(0.4), layer(0.45), layer(0.5))
 RATIOS = np.geomspace(1e-2, LARGEST_RATIO, 161)
@@ -17,8 +17,14 @@ RATIOS = np.geomspace(1e-2, LARGEST_RATIO, 161)
 
 def exponent(one: Layer, ratio: FloatArray) -> tuple[FloatArray, float]:
     """m of Eq. (34) from the depth of a paraboloid, and its relative error bound."""
-    system = equivalent_system(one, Paraboloid(radius_of_curvature=1.0), float(ratio.max()), SOURCE)
-    return ratio**2 / system.mdr_profile(ratio) - 1.0, system.relative_error["indentation_depth"]
+    scene = Scene(
+        layer=one,
+        indenter=Paraboloid(radius_of_curvature=1.0),
+        loading=ContactRadii(ratio),
+        beyond_small_strains=True,
+    )
+    path = Mdr(flat_punch=SOURCE).solve(scene)
+    return ratio**2 / path.indentation_depth - 1.0, float(path.error_estimate["indentation_depth"].max())
 
 
 def figure() -> Figure:

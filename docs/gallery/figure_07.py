@@ -10,8 +10,7 @@ from contact import ContactPath, ContactRadii, Layer, Profile, Scene, TruncatedC
 from contact.records.validation import FloatArray
 from docs.gallery._parts import SOURCE, UNBONDED, layer, mdr_line, name_of, show
 from docs.gallery._truncated_cone_limits import pressure_limits, profile_limits
-from mdr import equivalent_system
-from mdr.elastic import solve_elastic
+from mdr.equilibria import solve_elastic
 
 LAYERS = (UNBONDED, layer(0.45), layer(0.5))
 RATIOS = (0.1, 1.0, 2.0, 5.0, 20.0)
@@ -47,10 +46,10 @@ def _cone(ratio: float) -> TruncatedCone:
 
 
 def _profile(one: Layer, ratio: float) -> tuple[FloatArray, float]:
-    system = equivalent_system(one, _cone(ratio), ratio, SOURCE)
-    return system.mdr_profile(ratio * _X) / float(_cone(ratio).height(ratio)), system.relative_error[
-        "indentation_depth"
-    ]
+    loading = ContactRadii(ratio * _X[1:])
+    path = solve_elastic(Scene(layer=one, indenter=_cone(ratio), loading=loading), SOURCE, {})
+    depth = np.append(0.0, path.indentation_depth)  # g(b) = 0
+    return depth / float(_cone(ratio).height(ratio)), float(path.error_estimate["indentation_depth"].max())
 
 
 def _profiles(one: Layer) -> Panel:

@@ -11,7 +11,7 @@ from contact import Adhesion, Detachment, DetachmentPath, FlatPunch, Layer, Scen
 from contact.records.validation import FloatArray
 from docs.gallery._parts import LARGEST_RATIO, SOURCE, UNBONDED, closed_form, layer, mdr_line, name_of, punch, show
 from docs.gallery.figure_03 import thin_layer_stiffness
-from mdr.adhesion.solver import solve_detachment
+from mdr.detachment import solve_detachment
 
 LAYERS = (UNBONDED, layer(0.0), layer(0.3), layer(0.365), layer(0.4), layer(0.45), layer(0.5))
 RATIOS = np.geomspace(1e-2, LARGEST_RATIO, 241)

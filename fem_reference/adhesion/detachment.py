@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.optimize import brentq
@@ -18,10 +18,12 @@ from contact import (
     Scene,
     StageLog,
 )
+from contact.answer.one_circle import Circle, refuse_touching
+from contact.answer.solution import Setting
 from contact.records.validation import FloatArray
 from contact.scene.loading import Controlled
+from contact.stated import stated_error
 from fem_reference.adhesion.branch import InterpolatedBranch
-from fem_reference.adhesion.branch_errors import errors_along
 from fem_reference.adhesion.equilibria import (
     SPANS,
     adhesive_equilibrium,
@@ -29,63 +31,101 @@ from fem_reference.adhesion.equilibria import (
     branch_samples,
     work_of_adhesion,
 )
-from fem_reference.adhesion.pull_off_errors import ROOT, pull_off_errors
 from fem_reference.discrete_layer.material import contact_modulus
-from fem_reference.elastic.beside_contact import refuse_touching_contacts
 from fem_reference.elastic.path import ContactSolver
 from fem_reference.elastic.prescribed_radius import PrescribedContact
+from fem_reference.stated import FLOOR
 
+# Relative tolerance of the search for an extremum.
+ROOT = 1e-12
 CAVITATION = (
     "the pressure under a flat punch of radius {radius:g} m has a second maximum in the centre: detachment may lose "
     "its axial symmetry (cavitation, fingering), and this branch may be unphysical there"
 )
 
 
-def detachment_path(
-    scene: Scene,
-    solve: ContactSolver,
-    accuracy: float | None,
-    settings: Mapping[str, bool | int | float | str | None],
-    log: StageLog,
-) -> DetachmentPath:
-    """The branch in the order of decreasing contact radius.
+@dataclass(frozen=True)
+class Separation:
+    """A branch at one resolution, and where contact is lost.
 
-    Args:
-        scene: a scene with a `Detachment`.
-        solve: contact of a given radius.
-        accuracy: asked of the interpolation between solved radii, relative.
-        settings: numerical settings, to be shown.
-        log: stages and counters.
+    Attributes:
+        branch: equilibria over the contact radius.
+        radius: samples, decreasing [m].
+        critical: where a withdrawal starts, turns and lands.
+        pull_off: where contact is lost.
+        strongest: where the force is least until then.
+    """
+
+    branch: InterpolatedBranch
+    radius: FloatArray
+    critical: list[CriticalPoint]
+    pull_off: CriticalPoint
+    strongest: CriticalPoint
+
+    @classmethod
+    def of(cls, scene: Scene, solve: ContactSolver, growth: float) -> Separation:
+        """Solve the branch until it becomes unstable.
+
+        Raises:
+            NotConvergedError: the branch ends before it becomes unstable.
+        """
+        loading = scene.loading
+        if not isinstance(loading, Detachment):
+            raise InvalidInput(f"loading = {type(loading).__name__}: this path needs a Detachment")
+        branch = replace(_branch_to_pull_off(scene, loading, solve, growth), machine=_compliance(scene, loading))
+        radius = branch_samples(branch)[::-1]
+        critical = _critical_points(scene, branch, radius, loading)
+        pull_off = _pull_off(branch, radius, loading.controlled, critical)
+        strongest = _strongest_pull(branch, radius, loading.controlled, pull_off, critical)
+        return cls(branch, radius, critical, pull_off, strongest)
+
+    @property
+    def scalars(self) -> dict[str, float]:
+        """Depth [m], forces / E* [m^2] and place [m] of pull-off."""
+        return {
+            "pull_off_depth": self.pull_off.indentation_depth,
+            "pull_off_force": self.strongest.normal_force,
+            "pull_off_contact_radius": self.pull_off.contact_radius,
+            "force_at_loss": self.pull_off.normal_force,
+        }
+
+
+def detachment_path(
+    scene: Scene, found: Separation, companion: Separation, settings: Mapping[str, Setting], log: StageLog
+) -> DetachmentPath:
+    """The branch in the order of decreasing contact radius, with what its companion changes as errors.
 
     Raises:
-        NotConvergedError: the branch ends before it becomes unstable.
-        UnsupportedSceneError: the indenter would touch beside one of the contacts.
+        UnsupportedSceneError: the indenter would touch outside one of the contacts.
     """
-    loading = scene.loading
-    if not isinstance(loading, Detachment):
-        raise InvalidInput(f"loading = {type(loading).__name__}: this path needs a Detachment")
-    branch = replace(_branch_to_pull_off(scene, loading, solve, accuracy), machine=_compliance(scene, loading))
+    branch, radius, modulus = found.branch, found.radius, contact_modulus(scene.layer)
     work = work_of_adhesion(scene)
-    refuse_touching_contacts(scene, ((c, adhesive_equilibrium(c, work).depth) for c in branch.contacts))
-    radius = branch_samples(branch)[::-1]
+    circles = ((contact, adhesive_equilibrium(contact, work)) for contact in branch.contacts)
+    tolerance = float(np.abs(branch.depth(radius) - companion.branch.depth(radius)).max())
+    refuse_touching(
+        scene,
+        (Circle(c.contact_radius, c.contact_radius * s.depth, s.surface_displacement, tolerance) for c, s in circles),
+    )
     depth, force = branch.depth(radius), branch.force(radius)
-    critical = _critical_points(scene, branch, radius, loading)
-    pull_off = _pull_off(branch, radius, loading.controlled, critical)
-    modulus = contact_modulus(scene.layer)
-    strongest = _strongest_pull(branch, radius, loading.controlled, pull_off, critical)
-    depth_error, force_error = errors_along(branch, radius)
-    error = {
-        "contact_radius": np.zeros_like(radius),
-        "indentation_depth": depth_error / np.abs(depth).max(),
-        "normal_force": force_error / np.abs(force).max(),
-        **pull_off_errors(branch, pull_off, strongest),
+    inside = np.clip(radius, companion.branch.pieces[0].low, None)
+    along = (
+        stated_error(values, other, scale=np.abs(values).max(), floor=FLOOR)
+        for values, other in ((depth, companion.branch.depth(inside)), (force, companion.branch.force(inside)))
+    )
+    others = companion.scalars
+    scalars = {
+        name: stated_error(value, others[name], scale=value, floor=FLOOR) for name, value in found.scalars.items()
     }
     return DetachmentPath(
         scene=scene,
         method="fem",
         settings=settings,
-        error_estimate=error,
-        cost=log.cost(unknowns=max(c.answer.unknowns for c in branch.contacts)),
+        error_estimate={
+            "contact_radius": np.zeros_like(radius),
+            **dict(zip(("indentation_depth", "normal_force"), along, strict=True)),
+            **scalars,
+        },
+        cost=log.cost(unknowns=max(c.unknowns for c in branch.contacts)),
         stages=log.records,
         notes=_notes(branch),
         contact_radius=radius,
@@ -93,11 +133,11 @@ def detachment_path(
         normal_force=modulus * force,
         stable_displacement_control=branch.slope(branch.depth, radius) > 0,
         stable_force_control=branch.slope(branch.force, radius) > 0,
-        pull_off_force=modulus * strongest.normal_force,
-        pull_off_depth=pull_off.indentation_depth,
-        pull_off_contact_radius=pull_off.contact_radius,
-        force_at_loss=modulus * pull_off.normal_force,
-        critical_points=tuple(_in_newtons(point, modulus) for point in critical),
+        pull_off_force=modulus * found.strongest.normal_force,
+        pull_off_depth=found.pull_off.indentation_depth,
+        pull_off_contact_radius=found.pull_off.contact_radius,
+        force_at_loss=modulus * found.pull_off.normal_force,
+        critical_points=tuple(_in_newtons(point, modulus) for point in found.critical),
     )
 
 
@@ -114,8 +154,8 @@ def _critical_points(
 
 def _notes(branch: InterpolatedBranch) -> tuple[str, ...]:
     """A warning where contacts pull most in the centre."""
-    cavitating = [c for c in branch.contacts if presses_most_in_the_centre(c.answer)]
-    return tuple(CAVITATION.format(radius=min(c.indenter.contact_radius for c in cavitating)) for _ in cavitating[:1])
+    cavitating = [c for c in branch.contacts if presses_most_in_the_centre(c)]
+    return tuple(CAVITATION.format(radius=min(c.contact_radius for c in cavitating)) for _ in cavitating[:1])
 
 
 def _strongest_pull(
@@ -128,12 +168,10 @@ def _strongest_pull(
     return min(sampled, pull_off, *turned, key=lambda point: point.normal_force)
 
 
-def _branch_to_pull_off(
-    scene: Scene, loading: Detachment, solve: ContactSolver, accuracy: float | None
-) -> InterpolatedBranch:
+def _branch_to_pull_off(scene: Scene, loading: Detachment, solve: ContactSolver, growth: float) -> InterpolatedBranch:
     """A branch long enough to become unstable, or the longest."""
     for span in SPANS:
-        branch = branch_of(scene, loading.initial_contact_radius, solve, accuracy, span)
+        branch = branch_of(scene, loading.initial_contact_radius, solve, growth, span)
         # Under a machine that gives way, contact is lost before it would be at a prescribed depth.
         load = branch.force if loading.control == "force" else branch.depth
         if np.any(branch.slope(load, branch_samples(branch)) <= 0):

@@ -31,14 +31,12 @@ class Grading:
         strip: (radius, cell): the top from the axis to ``radius`` is meshed with cells of that one size.
         growth: increase of the cell size per distance.
         max_cell: largest cell size.
-        is_rough: whether lines are divided less precisely, for meshes on which a radius is searched.
     """
 
     points: tuple[tuple[float, float], ...] = ()
     strip: tuple[float, float] | None = None
     growth: float = 0.25
     max_cell: float = np.inf
-    is_rough: bool = False
 
     @property
     def origin(self) -> float:

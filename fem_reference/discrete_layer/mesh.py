@@ -38,10 +38,6 @@ LONGEST_LINE = 1e10
 # at growths 2, 0.7 and 0.4, at this 7, 12 and 17.  At 1e-7 and 1e-6 the slope of the load in rings of 1e-9 radii beside
 # a flat end errs by 6 to 7 per cent, where its test allows 5 (2026-11-23).
 LINE_PRECISION = 1e-8
-# The same for meshes on which a radius is searched: a quarter of the points on lines, still about fifty in a cell.
-# Depths, forces and their slopes by 28 quick solutions (paraboloids and cones, h/a = 0.2 to 8, nu = 0 to 1/2, seed 3,
-# 2026-11-26) keep two digits of their errors.
-ROUGH_LINE_PRECISION = 1e-6
 
 
 @dataclass(frozen=True)
@@ -112,8 +108,7 @@ def layer_mesh(thickness: float, outer_radius: float, grading: Grading) -> Layer
         """The section as gmsh's only surface."""
         return [_draw_section(geo, thickness, outer_radius, grading)]
 
-    precision = ROUGH_LINE_PRECISION if grading.is_rough else LINE_PRECISION
-    points, (triangles,) = _triangulated(draw, grading.size_expression(), precision)
+    points, (triangles,) = _triangulated(draw, grading.size_expression())
     points[0] += grading.origin
     return named_layer_mesh(points, triangles)
 
@@ -137,12 +132,10 @@ def triangles_between(lines: Sequence[FloatArray], size_expression: str) -> tupl
     return _triangulated(draw, size_expression)
 
 
-def _triangulated(
-    draw: Callable[[Any], list[int]], size_expression: str, line_precision: float = LINE_PRECISION
-) -> tuple[FloatArray, list[IntArray]]:
+def _triangulated(draw: Callable[[Any], list[int]], size_expression: str) -> tuple[FloatArray, list[IntArray]]:
     """Points (2, n) and the triangles of each surface drawn."""
     gmsh = _gmsh()
-    gmsh.option.setNumber("Mesh.LcIntegrationPrecision", line_precision)
+    gmsh.option.setNumber("Mesh.LcIntegrationPrecision", LINE_PRECISION)
     gmsh.model.add("layer")
     try:
         surfaces = draw(gmsh.model.geo)

@@ -28,6 +28,6 @@ def decay_rate(poissons_ratio: float, support: str) -> float:
     return s
 
 
-def outer_distance(poissons_ratio: float, support: str, tolerance: float) -> float:
+def outer_distance(poissons_ratio: float, support: str, tolerance: float, least: float = 3.0) -> float:
     """Distance (R - a) / h at which the outer edge changes the stiffness by about ``tolerance``, relative."""
-    return max(3.0, math.log(1 / tolerance) / (2 * decay_rate(poissons_ratio, support)))
+    return max(least, math.log(1 / tolerance) / (2 * decay_rate(poissons_ratio, support)))

@@ -11,32 +11,16 @@ from scipy import sparse
 from skfem import ElementVector, FacetBasis
 
 from contact import ElasticLayer, Layer
-from contact.records.validation import BoolArray, FloatArray, IntArray
+from contact.records.validation import FloatArray, IntArray
 from fem_reference.discrete_layer import weak_forms
 from fem_reference.discrete_layer.assembly import Space, node_positions, scatter, stiffness_elements
 from fem_reference.discrete_layer.elements import ElementPair
 from fem_reference.discrete_layer.material import ElasticConstants, Moduli, moduli
 from fem_reference.discrete_layer.mesh import LayerMesh
-from fem_reference.discrete_layer.outer_edge import decay_rate
 from fem_reference.discrete_layer.solving.ordering import minimum_degree
 from fem_reference.discrete_layer.solving.restricted import RestrictedSolver, System
 
 Support = Literal["bonded", "unbonded"]
-
-
-@dataclass(frozen=True)
-class MeshEnd:
-    """How energies decay where the mesh ends.
-
-    Attributes:
-        strip: which triangles make up the outermost strip, shape (triangle,).
-        strip_over_beyond: its energy over that which a longer section would store beyond it.
-        decay: rate per length at which the latter falls with the outer radius.
-    """
-
-    strip: BoolArray
-    strip_over_beyond: float
-    decay: float
 
 
 @dataclass(frozen=True)
@@ -105,15 +89,6 @@ class LayerProblem:
     def outer_edge_matrix(self) -> sparse.csc_array:
         """The elastic edge that replaces the unbonded layer beyond the mesh."""
         return outer_edge_matrix(self.space, self.moduli.shear)
-
-    @property
-    def end(self) -> MeshEnd:
-        """Energy densities decay like ``exp(-2 s r / h)``, hence ``beyond = strip / (exp(2 s w / h) - 1)``, width w."""
-        layer = self.layer_mesh
-        decay = 2 * decay_rate(self.poissons_ratio, self.support) / layer.thickness
-        width = min(layer.thickness, layer.outer_radius / 2)
-        strip = layer.mesh.p[0, layer.mesh.t].mean(axis=0) > layer.outer_radius - width
-        return MeshEnd(strip, float(np.expm1(decay * width)), decay)
 
     @cached_property
     def positions(self) -> FloatArray:

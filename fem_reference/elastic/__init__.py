@@ -1,6 +1,5 @@
-"""Elastic frictionless contact by finite elements, with error estimates.
+"""Elastic frictionless contact by finite elements.
 
-Enters: a scene and a discrete layer. Leaves: contact radius, depth, force, stiffness and surface fields, with stated
-errors. Read `path` first, then `prescribed_radius` and `error_estimate`; `contact_search` and `at_load` find the
-contact of a prescribed depth or force.
+Enters: a scene and settings. Leaves: contact radius, depth, force, stiffness and surface fields. Read `path` first,
+then `prescribed_radius` and `equilibria`; `at_load` finds the contact of a prescribed depth or force.
 """

@@ -22,7 +22,7 @@ from fem_reference.discrete_layer.indenter import ScaledIndenter
 from fem_reference.discrete_layer.material import ElasticConstants
 from fem_reference.discrete_layer.mesh import LayerMesh
 from fem_reference.discrete_layer.problem import LayerProblem, problem_of
-from fem_reference.discrete_layer.settings import Discretisation, contact_mesh
+from fem_reference.discrete_layer.settings import Discretisation, contact_mesh, narrowest_radius
 from fem_reference.discrete_layer.trace import TraceSpace
 from fem_reference.elastic.patch_test import patch_defect
 from fem_reference.elastic.shape_derivative import (
@@ -37,14 +37,9 @@ from fem_reference.elastic.shape_derivative import (
 ENERGY_AGREEMENT = 1e-8
 # Largest residual of a constant strain over the size of its terms: a hundred thousand roundings.
 PATCH_AGREEMENT = 1e-11
-# Settings of quick solutions, on which the radius of a load is searched.  Depth and force are within 2.4e-5 and 4.7e-5
-# of fine ones, 0.9e-5 and 2.6e-5 in the median (28 paraboloids and cones, h/a = 0.2 to 8, nu = 0 to 1/2, seed 3,
-# 2026-11-26), so that one full solution suffices.  At a growth of 0.7 forces missed by up to 1.9e-4, and most of those
-# prescribed took two.
-COARSE = Discretisation(order=3, growth=0.5, edge_cell=3e-5, truncation=1e-5, half_space_thickness=1e6)
-# The same where an accuracy leaves 3e-4 of the load to a correction: depth and force are within 1.2e-4 and 2.5e-4 (same
-# contacts).
-COARSER = replace(COARSE, growth=0.7, edge_cell=1e-4)
+# Settings of quick solutions, on which the radius of a load is searched: depth and force err by about 3e-5, and one
+# full solution then suffices. With a growth of 0.7 they err by 2e-4, and most loads take two full solutions.
+QUICK = Discretisation(order=3, growth=0.5, edge_cell=3e-5, truncation=1e-5, half_space_thickness=1e6)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -57,8 +52,7 @@ class PrescribedContact:
         smooth_depth: delta_0, zero for a flat punch.
         smooth_depth_slope: delta_0' = d(delta_0)/da.
         profile_force: F_2, the force at depth zero (negative: the profile alone would have to be pulled in).
-        tail_energies: twice the mutual energies stored beyond the mesh, estimated from its outermost strip, (2, 2).
-        decay: rate at which these fall with the outer radius.
+        indenter: the profile, by the contact radius.
         contact_trace: polynomials on the contact.
         pressures: pressure of u_1 and u_2 at its nodes, shape (node, 2).
         top_trace: polynomials on the whole top.
@@ -77,8 +71,7 @@ class PrescribedContact:
     smooth_depth: float
     smooth_depth_slope: float
     profile_force: float
-    tail_energies: FloatArray
-    decay: float
+    indenter: ScaledIndenter
     contact_trace: TraceSpace
     pressures: FloatArray
     top_trace: TraceSpace
@@ -113,7 +106,17 @@ class PrescribedContact:
         """u_z(r) on the top; zero beyond the mesh."""
         return self.top_trace.evaluate(self.displacements @ [depth, 1.0], radius)
 
-    def narrowed(self, share: float, ring: float) -> PrescribedContact:
+    @property
+    def contact_radius(self) -> float:
+        """Contact radius of the mesh [m]."""
+        return self.indenter.contact_radius
+
+    @property
+    def ring(self) -> float:
+        """Width of the meshed ring between the last kink and the edge, by the radius of the mesh."""
+        return 1.0 - max(self.indenter.kinks, default=0.0)
+
+    def narrowed(self, share: float) -> PrescribedContact:
         """The contact of a ring ``share^2`` times as narrow around a flat end, on the same mesh.
 
         So close to the rim the stress at the contact's edge is that of the flat punch and its stiffness is linear in
@@ -122,16 +125,14 @@ class PrescribedContact:
 
         Args:
             share: of the smooth depth.
-            ring: width of this contact's ring, by the radius of the mesh.
         """
-        shares, lost = np.array([1.0, share]), ring * (1 - share**2)
+        shares, lost = np.array([1.0, share]), self.ring * (1 - share**2)
         return replace(
             self,
             stiffness=self.stiffness - self.stiffness_slope * lost,
             smooth_depth=share * self.smooth_depth,
             smooth_depth_slope=self.smooth_depth_slope / share,
             profile_force=share**3 * self.profile_force,
-            tail_energies=self.tail_energies * np.outer(shares, shares),
             pressures=self.pressures * shares,
             displacements=self.displacements * shares,
             solutions=self.solutions * shares,
@@ -167,8 +168,7 @@ def _evaluate(
 ) -> PrescribedContact:
     """All numbers from u_1, u_2 (size, 2) and their reactions on the contact nodes."""
     stiffness, profile_force = reactions.sum(axis=0)
-    energies = mutual_energies(problem, solutions)
-    defect = abs(energies.total[0, 0] / stiffness - 1)
+    defect = abs(mutual_energies(problem, solutions)[0, 0] / stiffness - 1)
     if not defect < ENERGY_AGREEMENT:
         raise NotConvergedError("energy and reactions give different stiffnesses", {"energy_defect": defect})
     patch = patch_defect(problem)
@@ -186,8 +186,7 @@ def _evaluate(
         smooth_depth=smooth_depth,
         smooth_depth_slope=smooth_depth_slope(contact_trace, smooth_pressures, smooth_scale(problem, indenter)),
         profile_force=float(profile_force),
-        tail_energies=energies.beyond,
-        decay=energies.decay,
+        indenter=indenter,
         contact_trace=contact_trace,
         pressures=pressures,
         top_trace=TraceSpace(problem.positions[0, top], degree),
@@ -201,10 +200,37 @@ def _evaluate(
     )
 
 
-def quick_solution(scene: Scene, radius: float, log: StageLog, settings: Discretisation = COARSE) -> PrescribedContact:
-    """The contact of a radius [m], solved with few cells, to about 1e-5 or, of tables, 1e-4."""
-    indenter, layer = ScaledIndenter(scene.indenter, radius), scene.layer
+def solve_contact(
+    scene: Scene,
+    radius: float,
+    settings: Discretisation,
+    log: StageLog,
+    *,
+    backend: str = "superlu",
+    kind: type[LayerProblem] = LayerProblem,
+) -> PrescribedContact:
+    """Mesh the section around a contact radius [m] and solve it.
+
+    A ring around a flat end that is too narrow for a mesh is taken from one that is not.
+
+    Args:
+        scene: layer and indenter.
+        radius: contact radius [m].
+        settings: numerical settings.
+        log: of the stages.
+        backend: linear solver.
+        kind: the discrete layer, or one whose contact is held in more ways.
+    """
+    layer, flat = scene.layer, scene.indenter.flat_radius
+    meshed = max(radius, narrowest_radius(layer, scene.indenter, settings.coarsening)) if radius > flat else radius
+    indenter = ScaledIndenter(scene.indenter, meshed)
+    settings = settings.beside_kinks(layer, indenter)
     with log.stage("mesh"):
-        mesh = contact_mesh(layer, indenter, settings, is_rough=True)
-    problem = problem_of(layer, mesh, settings.pair)
-    return solve_prescribed_contact(problem, indenter, log)
+        mesh = contact_mesh(layer, indenter, settings)
+    contact = solve_prescribed_contact(problem_of(layer, mesh, settings.pair, backend, kind), indenter, log)
+    return contact if meshed == radius else contact.narrowed(float(np.sqrt((radius - flat) / (meshed - flat))))
+
+
+def quick_solution(scene: Scene, radius: float, log: StageLog) -> PrescribedContact:
+    """The contact of a radius [m], solved with few cells, to about 1e-5 or, of tables, 1e-4."""
+    return solve_contact(scene, radius, QUICK, log)

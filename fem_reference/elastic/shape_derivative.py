@@ -13,8 +13,6 @@ accurate as the energy itself (a smooth eta at quadrature points costs four digi
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from contact.records.validation import FloatArray
@@ -30,32 +28,14 @@ from fem_reference.discrete_layer.trace import TraceSpace
 WIDEST, RINGS = 0.8, 5
 
 
-@dataclass(frozen=True)
-class MutualEnergies:
-    """Twice the mutual strain energies of m solutions.
-
-    Attributes:
-        total: of the whole section (and the spring on its outer edge), shape (m, m).
-        beyond: estimate of what a longer section would store beyond the outer radius, shape (m, m).
-        decay: rate per length at which ``beyond`` falls with the outer radius.
-    """
-
-    total: FloatArray
-    beyond: FloatArray
-    decay: float
-
-
-def mutual_energies(problem: LayerProblem, solutions: FloatArray) -> MutualEnergies:
-    """Energies of solutions (size, m), from stresses and strains at points; the problem knows how they decay."""
+def mutual_energies(problem: LayerProblem, solutions: FloatArray) -> FloatArray:
+    """Twice the mutual strain energies of m solutions (size, m), the springs beyond the mesh included, shape (m, m)."""
     mesh = problem.layer_mesh.mesh
     fields = point_fields(problem.space, problem.constants, solutions, np.arange(mesh.t.shape[1]))
-    by_triangle = np.einsum("ijtq,tq->ijt", fields.energy_products, fields.measure)
-    end = problem.end
-    beyond = by_triangle[:, :, end.strip].sum(axis=2) / end.strip_over_beyond
-    total = by_triangle.sum(axis=2)
+    total = np.einsum("ijtq,tq->ij", fields.energy_products, fields.measure)
     if problem.has_elastic_edge:
         total = total + solutions.T @ (problem.outer_edge_matrix @ solutions)
-    return MutualEnergies(total, beyond, end.decay)
+    return np.asarray(total)
 
 
 def cut_off(points: FloatArray, centre: float, support: float) -> FloatArray:

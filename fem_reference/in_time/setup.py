@@ -1,158 +1,101 @@
-"""Sets up the condensed layer of a scene in time: its strip, its cells and steps, and the errors known beforehand."""
+"""Condensed layers of a scene in time: the strip that its contact needs, cells and steps."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property
+from typing import Self
 
 import numpy as np
 
-from contact import (
-    DepthHistory,
-    FlatPunch,
-    ForceHistory,
-    InvalidInput,
-    NotConvergedError,
-    Scene,
-    StageLog,
-)
+from contact import FlatPunch, InvalidInput, NotConvergedError, Scene, StageLog
 from contact.records.validation import FloatArray
-from fem_reference.discrete_layer.indenter import ScaledIndenter, height, shape
+from fem_reference.discrete_layer.indenter import ScaledIndenter, shape
 from fem_reference.discrete_layer.mesh import LayerMesh
 from fem_reference.discrete_layer.settings import Discretisation, contact_mesh
 from fem_reference.discrete_layer.trace import TraceSpace
-from fem_reference.elastic.error_estimate import ContactWithErrors, solve_contact_with_errors
-from fem_reference.elastic.surface_compliance import SurfaceCompliance, condense, strip_mesh
-from fem_reference.error_model import FIXED_RADIUS, IN_TIME
-from fem_reference.in_time.condensed_layer import CondensedLayer
-from fem_reference.in_time.errors import KnownErrors
-from fem_reference.in_time.impact import HistorySamples
+from fem_reference.elastic.prescribed_radius import solve_contact
+from fem_reference.elastic.surface_compliance import condense, strip_mesh
+from fem_reference.in_time.motions import CondensedLayer, Samples
 from fem_reference.in_time.relaxation import relaxation_of
-from fem_reference.in_time.top import compressible_top, proportional_top
+from fem_reference.in_time.top import Modes, Top, compressible_modes, proportional_modes
 
-# Growth of cells away from a strip of 120 cells.  The energy of a contact errs like 1 / cells^3, and so does the peak
-# depth, which follows from it; the mesh outside must not add more.  Measured on a relaxing layer (a/h = 0.8,
-# 400 steps, 2026-11-22): from 20 to 40, 80, 160 and 240 cells the peak depth changed by 5e-5, 7e-6, 6e-6 and 2e-6
-# with a growth of one, like 1 / cells, and by 9e-6, 1.3e-6, 2e-7 and 4e-7 with this one.
+# Growth of cells away from a strip of 120 cells.  With a growth of one the mesh outside adds ten times as much to peak
+# depths as the strip, with half of this time grows by a half.
 OUTSIDE = 0.6
+# Tolerance of the outer edge below which cells and steps err more: half of it changes nothing.
+TRUNCATION = 1e-7
+# Cells of the strip of pilot simulations.
+PILOT_CELLS = 30
 
 
 @dataclass(frozen=True)
 class Resolution:
-    """How finely a history is resolved.
+    """How finely a motion is resolved.
 
     Attributes:
         cells: cells of the strip.
-        steps: time steps of the whole history or contact.
+        steps: equal time steps of an impact.
+        per_octave: steps of each octave of a segment of a history.
     """
 
     cells: int
     steps: int
+    per_octave: int
 
+    @classmethod
+    def of(cls, settings: Discretisation) -> Resolution:
+        """Cells and steps shrink with the growth of the meshes; a companion has half of the cells."""
+        growth, halves = settings.growth / settings.coarsening, 1 if settings.coarsening == 1.0 else 2
+        cells = 2 * max(10, round(30 / growth)) // halves
+        return cls(cells, 2 * max(20, round(100 / growth)), 2 * max(2, round(4 / growth)))
 
-def resolution_of(settings: Discretisation) -> Resolution:
-    """Cells and steps shrink with the growth of the meshes."""
-    return Resolution(cells=max(20, round(60 / settings.growth)), steps=max(40, round(200 / settings.growth)))
+    def half_the_steps(self) -> Self:
+        """The same cells with half the steps, whose instants are every other one of a history's."""
+        return replace(self, steps=self.steps // 2, per_octave=self.per_octave // 2)
 
 
 class HistorySetup:
-    """Condensed layers of one scene, a fresh one for every history that is simulated."""
+    """Condensed layers of one scene at one resolution, a fresh one for every motion that is simulated."""
 
     def __init__(self, scene: Scene, settings: Discretisation, backend: str, log: StageLog) -> None:
-        self.scene = scene
-        self.relaxation = relaxation_of(scene)
-        self.log = log
-        # Below 1e-7 the outer edge adds nothing to the errors of cells and steps; 1e-12 would double the mesh.
-        self._settings = replace(settings, truncation=max(settings.truncation, 1e-7))
-        self.resolution = resolution_of(settings)
+        self.scene, self.log, self.relaxation = scene, log, relaxation_of(scene)
+        self.resolution = Resolution.of(settings)
+        self._settings = replace(settings, truncation=max(settings.truncation, TRUNCATION * settings.coarsening**6))
         self._backend = backend
-        moduli = self.relaxation.moduli
-        self._branches = int(np.count_nonzero(moduli))
-        relaxes = self._branches > 0 or self.relaxation.viscosity > 0
+        relaxes = bool(np.any(self.relaxation.moduli)) or self.relaxation.viscosity > 0
+        self._modes: dict[tuple[float, int], Modes] = {}
         self._needs_field = relaxes and scene.layer.poissons_ratio < 0.5
-        self._strips: dict[tuple[float, int], SurfaceCompliance] = {}
 
     def condensed(self, radius: float, cells: int) -> CondensedLayer:
         """The layer at rest with a strip of ``radius`` [m]."""
-        if isinstance(self.scene.indenter, FlatPunch) and not self._needs_field:
-            return self._condensed_punch(self.scene.indenter, is_fine=cells >= self.resolution.cells)
+        if (radius, cells) not in self._modes:
+            self._modes[radius, cells] = self._condense(radius, cells)
+        modes = self._modes[radius, cells]
+        is_punch = len(modes.radii) == 1
+        profile = np.zeros(1) if is_punch else self._profile(modes.radii, radius)
+        return CondensedLayer(Top(modes, self.relaxation), modes.radii, profile, radius, modes.unknowns)
+
+    def _condense(self, radius: float, cells: int) -> Modes:
+        layer, per_shear = self.scene.layer, (1 - self.scene.layer.poissons_ratio) / 2  # E* = 2 G / (1 - nu)
         if self._needs_field:
             mesh = self._mesh(radius, cells)
             with self.log.stage("factor"):
-                top, radii, unknowns = compressible_top(self.scene.layer, mesh, self._branches, self._backend)
-            return CondensedLayer(top, radii, self._profile(radii, radius), radius, unknowns)
-        strip = self._strip(radius, cells)
-        surface = proportional_top(strip.matrix * self._per_shear, strip.resultants, self._branches)
-        return CondensedLayer(surface, strip.radii, self._profile(strip.radii, radius), radius, strip.unknowns)
-
-    def _strip(self, radius: float, cells: int) -> SurfaceCompliance:
-        if (radius, cells) not in self._strips:
-            mesh = self._mesh(radius, cells)
-            self._strips[radius, cells] = condense(self.scene.layer, mesh, self._backend, self.log)
-        return self._strips[radius, cells]
-
-    def known_errors(self, radius: float, peak_radius: float) -> KnownErrors:
-        """Errors that halving cells and steps does not show; strip and largest contact radius [m]."""
-        layer, settings = self.scene.layer, self._settings
-        thick = FIXED_RADIUS.half_space / settings.half_space_thickness if layer.is_half_space else 0.0
-        exact = {
-            "indentation_depth": isinstance(self.scene.loading, DepthHistory),
-            "normal_force": isinstance(self.scene.loading, ForceHistory),
-            "contact_radius": isinstance(self.scene.indenter, FlatPunch),
-            "peak_contact_radius": isinstance(self.scene.indenter, FlatPunch),
-        }
-        cell = radius / self.resolution.cells
-        kinks = self._seen(self.scene.indenter.kinks, cell)
-        at_rim = any(abs(peak_radius - kink) < IN_TIME.kink_reach * cell for kink in kinks)
-        return KnownErrors(
-            everywhere=thick + IN_TIME.outer_edge_safety * settings.truncation,
-            radius=(IN_TIME.edge_reading_at_kink if at_rim else IN_TIME.edge_reading) * cell / peak_radius,
-            exact=frozenset(name for name, is_exact in exact.items() if is_exact),
-            cell=cell,
-            space=IN_TIME.kinked_profile if kinks else 1.0,
-            heights=self._heights(cell),
-        )
-
-    def _heights(self, cell: float) -> float:
-        """Height at a cell [m] over that at half a cell; zero where contact does not end like that of a power."""
-        indenter = self.scene.indenter
-        damped = self._branches > 0 or self.relaxation.viscosity > 0
-        if damped or self._seen(indenter.breakpoints, cell) or isinstance(indenter, FlatPunch):
-            return 0.0
-        return height(indenter, cell) / height(indenter, cell / 2)
-
-    @staticmethod
-    def _seen(kinks: Sequence[float], cell: float) -> list[float]:
-        """Kinks [m] that cells [m] see: contact ends before it is as narrow as a flat end far inside the first."""
-        return [kink for kink in kinks if kink > IN_TIME.unseen_kink * cell]
-
-    @property
-    def _per_shear(self) -> float:
-        """Compliances are per contact modulus E* = 2 G / (1 - nu); this turns them to unit G."""
-        return (1 - self.scene.layer.poissons_ratio) / 2
-
-    def _condensed_punch(self, punch: FlatPunch, *, is_fine: bool) -> CondensedLayer:
-        """A flat punch moves as one: its force is the only unknown, 1 / k_N its compliance.
-
-        In place of half the cells it takes a stiffness that is wrong by the stated error.
-        """
-        contact = self._punch_contact
-        stiffness = contact.answer.stiffness * (1 if is_fine else 1 + contact.error["stiffness"])
-        compliance = np.array([[self._per_shear / stiffness]])
-        surface = proportional_top(compliance, np.ones(1), self._branches)
-        return CondensedLayer(surface, np.ones(1), np.zeros(1), punch.radius, contact.answer.unknowns)
-
-    @cached_property
-    def _punch_contact(self) -> ContactWithErrors:
-        indenter = ScaledIndenter(self.scene.indenter, self.scene.indenter.flat_radius)
-        return solve_contact_with_errors(self.scene.layer, indenter, self._settings, self._backend, self.log)
+                return compressible_modes(layer, mesh, self._backend)
+        if isinstance(self.scene.indenter, FlatPunch):
+            # It moves as one: its force is the only unknown, 1 / k_N its compliance.
+            contact = solve_contact(self.scene, radius, self._settings, self.log, backend=self._backend)
+            compliance = np.array([[per_shear / contact.stiffness]])
+            return proportional_modes(compliance, np.ones(1), np.ones(1), contact.unknowns)
+        strip = condense(layer, self._mesh(radius, cells), self._backend, self.log)
+        return proportional_modes(strip.matrix * per_shear, strip.resultants, strip.radii, strip.unknowns)
 
     def _mesh(self, radius: float, cells: int) -> LayerMesh:
         layer, indenter = self.scene.layer, self.scene.indenter
         with self.log.stage("mesh"):
             if isinstance(indenter, FlatPunch):
-                return contact_mesh(layer, ScaledIndenter(indenter, radius), replace(self._settings, edge_cell=1e-4))
+                settings = replace(self._settings, edge_cell=1e-4 * self._settings.coarsening**6)
+                return contact_mesh(layer, ScaledIndenter(indenter, radius), settings)
             return strip_mesh(layer, radius, cells, indenter.kinks, self._settings, outside=OUTSIDE)
 
     def _profile(self, radii: FloatArray, radius: float) -> FloatArray:
@@ -162,9 +105,7 @@ class HistorySetup:
         inside = np.minimum(quadrature * radius, min(radius, self.scene.indenter.max_radius))
         return space.moments(shape(self.scene.indenter, inside).height / radius, 4)
 
-    def fitted_radius(
-        self, guess: float, simulate: Callable[[CondensedLayer], HistorySamples]
-    ) -> tuple[float, HistorySamples]:
+    def fitted_radius(self, guess: float, simulate: Callable[[CondensedLayer], Samples]) -> tuple[float, Samples]:
         """A strip a quarter larger than the largest contact, and the record of the pilot simulation on it.
 
         Raises:
@@ -173,11 +114,11 @@ class HistorySetup:
         """
         indenter = self.scene.indenter
         if isinstance(indenter, FlatPunch):
-            return indenter.radius, simulate(self.condensed(indenter.radius, 20))
+            return indenter.radius, simulate(self.condensed(indenter.radius, PILOT_CELLS))
         radius = min(guess, indenter.max_radius)
         for _ in range(12):
-            record = simulate(self.condensed(radius, 30))
-            largest = max(record.radius)
+            record = simulate(self.condensed(radius, PILOT_CELLS))
+            largest = float(record.column("radius").max())
             if largest == 0:
                 raise NotConvergedError(
                     "the pilot simulation presses at no step: a strong dashpot stops the body, or nothing presses"

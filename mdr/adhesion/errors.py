@@ -18,7 +18,6 @@ from contact.records.validation import FloatArray
 from mdr.adhesion.own_panels import rounding
 from mdr.springs.equivalent_system import EquivalentSystem
 from mdr.springs.error_model import EPS, SPRING_ROUNDING
-from mdr.springs.table_errors import adhesive_errors
 
 # Row behind those of DEPTH and FORCE.
 RADIUS = 2
@@ -33,8 +32,6 @@ _SPREAD = 0.3
 
 def errors_at_radius(system: EquivalentSystem, radius: FloatArray, depth: FloatArray) -> FloatArray:
     """Bounds of the errors of delta [m] and F [N] of equilibria with these radii, shape (2, n)."""
-    if system.variants:
-        return adhesive_errors(system, radius, depth)
     terms, relative = _terms(system, radius, depth)
     return np.asarray(np.linalg.norm(terms * relative, axis=1))
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from contact import InvalidInput, NotConvergedError, Scene, UnsupportedSceneError
 from contact.records.validation import BoolArray, FloatArray
-from mdr.adhesion.force_curve import adhesive_curve
+from mdr.curves.adhesive_curve import adhesive_curve
 from mdr.curves.models import Model, curve_to, is_modulus, modulus_of
 from mdr.curves.result import correlated
 from mdr.curves.search import Values, least_squares, rough_fit

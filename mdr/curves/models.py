@@ -15,7 +15,7 @@ import numpy as np
 
 from contact import Adhesion, CoatedPair, ElasticBase, IndentationDepths, InvalidInput, LayerStack, Scene
 from contact.records.validation import FloatArray
-from mdr.adhesion.force_curve import adhesive_curve
+from mdr.curves.adhesive_curve import adhesive_curve
 from mdr.curves.force_curve import ForceCurve, blended
 from mdr.curves.search import CurveShape, Values
 

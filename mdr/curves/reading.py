@@ -14,7 +14,7 @@ from typing import Final, Literal
 import numpy as np
 
 from contact import InvalidInput
-from contact.files.units import in_si
+from contact.records.units import read_quantity
 from contact.records.validation import FloatArray
 from mdr.curves.microscopes import ENDINGS, read_measured
 from mdr.curves.tables import Column, Table, read_table
@@ -184,7 +184,7 @@ def _named(columns: Sequence[Column], names: Sequence[str]) -> Column | None:
 
 
 def _si(one: Column, unit: str, file: str | Path) -> FloatArray:
-    factor = in_si(f"1 {one.unit}", unit, f"{file}, column {one.name!r}")
+    factor = read_quantity(f"1 {one.unit}", unit, f"{file}, column {one.name!r}")
     return np.asarray(one.values / round(1 / factor) if factor < 1 else one.values * factor)
 
 

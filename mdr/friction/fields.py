@@ -154,7 +154,7 @@ class StickFields:
             extra = table.kernel.beyond_half_space(k)
             angle = np.multiply.outer(k, a * x)
             P, Q = np.cos(angle) @ (a * weights * phi.real), np.sin(angle) @ (a * weights * phi.imag)
-            density = np.multiply.outer(widths, width * w).ravel() * (extra.normal * P + extra.coupling * Q)
+            density = np.multiply.outer(widths, width * w).ravel() * (extra.ww * P + extra.uw * Q)
             waves = j0(np.multiply.outer(r, k)) @ density
         return np.asarray(2.0 / math.pi * (2.0 * of.beta * inner + waves))
 

@@ -11,7 +11,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from bem.kernels.moduli import contact_modulus
-from bem.kernels.of_layer import sticking_kernel
+from bem.kernels.of_layer import stack_kernel
 from bem.layer_equation.flat_punch_source import IntegralEquation
 from bem.layer_equation.protocol import FlatPunchSource
 from bem.layer_equation.stick.adhered_punch import adhered_punch
@@ -113,7 +113,7 @@ def _flat_punch(scene: Scene) -> dict[str, Any]:
     """k_stick delta: nothing grows."""
     radius, layer = scene.indenter.flat_radius, scene.layer
     ratio = 0.0 if layer.is_half_space else radius / layer.surface.thickness
-    punch = adhered_punch(ratio, sticking_kernel(layer))
+    punch = adhered_punch(ratio, stack_kernel(layer))
     stiffness = 2.0 * contact_modulus(layer) * radius * punch.stiffness
     values = prescribed(scene)
     by_depth = isinstance(scene.loading, IndentationDepths)
@@ -241,7 +241,7 @@ def _first_reach(scene: Scene) -> float:
 
 def _system(scene: Scene, unit: float, reach: float, refinement: float) -> StickSystem:
     ratio = reach / unit
-    table = growth_table(_rounded_up(ratio), sticking_kernel(scene.layer))
+    table = growth_table(_rounded_up(ratio), stack_kernel(scene.layer))
     span = 0.0 if table.is_half_space else ratio
     usual = _UNKNOWNS[0] + _UNKNOWNS[1] * span
     more = _UNKNOWNS_OF_LENGTH * math.sqrt((table.kernel.longest - 1.0) * span)

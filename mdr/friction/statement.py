@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bem.kernels.of_layer import sticking_kernel
+from bem.kernels.of_layer import stack_kernel
 from bem.layer_equation.stick.frictionless_slip import FrictionlessPunch, frictionless_punch
 from contact import ContactPath, InvalidInput, Scene
 from contact.records.validation import FloatArray
@@ -105,7 +105,7 @@ class _Contact:
 def _contact(scene: Scene, radius: float, depth: float) -> _Contact:
     layer = scene.layer
     punch = frictionless_punch(
-        0.0 if layer.is_half_space else float(radius) / layer.surface.thickness, sticking_kernel(layer)
+        0.0 if layer.is_half_space else float(radius) / layer.surface.thickness, stack_kernel(layer)
     )
     breaks = (scene.indenter.flat_radius, *scene.indenter.breakpoints)
     edges = tuple(sorted({float(b / radius) for b in breaks if 0.0 < b < radius}))

@@ -1,134 +1,181 @@
-"""Depth of a spring bed under a prescribed force: one unknown per step, which the force raises monotonically."""
+"""Depth under a prescribed force.
+
+Forces f of a spring and displacements u of its end obey u = J * df with the compliance J, in contact or free, so their
+sums do: the springs' displacements, each times its stiffness, add up to F_e = J * dF, a sum of exponentials while F
+moves linearly. No end of a spring stands above the indenter, and a free one only creeps back. So where F_e has never
+been larger all springs ever touched are touched, and F_e is the elastic force of the depth (Lee and Radok 1960,
+J. Appl. Mech. 27, 438; Ting 1966, J. Appl. Mech. 33, 845).
+
+Elsewhere the depth is less than F_e would make it. There it is a quadratic in time on each substep, whose two
+coefficients follow from the sum of displacements at the middle and at the end of the substep,
+
+    2 E* int u(x, t) y_1^2(x) dx = F_e(t),   u = delta - g in contact.
+
+Springs in contact take part with their depth alone, whatever the path to it, so that substeps err only by what free
+springs keep of it. Panels of springs end at the fronts of the last march, so that these sums are Gauss rules, and the
+march is repeated until the depth stays.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from bem.polynomials.root_steps import MOST_STEPS
-from contact import NotConvergedError
+from bem.numerics import EPS
+from contact import ForceHistory, NotConvergedError
 from contact.records.validation import FloatArray
-from mdr.history.contact_edge import SpringBed, carried
-from mdr.history.springs_in_time import BedState, SpringLaw, advance, released_at_once, undeformed
+from mdr.history.spring_bed import Path, SpringBed
+from mdr.history.spring_law import SpringLaw
 
-# Relative difference to the target force at which the depth is found.
-_TOLERANCE = 1e-12
-# Share of an interval's larger force that may be missed, since a finite number of springs may leave a jump; chosen.
-_ACCEPTABLE = 1e-6
-# How many times longer than the last step the next may be; chosen.
-_REACH = 4.0
-# Share of an interval's larger force below which an indenter that is let go counts as free at the end; chosen.
-_LEAST = 1e-9
+# Times as many substeps where the depth is known: they cost little, and what springs keep of them is as accurate.
+_MORE = 3
+# Newton steps of a substep; five are usual.
+_MOST_STEPS = 60
+# Share of the largest F_e to which it is met, and that may be missed.
+_TOLERANCE, _ACCEPTABLE = 1e-14, 1e-9
+# Share of all springs whose stiffness starts a substep in which hardly any touch.
+_LEAST = 1e-3
 
 
-@dataclass(frozen=True)
-class Ramp:
-    """A force that moves linearly.
+class Steps(NamedTuple):
+    """Instants at which depths are determined: two per substep.
 
     Attributes:
-        begin: At the start [N].
-        end: At the end [N].
-        duration: [s].
+        time: [s], shape (1 + 2 substeps,).
+        force: F there [N].
+        given: Indices of the instants of the history, shape (n,).
     """
 
-    begin: float
-    end: float
-    duration: float
+    time: FloatArray
+    force: FloatArray
+    given: NDArray[np.intp]
 
 
-def to_force(law: SpringLaw, bed: SpringBed, state: BedState, ramp: Ramp, substeps: int) -> tuple[BedState, float]:
-    """Follow a ramp of force.
-
-    Substeps grow quadratically, since a layer creeps fastest after a change of rate; they shrink with the third power
-    towards a release, where the depth is a power of the force between 1/2 and 1. Within one the depth is linear.
-    With a bare dashpot, whose force knows the speed, equilibrium is asked for in the middle of the substep; then the
-    few springs that hold to the last carry no force as small as that before a release, and substeps do not shrink.
-
-    Returns:
-        The bed at the end, and the speed of the depth there [m/s].
-
-    Raises:
-        NotConvergedError: If no depth carries the force.
-    """
-    fades = ramp.end <= 0.0 and law.viscosity == 0.0
-    instants = ramp.duration * _graded(np.arange(substeps + 1) / substeps, fades=fades)
-    share, speed = (0.5 if law.viscosity > 0.0 else 1.0), 0.0
-    for begin, end in pairwise(instants):
-        time = float(end - begin)
-        target = float(ramp.begin + (ramp.end - ramp.begin) * (begin + share * time) / ramp.duration)
-        if target <= 0.0:
-            state, speed = released_at_once(law, bed.profile, state, time), 0.0
-            continue
-        largest = max(ramp.begin, ramp.end)
-        depth = _depth(law, bed, state, (max(target, _LEAST * largest), largest), share * time)
-        speed = (depth - state.depth) / (share * time)
-        state = advance(law, bed.profile, state, state.depth + speed * time, time)
-    return state, speed
-
-
-def _graded(s: FloatArray, *, fades: bool) -> FloatArray:
-    """Shares of the duration for equidistant s in [0, 1]; the slope of the first is 12 s (1-s)^2."""
-    return np.asarray(s**2 * (6.0 - 8.0 * s + 3.0 * s**2) if fades else s**2)
-
-
-def pressed_at_once(law: SpringLaw, bed: SpringBed, force: float) -> BedState:
-    """The undeformed bed under a force that is there from the start."""
-
-    def excess(depth: float) -> float:
-        return carried(law, bed, undeformed(law, bed.profile, depth), 0.0)[0] - force
-
-    # A flat punch is as stiff from the start.
-    guess = float(bed.profile[np.isfinite(bed.profile)].max()) or force / bed.core
-    return undeformed(law, bed.profile, _root(excess, 0.0, guess, (force, force)))
-
-
-def _depth(law: SpringLaw, bed: SpringBed, state: BedState, target: tuple[float, float], time: float) -> float:
-    """Depth after a time, under which the bed then carries the first of two forces; see `_root`."""
-
-    def excess(depth: float) -> float:
-        after = advance(law, bed.profile, state, depth, time)
-        return carried(law, bed, after, (depth - state.depth) / time)[0] - target[0]
-
-    return _root(excess, state.depth, state.depth + _first_move(law, bed, state, excess(state.depth), time), target)
-
-
-def _first_move(law: SpringLaw, bed: SpringBed, state: BedState, excess: float, time: float) -> float:
-    """Newton's first step, with the stiffness that the springs in contact have over this time."""
-    modulus = law.long_term + law.viscosity / time
-    modulus += float((law.weights * law.times * -np.expm1(-time / law.times)).sum()) / time
-    touched = np.where(state.touching, bed.density, 0.0)
-    springs = bed.core + float(sum(touched[own].sum() * bed.step(own.start) for own in bed.sections()))
-    scale = float(bed.profile[np.isfinite(bed.profile)].max()) or float(np.abs(state.depth))
-    return -excess / (modulus * springs) if springs > 0.0 else -np.sign(excess) * 1e-3 * scale
-
-
-def _root(excess: Callable[[float], float], first: float, second: float, target: tuple[float, float]) -> float:
-    """Root of an increasing function by secants, bisecting once it is enclosed and a secant leaves the enclosure.
+def steps_of(law: SpringLaw, loading: ForceHistory, substeps: int, times: int) -> Steps:
+    """Substeps of each interval, shorter after each change of rate and before a release.
 
     Args:
-        excess: A force less the target.
-        first: A depth [m].
-        second: Another one.
-        target: The force [N], met to rounding where it can be, and one of which a millionth may be left.
+        law: Of the springs.
+        loading: The force.
+        substeps: Number of them. Half are shared out by duration, half to all intervals alike: short ones may be steep.
+        times: Multiplies the number in each interval.
     """
-    low, high = -np.inf, np.inf
-    older, newer, before, now = first, second, excess(first), excess(second)
-    for _ in range(MOST_STEPS):
-        low = max([low, *(d for d, e in ((older, before), (newer, now)) if e < 0.0)])
-        high = min([high, *(d for d, e in ((older, before), (newer, now)) if e > 0.0)])
-        if abs(now) <= _TOLERANCE * target[0]:
-            return newer
-        move = -now * (newer - older) / (now - before) if now != before else newer - older
-        following = newer + min(max(move, -_REACH * abs(newer - older)), _REACH * abs(newer - older))
-        if not low < following < high:
-            following = 0.5 * (low + high) if np.isfinite(low + high) else newer + _REACH * (newer - older)
-        older, newer, before = newer, float(following), now
-        now = excess(newer)
-        if newer in (low, high, older):
-            break
-    if abs(now) > _ACCEPTABLE * target[1]:
-        raise NotConvergedError("no depth carries the prescribed force", {"force": abs(now) / target[1]})
-    return newer
+    durations = np.diff(loading.time)
+    share = (durations / durations.sum() + 1 / durations.size) / 2
+    load = law.elastic_force(loading.time, loading.force)
+    closed = never_larger(law, load)
+    counts = times * np.maximum(np.ceil(substeps * share), 2).astype(int)
+    instants = [loading.time[:1]]
+    for k, count in enumerate(counts.tolist()):
+        count *= _MORE if closed[k] and closed[k + 1] else 1
+        s = np.arange(count + 1) / count
+        fades = loading.force[k + 1] <= 0 < loading.force[k] and not law.viscosity
+        way = s * s * (6 - 8 * s + 3 * s * s) if fades else s**1.5 if load[k] > 0 else s**4
+        ends = loading.time[k] + durations[k] * way
+        ends[-1] = loading.time[k + 1]
+        counts[k] = count
+        instants.append(np.column_stack([(ends[:-1] + ends[1:]) / 2, ends[1:]]).ravel())
+    time = np.concatenate(instants)
+    given = np.append(0, 2 * np.cumsum(counts))
+    return Steps(time, np.interp(time, loading.time, loading.force), given)
+
+
+def never_larger(law: SpringLaw, load: FloatArray) -> NDArray[np.bool_]:
+    """At which instants F_e [N] has never been larger, but for rounding, shape (n,)."""
+    rounding = EPS * (load.size + 4.0 * (law.times.size + 1))
+    return np.asarray(load >= np.maximum.accumulate(load) * (1 - rounding))
+
+
+@dataclass
+class March:
+    """Depths under a force on one bed of springs.
+
+    Attributes:
+        law: Of the springs.
+        bed: The springs.
+        weight: Stiffness of each in contact [N/m], shape (n,).
+        steps: Instants and forces.
+        load: F_e [N] at the instants.
+        closed: Depths [m] of the elastic layer under it.
+        known: Where these are the depths, of the same shape.
+    """
+
+    law: SpringLaw
+    bed: SpringBed
+    weight: FloatArray
+    steps: Steps
+    load: FloatArray
+    closed: FloatArray
+    known: NDArray[np.bool_]
+
+    def path(self) -> Path:
+        """Depths at all instants.
+
+        Raises:
+            NotConvergedError: If no depth carries the force.
+        """
+        time, count = self.steps.time, self.steps.time.size
+        depth, speed, acceleration = np.zeros(count), np.zeros(count - 1), np.zeros(count - 1)
+        free, pace = np.zeros(count - 1, dtype=np.bool_), np.zeros(2)
+        depth[0] = self.closed[0]
+        for k in range(0, count - 1, 2):
+            first, whole = float(time[k + 1] - time[k]), float(time[k + 2] - time[k])
+            if not self.known[k + 1 : k + 3].all() and self.steps.force[k + 2] <= 0:
+                free[k : k + 2], pace = True, np.zeros(2)
+                for i, span in ((k + 1, first), (k + 2, whole - first)):
+                    self.bed.release(span)
+                    depth[i] = np.min(self.bed.surface + self.bed.g)
+                continue
+            if self.known[k + 1 : k + 3].all():
+                risen = (self.closed[k + 1 : k + 3] - depth[k]) / [first, whole]
+                a = 2 * (risen[1] - risen[0]) / (whole - first)
+                pace = np.array([risen[1] - whole * a / 2, a])
+                _, self.bed = self._displaced(float(depth[k]), pace, (first, whole))
+            else:
+                pace, self.bed = self._met(float(depth[k]), pace, self.load[k + 1 : k + 3], (first, whole))
+            v, a = pace
+            speed[k : k + 2], acceleration[k : k + 2] = (v, v + a * first), a
+            depth[k + 1 : k + 3] = depth[k] + first * (v + first * a / 2), depth[k] + whole * (v + whole * a / 2)
+            pace = np.array([v + a * whole, 0.0])
+        return Path(time, depth, speed, acceleration, free)
+
+    def _displaced(self, depth: float, pace: FloatArray, spans: tuple[float, float]) -> tuple[FloatArray, SpringBed]:
+        """F_e [N] at the middle and the end of a substep and stiffness in contact [N/m], shape (2, 2), and the bed."""
+        bed, (v, a), found, before = self.bed.copy(), pace.tolist(), np.empty((2, 2)), 0.0
+        for i, span in enumerate(spans):
+            bed.advance(depth + before * (v + before * a / 2), (v + a * before, a), span - before)
+            found[:, i] = self.weight @ bed.surface, self.weight @ bed.touching
+            before = span
+        return found, bed
+
+    def _met(
+        self, depth: float, pace: FloatArray, target: FloatArray, spans: tuple[float, float]
+    ) -> tuple[FloatArray, SpringBed]:
+        """Speed and acceleration that meet F_e [N] twice, by Newton's rule with Broyden's corrections, and the bed."""
+        largest, t = float(self.load.max()), np.array(spans)
+        scale = np.array([1 / t[1], 2 / t[1] ** 2])  # unknowns are parts of the way [m]
+        ways = np.column_stack([t * scale[0], t * t / 2 * scale[1]])
+        x, slopes, before, best = pace / scale, np.empty((2, 2)), np.zeros(2), (np.inf, pace, self.bed)
+        for number in range(_MOST_STEPS):
+            (reached, stiffness), bed = self._displaced(depth, x * scale, spans)
+            missed = reached - target
+            worst = float(np.abs(missed).max()) / largest
+            if worst < best[0]:
+                best = worst, x * scale, bed
+            if worst <= _TOLERANCE:
+                break
+            if number == 0:
+                slopes = np.maximum(stiffness, _LEAST * self.weight.sum())[:, None] * ways
+            else:
+                slopes += np.outer(missed - before - slopes @ move, move) / (move @ move)
+            move = -np.linalg.solve(slopes, missed)
+            move *= min(1.0, 0.3 * self.bed.g.max() / max(float(np.abs(move).max()), 1e-300))
+            if float(np.abs(move).max()) <= EPS * abs(depth):
+                break
+            x, before = x + move, missed
+        if best[0] > _ACCEPTABLE:
+            raise NotConvergedError("no depth carries the prescribed force", {"force": best[0]})
+        return best[1], best[2]

@@ -14,6 +14,7 @@ from bem.layer_equation.protocol import LARGEST_FACTORISED_RATIO, FlatPunchSolut
 from bem.polynomials.mapped import GAP, MappedFunction, MappedGrid, apart, resolve
 from contact import ElasticLayer, FlatPunch, InvalidInput, Profile, Spheroconical, UnsupportedSceneError
 from contact.records.validation import FloatArray
+from mdr.radius_search import SeveralContacts
 from mdr.springs.equivalent_system import EquivalentSystem
 from mdr.springs.error_model import EPS, POSITION_ROUNDINGS
 from mdr.springs.half_space_profile import (
@@ -172,19 +173,6 @@ def _edge_density(profile: MappedFunction, density: LayerShare | None, delta: fl
     """phi(a) = delta - g_hs(a) + psi(a); with a table the spring displacement delta - g(a)."""
     share = 0.0 if density is None else density.edge_value
     return delta - float(profile(np.asarray(profile.grid.end))) + share
-
-
-class SeveralContacts(UnsupportedSceneError):
-    """The indenter would touch outside its circle of contact.
-
-    Args:
-        radius: Largest contact radius [m] that is one circle.
-    """
-
-    def __init__(self, radius: float) -> None:
-        self.radius = radius
-        message = f"the MDR profile stops rising at a contact radius of {radius:g} m: the contact is no single circle"
-        super().__init__(f"{message} beyond; keep radii, depths or forces below")
 
 
 class EndsTooSoon(InvalidInput):

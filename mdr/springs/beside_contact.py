@@ -7,7 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from bem.layer_equation.flat_punch_source import IntegralEquation
+from bem.flat_punch import IntegralEquation
 from bem.layer_equation.protocol import FlatPunchSource
 from contact import ElasticBase, ElasticLayer, LayerStack, Scene
 from contact.answer.one_circle import Circle, never_touches_beside, refuse_touching, touching_radius

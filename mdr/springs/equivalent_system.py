@@ -157,10 +157,6 @@ class EquivalentSystem:
     def relative_errors(self, contact_radius: FloatArray, *, of_springs: bool = True) -> dict[str, FloatArray]:
         """Bounds of the relative errors of an elastic contact's quantities, and if asked for of c_N, at each radius."""
         ratio = self._ratio(contact_radius)
-        if self.variants:
-            from mdr.springs import table_errors  # noqa: PLC0415 - other flat-punch data do not need it
-
-            return table_errors.relative_errors(self, contact_radius)
         stiffness = self.flat_punch.relative_error(ratio) + SPRING_ROUNDING
         data = (
             self.flat_punch.error_of_profile(ratio, self.profile, self.flat_radius / self.length_unit) + SPRING_ROUNDING

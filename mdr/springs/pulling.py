@@ -12,8 +12,9 @@ from typing import Protocol
 import numpy as np
 
 from bem.layer_equation.protocol import FlatPunchSource
-from contact import FlatPunch, Scene, UnsupportedSceneError
+from contact import FlatPunch, Scene
 from contact.records.validation import FloatArray
+from mdr.admissible import PullingContact
 from mdr.springs.assembly import contact_fields, equivalent_system
 
 # Radii between axis and edge at which the pressure is looked at, denser towards the edge; chosen. Where a film pulls,
@@ -39,26 +40,6 @@ class Pressures(Protocol):
 
     def falls(self, step: int) -> bool:
         """Whether the Abel density falls from the axis to an edge value that is not negative: then p >= 0."""
-
-
-class PullingContact(UnsupportedSceneError):
-    """The surfaces would have to pull at each other inside the contact, and nothing lets them.
-
-    Args:
-        contact_radius: a [m].
-        radius: Where they pull most [m].
-        tension: How strongly [Pa].
-        mean: Mean pressure of the contact [Pa].
-    """
-
-    def __init__(self, contact_radius: float, radius: float, tension: float, mean: float) -> None:
-        self.contact_radius, self.radius, self.tension = contact_radius, radius, tension
-        share = tension / mean
-        super().__init__(
-            f"a full contact of radius {contact_radius:g} m would pull at r = {radius:g} m with {tension:.3g} Pa "
-            f"({share:.2g} of its mean pressure): the surface lifts off there, and the contact is no disc; use a "
-            "rounder indenter, a softer film or a stiffer base"
-        )
 
 
 def refuse_pulling(

@@ -28,7 +28,8 @@ from contact import (
 )
 from contact.answer.one_circle import refuse_touching
 from contact.records.validation import FloatArray
-from mdr.springs.assembly import EndsTooSoon, SeveralContacts, contact_fields, equivalent_system
+from mdr.radius_search import SeveralContacts
+from mdr.springs.assembly import EndsTooSoon, contact_fields, equivalent_system
 from mdr.springs.beside_contact import circle_of
 from mdr.springs.equivalent_system import LEAST_EXCESS, EquivalentSystem
 from mdr.springs.error_model import SPRING_ROUNDING

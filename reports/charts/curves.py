@@ -6,7 +6,7 @@ import numpy as np
 
 from cases.measurements.sweep import Sweep
 from cases.results.records.figure import Figure, Panel, Series
-from contact.files.units import prefix_for
+from contact.records.units import prefix_for
 from contact.records.validation import BoolArray, FloatArray
 from mdr.curves import CurveFit, MapFit
 from reports.words.numbers import with_prefix

@@ -20,8 +20,7 @@ from matplotlib.ticker import FuncFormatter, MaxNLocator
 
 from contact import ContactPath, InvalidInput, LayerStack, Solution
 from contact.answer.inside import InsideFields
-from contact.files.layer_table import kind_of
-from contact.files.units import prefix_for
+from contact.records.units import prefix_for
 from contact.records.validation import FloatArray
 from reports.figures.style import BLACK, GREY, figure_style, svg_text
 from reports.words.method_names import display_name
@@ -143,7 +142,7 @@ def _headline(halves: Sequence[Half], *, compared: bool) -> str:
         for half in ((left, right) if compared else (left,))
     ]
     return (
-        f"{kind_of(type(scene.indenter)).replace('_', ' ')} on a {scene.layer.title}, {radius}\n"
+        f"{scene.indenter.kind().replace('_', ' ')} on a {scene.layer.title}, {radius}\n"
         f"error over the largest stress, as stated: {', '.join(stated)}\n"
         f"thick line: contact; {'dotted: interfaces; ' if _interfaces(left) else ''}displacements drawn {size}"
     )

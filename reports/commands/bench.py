@@ -13,7 +13,7 @@ from cases.results.files import write_whole
 from contact import Adhesion, InvalidInput, load_scene
 from contact.answer.small_strains import depth_note, depth_share, depths_of
 from contact.files.scene_file import scene_notes, uses_units
-from contact.files.units import in_si
+from contact.records.units import read_quantity
 from mdr.curves import Limit, fit_curve, fit_map
 from mdr.curves.reading import Cantilever, Measured, load_curves, read_map
 from reports.tables.curve_tables import fit_csv, fit_table, formula_table, map_csv, map_facts, shares_table, sweep_table
@@ -65,7 +65,7 @@ class FitRequest:
             if text.endswith("%"):
                 return Limit("fraction", float(text[:-1]) / 100)
             kind: Literal["depth", "force"] = "force" if text.endswith("N") else "depth"
-            return Limit(kind, in_si(text, "N" if kind == "force" else "m", "--until"))
+            return Limit(kind, read_quantity(text, "N" if kind == "force" else "m", "--until"))
         except ValueError as error:
             raise InvalidInput(
                 f"--until {text}: write a depth, a force or a share, 300nm, 2nN or 60% ({error})"
@@ -74,7 +74,7 @@ class FitRequest:
     def curves(self, file: Path, scene: Any) -> list[Measured]:
         """The curves of the file; of scenes with adhesion the withdrawal."""
         given = [
-            in_si(text, unit, name) if text else None
+            read_quantity(text, unit, name) if text else None
             for text, unit, name in (
                 (self.spring_constant, "N/m", "--spring-constant"),
                 (self.sensitivity.partition("/")[0], "m", "--sensitivity"),

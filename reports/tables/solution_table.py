@@ -20,7 +20,7 @@ from contact import (
 from contact.answer.shown import SYMBOLS
 from contact.answer.small_strains import depth_note, depths_of
 from contact.answer.summary import scene_line
-from contact.files.units import prefix_for
+from contact.records.units import prefix_for
 from reports.tables.table import Table
 from reports.words.method_names import display_name
 from reports.words.numbers import duration, measured, memory, scaled_unit, small

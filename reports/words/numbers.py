@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from contact.files.units import prefix_for
+from contact.records.units import prefix_for
 
 if TYPE_CHECKING:
     from cases.results.records.scene_run import Quantity

@@ -55,7 +55,7 @@ def solved(method, scene, settings="{}"):
 
 
 IN_TIME = ("mdr.history", "mdr.impact", "fem_reference.in_time")
-ADHESION = ("bem.adhesion", "mdr.adhesion", "fem_reference.adhesion")
+ADHESION = ("bem.adhesion", "mdr.adhesive", "mdr.detachment", "fem_reference.adhesion")
 FRICTION = ("bem.layer_equation.stick", "mdr.friction", "fem_reference.elastic.stick", "fem_reference.elastic.friction")
 EFFECT_ROOMS = (*IN_TIME, *ADHESION, *FRICTION)
 
@@ -150,7 +150,7 @@ def test_an_elastic_scene_runs_exactly_its_stages(method, settings, stages):
 
 
 def test_a_planted_import_is_seen():
-    planted = SCENES.replace("answer = ", "import mdr.adhesion.solver\nanswer = ")
+    planted = SCENES.replace("answer = ", "import mdr.detachment\nanswer = ")
     command = [sys.executable, "-c", planted, "mdr", "elastic", "{}"]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
-    assert "mdr.adhesion.solver" in effects_among(json.loads(done.stdout))
+    assert "mdr.detachment" in effects_among(json.loads(done.stdout))

@@ -22,7 +22,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from bem.kernels.tangential import StickingKernel
+from bem.kernels.stack import StackKernel as StickingKernel
 from bem.layer_equation.stick.adhered_punch import LARGEST_Q, Material, halvings
 from bem.layer_equation.stick.coulomb import coulomb_functions, gamma_squared, phases
 from bem.layer_equation.triangular import equation_factor, solve_lower
@@ -129,8 +129,8 @@ def _layer_kernel(x: FloatArray, kernel: StickingKernel, material: Material) -> 
     waves, mirrored = half_space_waves(material.charge, np.multiply.outer(x, k))
     even, odd = _pairs((waves + mirrored) / 2.0), _pairs((waves - mirrored) / 2.0)
     extra = kernel.beyond_half_space(k)
-    coupling = (even * (w * extra.coupling)) @ odd.T
-    B = (even * (w * extra.normal)) @ even.T + (odd * (w * extra.radial)) @ odd.T
+    coupling = (even * (w * extra.uw)) @ odd.T
+    B = (even * (w * extra.ww)) @ even.T + (odd * (w * extra.uu)) @ odd.T
     return np.asarray(B + coupling + coupling.T)
 
 

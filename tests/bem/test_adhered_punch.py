@@ -6,10 +6,10 @@ import mpmath
 import numpy as np
 import pytest
 
+from bem.flat_punch import IntegralEquation
 from bem.kernels.layer import one_minus_kernel
 from bem.kernels.of_layer import UniformKernel
-from bem.kernels.tangential import HalfSpaceKernel, beyond_half_space
-from bem.layer_equation.flat_punch_source import IntegralEquation
+from bem.kernels.stack import Sheet, StackKernel
 from bem.layer_equation.stick.adhered_fields import AdheredFields, tanh_sinh
 from bem.layer_equation.stick.adhered_punch import adhered_punch, basis_transforms
 from bem.layer_equation.stick.coulomb import coulomb_functions
@@ -117,8 +117,12 @@ def test_half_space_of_mossakovskii():
     """k_stick/k = (1 - nu) ln(3 - 4 nu)/(1 - 2 nu)."""
     for nu in (0.0, 0.2, 0.3, 0.45):
         exact = (1 - nu) * math.log(3 - 4 * nu) / (1 - 2 * nu)
-        assert adhered_punch(0.0, HalfSpaceKernel(nu)).stiffness == pytest.approx(exact, rel=1e-14, abs=0)
-    assert adhered_punch(0.0, HalfSpaceKernel(0.5)).stiffness == pytest.approx(1.0, rel=1e-14, abs=0)
+        assert adhered_punch(0.0, StackKernel((), Sheet(np.inf, 1.0, nu, False))).stiffness == pytest.approx(
+            exact, rel=1e-14, abs=0
+        )
+    assert adhered_punch(0.0, StackKernel((), Sheet(np.inf, 1.0, 0.5, False))).stiffness == pytest.approx(
+        1.0, rel=1e-14, abs=0
+    )
 
 
 def test_stick_is_continuous_at_an_incompressible_layer():
@@ -163,7 +167,7 @@ def test_the_frictionless_punch_is_that_of_the_integral_equation():
 def test_normal_compliance_is_the_frictionless_kernel(support):
     q = np.geomspace(1e-3, 60.0, 40)
     for nu in (0.0, 0.3, 0.5):
-        normal = beyond_half_space(q, support, nu).normal
+        normal = UniformKernel(support, nu).beyond_half_space(q).ww
         assert normal == pytest.approx(-2.0 * (1.0 - nu) * one_minus_kernel(q, support, nu), rel=1e-13, abs=1e-300)
 
 
@@ -207,7 +211,7 @@ def test_reciprocity_of_the_two_punches(nu, support, ratio):
     transforms = basis_transforms(stuck.material.charge, rung_of(ratio), stuck.coefficients.size, longest=2.0)
     sine = stuck.coefficients @ transforms.sine
     assert np.array_equal(transforms.wavenumber, kappa)
-    layer = (free.transforms.weights * stuck.compliance(transforms).coupling * free.transform) @ sine
+    layer = (free.transforms.weights * stuck.compliance(transforms).uw * free.transform) @ sine
     moved = 2.0 / math.pi * (layer - eta * (weights * psi) @ conjugate)
     k_free = 2.0 * beta * free.coefficients[0]
     # Transforms at wavenumbers of 20 a/h lose digits: beyond a/h = 10 other nodes move the stiffness by 2e-13, too.

@@ -51,6 +51,14 @@ def test_the_constant_is_the_energy_of_a_uniformly_loaded_cell():
     assert pytest.approx(0.473201, abs=5e-7) == CELL_ENERGY  # Pohrt and Popov (2015)
 
 
+def test_a_turn_of_the_force_just_before_the_first_radius_is_the_largest_tension():
+    """It lay between the last two samples of the branch: 2.5e-4 too small, 1.7e-7 stated."""
+    strongest = (9.0 * np.pi * WORK * 0.01**2 / 8.0 / 1e6) ** (1.0 / 3.0)
+    path = Bem(points=96).solve(scene(HALF_SPACE, SPHERE, start=1.01 * strongest))
+    jkr = 1.5 * np.pi * WORK * 0.01
+    assert abs(path.pull_off_force + jkr) <= path.error_estimate["pull_off_force"][0] * jkr + 1e-12 * jkr
+
+
 def test_the_constant_agrees_with_the_grids_own_influence():
     # the same energy from Love's solution on a cell divided into n x n cells
     n = 64

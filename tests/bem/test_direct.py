@@ -333,6 +333,20 @@ def test_bars_at_given_radii_count_what_coarse_cells_make_of_a_slope_once():
     assert np.median(stated / error) <= 15.0
 
 
+@pytest.mark.parametrize(("radius", "touches"), [(0.8614e-3, False), (0.8673e-3, True)])
+def test_a_measured_tip_is_refused_as_soon_as_it_touches_outside(radius, touches):
+    """MDR refuses from 0.8656 mm on; boundary elements once took the error of the surface there for a gap."""
+    heights = 1e-6 * np.cumsum([0.0, 1.0, 3.0, 5.0, 7.0, 1.0, 1.0, 1.0, 1.0])
+    tip = Tabulated(radii=np.linspace(0.0, 2e-3, 9), heights=heights)
+    scene = Scene(layer=LAYER.replace(poissons_ratio=0.3), indenter=tip, loading=ContactRadii([radius]))
+    for method in (Mdr(), Bem(points=96)):
+        if touches:
+            with pytest.raises(UnsupportedSceneError, match="would touch at r ="):
+                method.solve(scene)
+        else:
+            assert method.solve(scene).normal_force[0] > 0.0
+
+
 def test_a_radius_beyond_a_fall_of_the_profile_is_answered_where_nothing_pulls_and_nothing_touches():
     """Complementary pressures and gaps are unique: the slope of force over depth once missed this depth by 0.7 %."""
     radii = np.array([0.0, 0.146, 0.246, 0.326, 0.377, 0.435, 0.540, 0.604, 0.660, 0.787])

@@ -2,11 +2,11 @@ import dataclasses
 
 import numpy as np
 import pytest
-
-from bem.layer_equation.flat_punch_source import IntegralEquation
-from bem.layer_equation.protocol import FlatPunchSolution, FlatPunchSource
 from bem.tables.from_grid import FftTable
 from bem.tables.table import FlatPunchTable, chebyshev_radii
+
+from bem.flat_punch import IntegralEquation
+from bem.layer_equation.protocol import FlatPunchSolution, FlatPunchSource
 from contact import InvalidInput, Layer
 from mdr import Mdr
 from tests.drawn_scenes import scene_of

@@ -4,7 +4,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from bem.layer_equation.flat_punch_source import IntegralEquation
+from bem.flat_punch import IntegralEquation
 from bem.polynomials.gauss import legendre_rule
 from contact import Layer
 from tests.bem.extended_precision import contact_stiffness

@@ -5,12 +5,11 @@ import pytest
 
 import bem.layer_equation.fourier_energy
 import bem.layer_equation.thin_layers
-from bem.layer_equation.flat_punch_source import IntegralEquation
+from bem.flat_punch import IntegralEquation
 from bem.layer_equation.fredholm_kernel import FredholmKernel
 from bem.layer_equation.thin_layers import DENSITY_TRUNCATION, PANEL_WIDTH, LargeRatioSolution, _trial_densities
 from bem.polynomials.gauss_panels import gauss_nodes
-from contact import InvalidInput, Layer, Tabulated, TruncatedCone
-from mdr.springs.assembly import equivalent_system
+from contact import InvalidInput, Layer
 
 LAYERS = {
     "bonded 0.5": Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.5),
@@ -40,27 +39,6 @@ def test_other_panels_give_the_same_within_the_stated_error(name, monkeypatch):
         differences = np.abs(getattr(other, quantity)(RATIOS) / getattr(solution, quantity)(RATIOS) - 1)
         assert np.all(differences < getattr(solution, stated)(RATIOS))
         assert np.all(differences < (1e-13 if quantity == "normalized_contact_stiffness" else 1e-12))
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(("support", "nu"), [("bonded", 0.3), ("bonded", 0.45), ("bonded", 0.5), ("unbonded", 0.3)])
-def test_errors_behind_rims_far_out_cover_and_are_sharp(support, nu):
-    """Of wide panels against narrow ones. Seen to fail by 100 to 14 000 times the error, the largest of a panel."""
-    layer, source = Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=nu, support=support), IntegralEquation()
-    rng, told = np.random.default_rng(5), []
-    for flat in rng.uniform(45.0, 150.0, 6):
-        table = Tabulated(radii=[0, flat / 2, flat, 300.0], heights=[0.0, 1e-6, 1.0, 30.0])
-        for indenter in (TruncatedCone(flat_radius=flat, slope=0.1), table):
-            wide, near = (equivalent_system(layer, indenter, reach, source) for reach in (200.0, 159.9))
-            radius = flat + (159.8 - flat) * np.exp(rng.uniform(np.log(1e-4), 0.0, 60))
-            excess = radius - indenter.flat_radius
-            error = np.abs(wide.profile(excess) / near.profile(excess) - 1)
-            told.append((error, wide.relative_errors(radius)["indentation_depth"]))
-    error, stated = (np.concatenate(values) for values in zip(*told, strict=True))
-    assert np.mean(error <= stated) >= 0.95
-    ratio = stated / np.maximum(error, 1e-300)
-    assert np.median(ratio) <= 10
-    assert np.quantile(ratio, 0.9) <= 100
 
 
 @pytest.mark.slow

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bem.layer_equation.flat_punch_source import IntegralEquation
+from bem.flat_punch import IntegralEquation
 from contact import Layer
 from tests.bem.extended_precision import LD, PI, flat_punch_pressure
 

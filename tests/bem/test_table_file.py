@@ -2,11 +2,11 @@ import dataclasses
 
 import numpy as np
 import pytest
-
-from bem.layer_equation.flat_punch_source import IntegralEquation
-from bem.layer_equation.protocol import FlatPunchSource
 from bem.tables.file import TableFile, read_foreign_table, read_table, write_table
 from bem.tables.from_grid import FftTable
+
+from bem.flat_punch import IntegralEquation
+from bem.layer_equation.protocol import FlatPunchSource
 from contact import ContactRadii, InvalidInput, Layer, Paraboloid, Scene
 from contact.files.storage import read_tree, write_tree
 from mdr import Mdr

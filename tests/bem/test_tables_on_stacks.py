@@ -6,11 +6,11 @@ import dataclasses
 
 import numpy as np
 import pytest
-
-from bem.layer_equation.flat_punch_source import IntegralEquation
 from bem.tables.file import TableFile, read_table, write_table
 from bem.tables.from_grid import FftTable
 from bem.tables.tabulated_layer import same_kernel, tabulable
+
+from bem.flat_punch import IntegralEquation
 from contact import (
     Adhesion,
     Cone,

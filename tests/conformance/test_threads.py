@@ -13,7 +13,7 @@ import scipy.linalg  # noqa: F401 - its BLAS is one of the two that are watched
 from threadpoolctl import threadpool_info, threadpool_limits
 
 from bem.direct_method import IntegralEquationMethod
-from bem.layer_equation.flat_punch_source import IntegralEquation
+from bem.flat_punch import IntegralEquation
 from bem.method import Bem
 from cases.run.empty_caches import forget
 from contact import ContactRadii, IndentationDepths, Layer, Paraboloid, Scene, TruncatedCone

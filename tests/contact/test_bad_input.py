@@ -59,8 +59,8 @@ BAD = {
         r"Layer\.youngs_modulus = nan: must be positive and finite",
     ),
     "text for a number": (
-        lambda: Layer(thickness="1 mm", youngs_modulus=1e6, poissons_ratio=0.3),
-        r"Layer\.thickness = '1 mm': must be a number; give the thickness in metres",
+        lambda: Layer(thickness="thick", youngs_modulus=1e6, poissons_ratio=0.3),
+        r"Layer\.thickness = 'thick': must be a number; give the thickness in metres",
     ),
     "a truth value for a number": (
         lambda: Layer(thickness=True, youngs_modulus=1e6, poissons_ratio=0.3),

@@ -31,7 +31,7 @@ from contact import (
     scene_from_mapping,
     scene_to_mapping,
 )
-from contact.files.scene_text import MAX_BYTES
+from contact.files.columns import MAX_BYTES
 
 GOOD = """
 [layer]
@@ -142,7 +142,7 @@ def test_every_scene_survives_a_round_trip_through_json(scene):
         ("values = [1e-3, 2e-3]", 'values = "1e-3"', r"loading\.values = '1e-3': must be a list"),
         ("work_of_adhesion = 0.05", "work_of_adhesion = -1", r"effects\[0\]\.work_of_adhesion = -1: must be finite"),
         ("[[effects]]", "[effects]", r"effects = .*must be a list of tables; write \[\[effects\]\]"),
-        ("[layer]", "[layers]", r"layers: no such table"),
+        ("[layer]", "[layers]", r"layers = .*: no such field; write layer instead"),
         ("[layer]", "[layer", r"not valid TOML: .*line 2"),
         (
             "thickness = 1e-3",
@@ -185,12 +185,12 @@ def test_a_device_without_an_end_is_refused():
 def test_tables_in_tables_are_refused_however_deep(tmp_path):
     file = tmp_path / "deep.toml"
     file.write_text(".".join("a" * 3000) + " = 1\n" + EXAMPLE_SCENE_TABLES)
-    with pytest.raises(InvalidInput, match="a: no such table"):
+    with pytest.raises(InvalidInput, match="a = a huge dict: no such field"):
         load_scene(file)
     deep = 1
     for _ in range(3000):
         deep = {"a": deep}
-    with pytest.raises(InvalidInput, match="a: no such table"):
+    with pytest.raises(InvalidInput, match="a = a huge dict: no such field"):
         scene_from_mapping(deep)
     with pytest.raises(InvalidInput, match=r"layer\.a = a huge dict"):
         scene_from_mapping({"layer": deep, "indenter": {}, "loading": {}})

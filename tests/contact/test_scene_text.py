@@ -87,7 +87,7 @@ def test_a_byte_order_mark_is_accepted(tmp_path):
 @pytest.mark.parametrize("encoding", ["utf-16", "utf-16-be"])
 def test_another_encoding_is_named(tmp_path, encoding):
     mark = codecs.BOM_UTF16_BE if encoding == "utf-16-be" else b""
-    with pytest.raises(InvalidInput, match="save the scene as TOML in UTF-8"):
+    with pytest.raises(InvalidInput, match="save it in UTF-8"):
         load_scene(written(tmp_path, mark + GOOD.encode(encoding)))
 
 

@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 
-from bem.layer_equation.flat_punch_source import IntegralEquation
+from bem.flat_punch import IntegralEquation
 from contact import (
     Adhesion,
     ContactRadii,

@@ -23,13 +23,14 @@ from contact import (
     scene_from_mapping,
     scene_to_mapping,
 )
-from contact.files.shorthands import PYRAMID_NOTE, notes_on
-from contact.files.units import EXAMPLE_OF_UNIT, KIND_OF_UNIT, in_si, unit_of
+from contact.files.scene_file import scene_notes, scene_schema
+from contact.records.record import unit_of
+from contact.records.units import MEASURES, in_si
 from contact.scene.depth_functions import DEPTH_FUNCTIONS
 from contact.scene.effects import EFFECTS
 from contact.scene.layer_stack import ElasticBase, Sublayer
 from contact.scene.loading import LOADINGS
-from contact.scene.profiles import PROFILES
+from contact.scene.profiles import PROFILES, PYRAMID_NOTE
 
 LAYER = {"thickness": "5 um", "youngs_modulus": "5 kPa", "poissons_ratio": 0.5}
 TIP = {"kind": "sphere", "radius": "10 um"}
@@ -57,8 +58,7 @@ def test_every_field_with_a_unit_takes_one_and_every_unit_has_words():
             unit = unit_of(cls, field.name)
             assert unit is not None or field.name in PURE_NUMBERS, f"{cls.__name__}.{field.name}"
             if unit is not None:
-                assert isinstance(in_si(EXAMPLE_OF_UNIT[unit], unit, "here"), float)
-    assert KIND_OF_UNIT.keys() == EXAMPLE_OF_UNIT.keys()
+                assert isinstance(in_si(MEASURES[unit][1], unit), float)
 
 
 @pytest.mark.parametrize(
@@ -142,13 +142,15 @@ def test_half_angles_are_slopes():
     assert blunt == TruncatedCone(flat_radius=1e-6, slope=1 / math.tan(math.pi / 4))
 
 
-def test_a_pyramid_is_the_cone_of_equal_sections_and_says_so():
+def test_a_pyramid_is_the_cone_of_equal_sections_and_says_so(tmp_path):
     table = {"kind": "pyramid", "half_angle": "35 deg"}
     cone = scene(indenter=table).indenter
     z = 2.0
     side = 2 * z * math.tan(math.radians(35))
     assert math.pi * (z / cone.slope) ** 2 == pytest.approx(side**2, rel=1e-14, abs=0.0)
-    assert notes_on({"indenter": table}) == [PYRAMID_NOTE]
+    file = tmp_path / "scene.toml"
+    file.write_text('[indenter]\nkind = "pyramid"\n')
+    assert scene_notes(file) == [PYRAMID_NOTE]
     # Force of the cone over E* tan(alpha) d^2, beside Bilodeau's 0.7453.
     assert 2 / math.pi / cone.slope / math.tan(math.radians(35)) == pytest.approx(0.7183, rel=1e-4, abs=0.0)
 
@@ -231,8 +233,6 @@ def test_pint_is_loaded_only_where_a_unit_is_met():
 def test_the_shorthands_follow_the_schema():
     import jsonschema
 
-    from contact.files.scene_schema import scene_schema
-
     written = tomllib.loads(
         '[layer]\nthickness = "5 um"\nyoungs_modulus = "5 kPa"\npoissons_ratio = 0.5\n[indenter]\nkind = "pyramid"\n'
         'half_angle = "35 deg"\n[loading]\nkind = "indentation_depths"\n'
@@ -247,7 +247,7 @@ def test_the_shorthands_follow_the_schema():
 
 @pytest.mark.parametrize("written", ["5e-6", '"5 um"'])
 def test_a_single_value_stands_for_a_list_of_one(tmp_path, written):
-    from contact.files.scene_schema import scene_schema as schema
+    from contact.files.scene_file import scene_schema as schema
 
     file = tmp_path / "scene.toml"
     units = ("1 mm", "1 MPa", "1 cm") if '"' in written else ("1e-3", "1e6", "1e-2")

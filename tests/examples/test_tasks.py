@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from contact import ContactPath, Friction, load_scene
-from contact.files.scene_schema import scene_schema
+from contact.files.scene_file import scene_schema
 from mdr import Mdr
 from reports.command_line import run
 

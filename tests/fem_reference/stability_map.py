@@ -9,20 +9,19 @@ A punch outside of every such range jumps off at once; one inside peels stably u
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 
 from contact import FlatPunch, IndentationDepths, Layer, Scene, StageLog
-from contact.records.validation import FloatArray
+from contact.stated import SAFETY
 from fem_reference import Fem
-from fem_reference.adhesion.branch import InterpolatedBranch, solve_branch
-from fem_reference.adhesion.branch_errors import degree_error, edge_error
+from fem_reference.adhesion.branch import solve_branch
 from fem_reference.adhesion.detachment import slope_root
 from fem_reference.adhesion.equilibria import branch_samples
-from fem_reference.adhesion.pull_off_errors import Extremum
-from fem_reference.elastic.error_estimate import ContactWithErrors
+from fem_reference.discrete_layer.settings import Discretisation
+from fem_reference.elastic.prescribed_radius import PrescribedContact, solve_contact
 
 # a/h at the ends of the branch's pieces: below the first the layer is a half-space, beyond the last a row of
 # independent springs.
@@ -46,12 +45,12 @@ class Reversal:
     kind: Literal["maximum", "minimum"]
     ratio: float
     elongation: float
-    ratio_error: float
-    elongation_error: float
+    ratio_error: float = np.inf
+    elongation_error: float = np.inf
 
 
-def reversals(layer: Layer, solve: Callable[[float], ContactWithErrors]) -> tuple[Reversal, ...]:
-    """All changes of stability for 0.1 < a/h < 12, in the order of increasing a/h.
+def reversals(layer: Layer, solve: Callable[[float], PrescribedContact]) -> tuple[Reversal, ...]:
+    """All changes of stability for 0.1 < a/h < 12, in the order of increasing a/h; they state no errors.
 
     Args:
         layer: a layer of finite thickness.
@@ -63,23 +62,13 @@ def reversals(layer: Layer, solve: Callable[[float], ContactWithErrors]) -> tupl
     slope = branch.slope(branch.elongation, radius)
     turns = np.flatnonzero(np.sign(slope[1:]) != np.sign(slope[:-1]))
     places = [slope_root(branch, branch.elongation, radius[i], radius[i + 1]) for i in turns]
-    return tuple(_reversal(branch, a, h, is_maximum=bool(slope[i] > 0)) for a, i in zip(places, turns, strict=True))
-
-
-def _reversal(branch: InterpolatedBranch, radius: float, thickness: float, *, is_maximum: bool) -> Reversal:
-    here, extremum = np.array([radius]), Extremum(branch, InterpolatedBranch.elongation, radius)
-
-    def numbers(other: InterpolatedBranch) -> FloatArray:
-        return np.array([other.elongation(here)[0], extremum.shift(other)])
-
-    height, between = numbers(branch)[0], branch.errors_between(here)[0, 0]
-    error, place = degree_error(branch, numbers) + edge_error(branch, numbers)
-    return Reversal(
-        kind="maximum" if is_maximum else "minimum",
-        ratio=radius / thickness,
-        elongation=float(height / thickness),
-        ratio_error=float(place + extremum.shift_between(between)),
-        elongation_error=float((error + between + branch.errors_far(here)[0, 0]) / height),
+    return tuple(
+        Reversal(
+            kind="maximum" if slope[i] > 0 else "minimum",
+            ratio=a / h,
+            elongation=float(branch.elongation(np.array([a]))[0] / h),
+        )
+        for a, i in zip(places, turns, strict=True)
     )
 
 
@@ -95,13 +84,23 @@ def stable_ranges(found: Iterable[Reversal]) -> list[tuple[float, float]]:
 
 
 def reversals_at(poissons_ratio: float, method: Fem | None = None) -> tuple[Reversal, ...]:
-    """Changes of stability on a bonded layer of unit thickness and contact modulus."""
+    """Changes of stability on a bonded layer of unit thickness and contact modulus, with what coarser cells change."""
     layer = Layer(thickness=1.0, youngs_modulus=1 - poissons_ratio**2, poissons_ratio=poissons_ratio)
-    scene = Scene(layer=layer, indenter=FlatPunch(radius=1.0), loading=IndentationDepths([1.0]))
-    solver = method or Fem(edge_cell=1e-8, truncation=1e-9)
-    log = StageLog()
-    return reversals(layer, lambda radius: solver.solve_contact(_of_radius(scene, radius), radius, log))
+    settings = (method or Fem(edge_cell=1e-8, truncation=1e-9)).discretisation
+    fine, coarse = (reversals(layer, _punches(layer, each)) for each in (settings, settings.coarser()))
+    return tuple(
+        replace(
+            found,
+            ratio_error=SAFETY * abs(found.ratio / other.ratio - 1.0),
+            elongation_error=SAFETY * abs(found.elongation / other.elongation - 1.0),
+        )
+        for found, other in zip(fine, coarse, strict=True)
+    )
 
 
-def _of_radius(scene: Scene, radius: float) -> Scene:
-    return scene.replace(indenter=FlatPunch(radius=radius))
+def _punches(layer: Layer, settings: Discretisation) -> Callable[[float], PrescribedContact]:
+    def solve(radius: float) -> PrescribedContact:
+        scene = Scene(layer=layer, indenter=FlatPunch(radius=radius), loading=IndentationDepths([1.0]))
+        return solve_contact(scene, radius, settings, StageLog())
+
+    return solve

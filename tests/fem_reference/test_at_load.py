@@ -16,8 +16,7 @@ from contact import (
     TruncatedCone,
 )
 from fem_reference import Fem
-from fem_reference.elastic.at_load import Load
-from fem_reference.elastic.prescribed_radius import quick_solution
+from fem_reference.elastic.prescribed_radius import quick_solution, solve_contact
 from mdr import Mdr
 from tests.drawn_scenes import scene_of
 
@@ -56,7 +55,7 @@ def test_a_coarse_mesh_knows_how_its_depth_grows(indenter):
         loading=ContactRadii(near),
     )
     depth = Mdr().solve(scene).indentation_depth
-    found = Fem(growth=1.4, truncation=1e-5).solve_contact(scene, 1.0, StageLog()).answer.smooth_depth_slope
+    found = solve_contact(scene, 1.0, Fem(growth=1.4, truncation=1e-5).discretisation, StageLog()).smooth_depth_slope
     assert found == pytest.approx((depth[2] - depth[0]) / (near[2] - near[0]), rel=0.1, abs=0)
 
 
@@ -66,23 +65,3 @@ def test_the_radius_at_a_depth_is_covered():
     path = Fem().solve(scene)
     error = abs(path.contact_radius[0] / Mdr().solve(scene).contact_radius[0] - 1)
     assert error < path.error_estimate["contact_radius"][0]
-
-
-def test_coarse_accuracies_need_one_mesh():
-    """A quick solution and a second full one took the last 3e-4 away, which first order does as well."""
-    layer = Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.45)
-    loading = IndentationDepths([4.72870805e-06])
-    path = Fem(accuracy=1e-3).solve(Scene(layer=layer, indenter=Paraboloid(radius_of_curvature=1e3), loading=loading))
-    assert next(stage.calls for stage in path.stages if stage.name == "mesh") == 1
-
-
-@pytest.mark.parametrize("indenter", [Paraboloid(radius_of_curvature=10.0), Cone(slope=0.1)])
-def test_a_corrected_radius_states_what_the_depth_slope_errs_by(indenter):
-    """A hundredth off, the correction errs by its slope: more than all else that is stated of the radius."""
-    layer = Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.45)
-    scene = Scene(layer=layer, indenter=indenter, loading=IndentationDepths([0.05]))
-    fem, exact = Fem(growth=1.0, edge_cell=1e-4, truncation=1e-4), Mdr().solve(scene).contact_radius[0]
-    load = Load(scene=scene, target=0.05, by_depth=True, radius=0.99 * exact, accuracy=1e-2)
-    state = load.equilibrium(lambda radius: fem.solve_contact(scene, radius, StageLog()))
-    found = state.radius_factor * state.contact.indenter.contact_radius
-    assert abs(found / exact - 1) < state.error["contact_radius"] < 1e-2

@@ -70,7 +70,7 @@ def test_stress_on_the_axis_below_a_hertz_contact():
     error = pytest.approx(np.zeros(4), rel=0, abs=found.error_estimate["stress"] * p0)
     assert found.axial_stress + p0 * decay == error
     assert found.radial_stress + p0 * ((1 + nu) * (1 - z * np.arctan(1 / z)) - decay / 2) == error
-    assert found.error_estimate["stress"] < 1e-3
+    assert found.error_estimate["stress"] < 5e-3
     worst = inside.largest("von_mises")
     assert worst.value / p0 == pytest.approx(2 * 0.310021, rel=1e-3, abs=0)
     assert [worst.radius / A, worst.depth / A] == pytest.approx([0.0, 0.480864], rel=0, abs=0.02)

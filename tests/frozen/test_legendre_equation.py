@@ -7,9 +7,10 @@ import json
 
 import pytest
 
-from bem.layer_equation.flat_punch_source import IntegralEquation
+from bem.flat_punch import IntegralEquation
 from contact import Adhesion, Detachment, scene_from_mapping
-from mdr.adhesive import solve_adhesive, solve_detachment
+from mdr.adhesive import solve_adhesive
+from mdr.detachment import solve_detachment
 from mdr.equilibria import solve_elastic
 from tests.frozen.freeze import FOLDER
 from tests.frozen.test_frozen import different

@@ -10,7 +10,7 @@ import sys
 import numpy as np
 import pytest
 
-from bem.layer_equation.flat_punch_source import IntegralEquation
+from bem.flat_punch import IntegralEquation
 from contact import (
     Adhesion,
     Detachment,
@@ -27,9 +27,9 @@ from contact import (
     TruncatedCone,
 )
 from mdr import Mdr, batches
-from mdr.adhesion.batch import pull_off_groups
 from mdr.batches import equilibria, impacts, pull_offs
 from mdr.impact import solver as impact_solver
+from mdr.pull_offs import pull_off_groups
 
 PUNCH = IntegralEquation()
 LAYER = Layer.incompressible(thickness=1e-3, shear_modulus=1e6)
@@ -132,7 +132,7 @@ def test_equilibria_of_every_size(size, loading):
 
 def test_a_scene_without_an_answer_is_refused(monkeypatch):
     """At first an uncomputed scene of a batch was whatever the memory held."""
-    from mdr.adhesion import batch
+    from mdr import pull_offs as batch
 
     def last_one_forgotten(*arguments):
         def forgetful(solve):

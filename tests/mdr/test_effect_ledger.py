@@ -17,7 +17,8 @@ from mdr import Mdr
 layer = Layer(thickness=1e-3, youngs_modulus=1e6, poissons_ratio=0.45)
 scene = Scene(layer=layer, indenter=Paraboloid(radius_of_curvature=0.01), loading=ContactRadii([1e-3]))
 path = Mdr().solve(scene)
-loaded = [name for name in sys.modules if name.startswith(("mdr.adhesion", "mdr.history", "mdr.impact"))]
+effects = "mdr.adhesive", "mdr.detachment", "mdr.history", "mdr.impact"
+loaded = [name for name in sys.modules if name.startswith(effects)]
 foreign = [name for name in ("skfem", "gmsh", "matplotlib", "pyfftw.pyfftw") if name in sys.modules]
 sys.exit(f"loaded {loaded} {foreign}" if loaded or foreign else 0)
 """
@@ -63,7 +64,7 @@ def seconds_of(call):
 def test_time_grows_at_most_linearly_with_the_number_of_relaxation_times():
     import numpy as np
 
-    from bem.layer_equation.flat_punch_source import IntegralEquation
+    from bem.flat_punch import IntegralEquation
     from contact import PronySeries
     from mdr.impact.solver import impact_batch
     from tests.mdr.viscoelastic_scenes import GLASSY_BRANCH, LONG_TERM

@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
+from bem.flat_punch import IntegralEquation
 from bem.kernels.of_layer import UniformKernel
-from bem.layer_equation.flat_punch_source import IntegralEquation
 from bem.layer_equation.stick.frictionless_slip import frictionless_punch
 from bem.polynomials.gauss_panels import gauss_nodes
 from contact import (

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 import pytest
-
-from bem.layer_equation.flat_punch_source import IntegralEquation
 from bem.tables.table import FlatPunchTable
+
+from bem.flat_punch import IntegralEquation
 from contact import (
     Cone,
     ContactRadii,

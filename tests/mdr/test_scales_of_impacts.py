@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
+from bem.flat_punch import IntegralEquation
 from bem.kernels.moduli import contact_modulus
-from bem.layer_equation.flat_punch_source import IntegralEquation
 from contact import (
     FlatPunch,
     Impact,

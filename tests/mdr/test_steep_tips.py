@@ -5,13 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from bem.layer_equation.flat_punch_source import IntegralEquation
-from contact import ContactPath, ContactRadii, IndentationDepths, Layer, NormalForces, PowerLaw, Profile, Scene
-from contact.records.validation import FloatArray
+from bem.flat_punch import IntegralEquation
+from contact import ContactPath, ContactRadii, IndentationDepths, Layer, NormalForces, PowerLaw, Scene
 from mdr import Mdr
 from mdr.batches import equilibria
-from mdr.springs import assembly
-from mdr.springs.half_space_profile import half_space_profile
 from tests.referees.second_opinion import second_opinion
 
 LAYER = Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.3, support="bonded")
@@ -43,17 +40,3 @@ def test_a_batch_answers_a_steep_tip_on_a_thick_layer_as_it_does_alone(
     together, alone = equilibria([scene] * 3, IntegralEquation()), Mdr().solve(scene)
     for name in ("contact_radius", "indentation_depth", "normal_force", "contact_stiffness"):
         np.testing.assert_allclose(getattr(together, name), getattr(alone, name)[0], rtol=1e-12)
-
-
-def test_the_exponent_at_first_touch_asks_the_profile_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    """It was asked anew at each of up to 32 excesses, which no answer needs one after the other."""
-    asked: list[int] = []
-
-    def counted(indenter: Profile, excess: FloatArray) -> FloatArray:
-        asked.append(excess.size)
-        return half_space_profile(indenter, excess)
-
-    monkeypatch.setattr(assembly, "half_space_profile", counted)
-    law = PowerLaw(exponent=2.3, reference_radius=1.0, reference_height=0.1)
-    assert assembly._exponent_at_touch(law, 1e-9) == pytest.approx(2.3, rel=1e-14, abs=0.0)
-    assert len(asked) == 1

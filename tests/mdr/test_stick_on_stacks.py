@@ -5,8 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from bem.kernels.of_layer import UniformKernel, sticking_kernel
-from bem.kernels.tangential import beyond_half_space
+from bem.kernels.of_layer import UniformKernel, stack_kernel
 from bem.layer_equation.stick.adhered_fields import AdheredFields
 from bem.layer_equation.stick.adhered_punch import adhered_punch
 from bem.layer_equation.stick.growth import growth_table
@@ -62,15 +61,15 @@ def scene_of(layer, loading, indenter=PARABOLOID, effects=STICK):
 def test_a_layer_cut_into_sublayers_has_its_kernel(nu, support):
     cut = stack((1.0, 1.0, nu), (0.7, 1.0, nu), (1.3, 1.0, nu), support=support)
     k = np.geomspace(1e-2, 20.0, 30)
-    found, whole = sticking_kernel(cut).beyond_half_space(k), beyond_half_space(3.0 * k, support, nu)
-    for name in ("radial", "coupling", "normal"):
+    found, whole = stack_kernel(cut).beyond_half_space(k), UniformKernel(support, nu).beyond_half_space(3.0 * k)
+    for name in ("uu", "uw", "ww"):
         exact = getattr(whole, name)
         assert getattr(found, name) == pytest.approx(exact, rel=1e-13, abs=1e-14)
 
 
 def test_a_base_of_the_same_material_is_a_half_space():
     base = stack((1.0, 1.0, 0.2), support=ElasticBase(youngs_modulus=1.0, poissons_ratio=0.2))
-    punch = adhered_punch(3.0, sticking_kernel(base))
+    punch = adhered_punch(3.0, stack_kernel(base))
     exact = 0.8 * math.log(2.2) / 0.6
     assert punch.stiffness == pytest.approx(exact, rel=1e-13, abs=0.0)
 
@@ -78,7 +77,7 @@ def test_a_base_of_the_same_material_is_a_half_space():
 @pytest.mark.parametrize("name", STACKS)
 @pytest.mark.parametrize("ratio", [0.3, 4.0])
 def test_the_surface_below_a_punch_neither_sinks_unevenly_nor_slides(name, ratio):
-    fields = AdheredFields(adhered_punch(ratio, sticking_kernel(STACKS[name])))
+    fields = AdheredFields(adhered_punch(ratio, stack_kernel(STACKS[name])))
     inside = np.array([0.0, 1e-3, 0.3, 0.7, 0.99, 0.9999])
     assert fields.normal_displacement(inside) == pytest.approx(np.ones(6), rel=0.0, abs=1e-11)
     assert fields.radial_displacement(inside) == pytest.approx(np.zeros(6), rel=0.0, abs=1e-11)
@@ -86,7 +85,7 @@ def test_the_surface_below_a_punch_neither_sinks_unevenly_nor_slides(name, ratio
 
 @pytest.mark.parametrize("name", ["soft on stiff", "three, slip below the first", "elastic base"])
 def test_one_factorisation_equals_single_radii(name):
-    ratios, kernel = np.array([0.3, 1.5, 3.0]), sticking_kernel(STACKS[name])
+    ratios, kernel = np.array([0.3, 1.5, 3.0]), stack_kernel(STACKS[name])
     every = adhered_punches(3.0, kernel)
     punches = [adhered_punch(float(a), kernel) for a in ratios]
     assert every.stiffness(ratios) == pytest.approx([p.stiffness for p in punches], rel=1e-11, abs=0.0)

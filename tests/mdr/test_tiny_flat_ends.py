@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from bem.direct_method import IntegralEquationMethod
-from bem.layer_equation.flat_punch_source import IntegralEquation
+from bem.flat_punch import IntegralEquation
 from contact import (
     ContactPath,
     ContactRadii,

@@ -90,6 +90,21 @@ def heavier(original):
     return wrong
 
 
+def steeper(made):
+    """Pieces of a slope one per cent too large."""
+    return lambda self, profile, knots, pieces: made(self, profile, knots, WRONG * pieces)
+
+
+def deeper(at):
+    """MDR profiles one per cent too large."""
+
+    def wrong(*arguments):
+        values = at(*arguments)
+        return values._replace(g=WRONG * values.g)
+
+    return wrong
+
+
 def all_larger(original):
     """Every array of a mapping one per cent too large."""
     return lambda *arguments: {name: WRONG * values for name, values in original(*arguments).items()}
@@ -273,21 +288,9 @@ FAULTS = (
     ),
     SharedFault(
         "springs and profile of MDR",
-        "half-space transform",
-        swap("mdr.springs.half_space_profile:half_space_profile", times),
+        "MDR profile",
+        override("mdr.spring_bed:Springs", "at", deeper),
         ELASTIC,
-    ),
-    SharedFault(
-        "slopes of the half-space transform",
-        "g'",
-        swap("bem.layer_equation.profiles.half_space_slope:profile_slope", times),
-        ("cone",),
-    ),
-    SharedFault(
-        "Gauss rules and Chebyshev panels",
-        "Gauss weights",
-        swap("bem.polynomials.gauss_panels:gauss_nodes", heavier),
-        ("cone", "paraboloid"),
     ),
     SharedFault(
         "boundary elements on a grid",
@@ -299,7 +302,11 @@ FAULTS = (
     SharedFault(
         "interpolation of tabulated profiles",
         "slopes between the points",
-        both(HEIGHTS, wrong_method(f"{PROFILES}:Tabulated", "slope_at")),
+        both(
+            HEIGHTS,
+            wrong_method(f"{PROFILES}:Tabulated", "slope_at"),
+            override("mdr.profiles:PiecewiseTip", "__init__", steeper),
+        ),
         ("table",),
     ),
     *(

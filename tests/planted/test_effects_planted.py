@@ -8,7 +8,7 @@ import pytest
 from bem.adhesion.equilibrium_branch import EquilibriumBranch
 from contact import Adhesion, Detachment, Layer, Paraboloid, Scene
 from mdr import Mdr
-from mdr.adhesion import branch as adhesive_branch
+from mdr.adhesive_branch import Adhesive
 from mdr.closed_forms import flat_punch_restitution
 from mdr.impact import energies as impact_energies
 from mdr.impact import equations as impact_lanes
@@ -33,8 +33,8 @@ def test_youngs_modulus_for_the_contact_modulus(monkeypatch):
 
 
 def test_a_lost_two_pi_in_the_elongation(monkeypatch):
-    right = adhesive_branch.critical_elongation
-    monkeypatch.setattr(adhesive_branch, "critical_elongation", lambda *args: right(*args) / np.sqrt(2.0 * np.pi))
+    right = Adhesive.elongation
+    monkeypatch.setattr(Adhesive, "elongation", lambda *args: right(*args) / np.sqrt(2.0 * np.pi))
     with pytest.raises(AssertionError):
         adhesion.test_jkr_sphere("force", (9 * np.pi / 8) ** (1 / 3))
     with pytest.raises(AssertionError):

@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from bem.kernels import stack, tangential
+from bem.kernels import stack
 from bem.layer_equation.stick.frictionless_slip import frictionless_punch
 from bem.layer_equation.stick.growth import growth_table
 from cases.declare.registry import load_cases
@@ -84,13 +84,13 @@ def test_new_points_forget_that_they_slid_on_the_way(monkeypatch):
 
 def test_the_layer_pulls_inward_where_it_pushes_outward(monkeypatch):
     """The fast method's kernel of the radial displacement without its sign: the slope at vanishing friction notices."""
-    right = tangential.beyond_half_space
+    right = stack.StackKernel.beyond_half_space
 
     def wrong(*args):
         found = right(*args)
-        return dataclasses.replace(found, coupling=-0.9 * found.coupling)
+        return found._replace(uw=-0.9 * found.uw)
 
-    swap("bem.kernels.tangential:beyond_half_space", lambda _: wrong)(monkeypatch)
+    monkeypatch.setattr(stack.StackKernel, "beyond_half_space", wrong)
     frictionless_punch.cache_clear()
     with pytest.raises(CAUGHT):
         friction.test_slope_at_vanishing_friction_is_that_of_reciprocity(0.5, "bonded", 0.12)
@@ -110,8 +110,8 @@ def test_lower_layers_that_pull_where_they_push(monkeypatch):
     right = stack.StackKernel.beyond_half_space
 
     def wrong(kernel, wavenumber):
-        found, alone = right(kernel, wavenumber), tangential.beyond_half_space(wavenumber, "bonded", 0.5)
-        return dataclasses.replace(found, coupling=2.0 * alone.coupling - found.coupling)
+        found, alone = right(kernel, wavenumber), right(stack.StackKernel.single("bonded", 0.5), wavenumber)
+        return found._replace(uw=2.0 * alone.uw - found.uw)
 
     monkeypatch.setattr(stack.StackKernel, "beyond_half_space", wrong)
     growth_table.cache_clear()

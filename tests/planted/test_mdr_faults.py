@@ -3,31 +3,28 @@
 import numpy as np
 import pytest
 
-import bem.layer_equation.flat_punch_source
-import bem.layer_equation.fredholm_kernel
-from bem.kernels.layer import one_minus_kernel
-from bem.layer_equation.flat_punch_solution import IntegralEquationSolution
-from contact import NotConvergedError
-from mdr.springs.equivalent_system import EquivalentSystem
-from mdr.springs.surface_fields import ContactFields
-from tests.bem import test_integral_equation, test_integral_equation_method
+from bem.equation import Sizes
+from contact import ContactRadii, NotConvergedError
+from mdr.contact_surface import Surface
+from mdr.spring_bed import Springs
+from tests.bem import test_integral_equation_method
 from tests.mdr import test_method
-from tests.planted.planting import swap
+from tests.planted.planting import forget_computed, override, swap
 from tests.verification import test_flat_punch_literature, test_mdr_against_published_values
 
 
 @pytest.fixture(autouse=True)
 def fresh_flat_punches():
     """No solution from before the fault was planted, none from it afterwards."""
-    bem.layer_equation.flat_punch_source._solution.cache_clear()
+    forget_computed()
     yield
-    bem.layer_equation.flat_punch_source._solution.cache_clear()
+    forget_computed()
 
 
 def plant_mistyped_kolosov_constant(monkeypatch):
     """kappa = 3 - 2 nu in place of 3 - 4 nu is the kernel of a layer with half the Poisson's ratio."""
-    wrong = lambda q, support, nu: one_minus_kernel(q, support, nu / 2)  # noqa: E731
-    monkeypatch.setattr(bem.layer_equation.fredholm_kernel, "one_minus_kernel", wrong)
+    wrong = lambda right: lambda q, support, nu: right(q, support, nu / 2)  # noqa: E731
+    swap("bem.kernels.layer:one_minus_kernel", wrong)(monkeypatch)
 
 
 def test_mistyped_kolosov_constant_is_seen_by_the_literature(monkeypatch):
@@ -38,15 +35,17 @@ def test_mistyped_kolosov_constant_is_seen_by_the_literature(monkeypatch):
         test_flat_punch_literature.test_hayes_table(0.45)
 
 
-def test_mistyped_kolosov_constant_is_seen_by_the_direct_route(monkeypatch):
-    plant_mistyped_kolosov_constant(monkeypatch)
+def test_a_resolvent_counted_half_is_seen_by_the_direct_route(monkeypatch):
+    """The direct equation shares the kernel with MDR, and nothing else of the layer."""
+    half = lambda right: property(lambda self: right(self) / 2)  # noqa: E731
+    override("bem.equation:Radius", "resolvent", half)(monkeypatch)
     with pytest.raises(AssertionError):
         test_integral_equation_method.test_direct_solution_agrees_with_mdr("bonded", test_method.INDENTERS[0])
 
 
 def test_a_digit_wrong_in_the_eighth_place_is_seen(monkeypatch):
-    slightly = lambda q, support, nu: (1 + 1e-8) * one_minus_kernel(q, support, nu)  # noqa: E731
-    monkeypatch.setattr(bem.layer_equation.fredholm_kernel, "one_minus_kernel", slightly)
+    slightly = lambda right: lambda *arguments: (1 + 1e-8) * right(*arguments)  # noqa: E731
+    swap("bem.kernels.layer:one_minus_kernel", slightly)(monkeypatch)
     with pytest.raises(AssertionError):
         test_flat_punch_literature.test_contact_stiffness_to_ten_digits(0.5)
 
@@ -59,41 +58,51 @@ def test_youngs_modulus_for_contact_modulus_is_seen(monkeypatch):
 
 def test_lost_circumference_is_seen(monkeypatch):
     """A pressure that lacks 1/(2 pi r) no longer adds up to the force."""
-    whole = ContactFields._pressure_inside
-    monkeypatch.setattr(ContactFields, "_pressure_inside", lambda self, r, d: 2 * np.pi * r * whole(self, r, d))
+    override("mdr.contact_surface:Surface", "_inside", lambda right: lambda self, r: 2 * np.pi * r * right(self, r))(
+        monkeypatch
+    )
     with pytest.raises(AssertionError):
         test_method.test_the_pressure_carries_the_force("bonded", test_method.INDENTERS[0])
 
 
 def test_a_wrong_sign_of_the_layers_share_is_seen(monkeypatch):
-    def flipped(self, r, offset):
-        bracket = self._profile_integral(r, offset) + self.density.abel_integral(r)
-        return self.contact_modulus / np.pi * bracket
-
-    monkeypatch.setattr(ContactFields, "_pressure_inside", flipped)
+    image = Surface._image
+    monkeypatch.setattr(Surface, "_image", lambda self, u: -image(self, u))
     with pytest.raises(AssertionError):
         test_method.test_the_pressure_carries_the_force("bonded", test_method.INDENTERS[0])
 
 
 def test_contact_stiffness_in_place_of_spring_stiffness_is_seen(monkeypatch):
-    stiffness = IntegralEquationSolution.normalized_contact_stiffness
-    monkeypatch.setattr(IntegralEquationSolution, "normalized_spring_stiffness", stiffness)
-    with pytest.raises(AssertionError):
-        test_flat_punch_literature.test_spring_stiffness_is_the_derivative_of_the_contact_stiffness(0.5)
+    """y_1^2 = K/a."""
+    at = Springs.at
+
+    def wrong(self, radii, *excess):
+        values = at(self, radii, *excess)
+        return values._replace(g=values.g * values.y1 / np.sqrt(values.K / radii), y1=np.sqrt(values.K / radii))
+
+    monkeypatch.setattr(Springs, "at", wrong)
     with pytest.raises(AssertionError):
         test_mdr_against_published_values.test_truncated_cone_on_layers(0.5)
 
 
-def test_an_error_estimate_that_is_too_small_is_seen(monkeypatch):
-    monkeypatch.setattr(IntegralEquationSolution, "relative_error", lambda self, ratio: np.full(np.shape(ratio), 1e-16))
-    with pytest.raises(AssertionError):
-        test_integral_equation.test_stated_error_covers_the_true_one(
-            test_integral_equation.LAYERS[-1], test_integral_equation.IntegralEquation(nodes=16)
-        )
+@pytest.mark.parametrize(
+    "coarser",
+    [{"least": 3, "rate": 1.0}, {"nodes": 7}, {"reach": 9.0}],
+    ids=["polynomials", "wave numbers", "reach"],
+)
+def test_an_error_in_each_discretisation_is_stated(monkeypatch, coarser):
+    """Depth and force with one of the sizes too small err by no more than what is stated."""
+    exact = test_method.solve(test_method.LAYERS["bonded"], test_method.INDENTERS[0], ContactRadii([1e-3, 3e-3]))
+    monkeypatch.setattr(Sizes, "scaled", lambda self, factor: self._replace(**coarser))
+    rough = test_method.solve(test_method.LAYERS["bonded"], test_method.INDENTERS[0], ContactRadii([1e-3, 3e-3]))
+    for name in ("indentation_depth", "normal_force", "contact_stiffness"):
+        true = np.abs(getattr(rough, name) / getattr(exact, name) - 1)
+        assert true.max() > 1e-13
+        assert np.all(true <= rough.error_estimate[name] + exact.error_estimate[name]), name
 
 
 def test_a_nan_never_becomes_an_answer(monkeypatch):
-    stiffness = EquivalentSystem.contact_stiffness
-    monkeypatch.setattr(EquivalentSystem, "contact_stiffness", lambda self, a: np.nan * stiffness(self, a))
+    at = Springs.at
+    monkeypatch.setattr(Springs, "at", lambda *arguments: at(*arguments)._replace(K=np.full(1, np.nan)))
     with pytest.raises(NotConvergedError, match="nan"):
         test_method.test_hertz()

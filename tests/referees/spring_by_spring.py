@@ -12,13 +12,13 @@ from typing import Final
 import numpy as np
 
 from bem.direct import Sizes, transform
+from bem.flat_punch import IntegralEquation
 from bem.kernels.moduli import relaxation_of
-from bem.layer_equation.flat_punch_source import IntegralEquation
 from contact import DepthHistory, FlatPunch, HistoryPath, InvalidInput, Profile, Scene
 from contact.records.validation import FloatArray
 from contact.scene.effects import Relaxation, Viscoelasticity
-from mdr.springs.assembly import equivalent_system
 from mdr.springs.error_model import DEFAULT_ACCURACY
+from tests.bed import bed_of
 
 # Springs and steps per interval of two runs, whose difference tells the error. The numbers of springs are prime, so
 # that the contact edge lies elsewhere between them.
@@ -124,14 +124,14 @@ def _corners(indenter: Profile, end: float) -> FloatArray:
 def _gap(scene: Scene, x: FloatArray) -> FloatArray:
     if scene.layer.is_half_space:
         return transform(scene.indenter, x - scene.indenter.flat_radius, Sizes().slopes)
-    return equivalent_system(scene.layer, scene.indenter, float(x[-1]), IntegralEquation()).mdr_profile(x)
+    return bed_of(scene.layer, scene.indenter, IntegralEquation()).mdr_profile(x)
 
 
 def _stiffness(scene: Scene, a: FloatArray) -> FloatArray:
     if scene.layer.is_half_space:
         return np.asarray(2.0 * scene.layer.contact_modulus * a)
     positive = np.maximum(a, 1e-12 * a[-1])
-    found = equivalent_system(scene.layer, scene.indenter, float(a[-1]), IntegralEquation()).contact_stiffness(positive)
+    found = bed_of(scene.layer, scene.indenter, IntegralEquation()).contact_stiffness(positive)
     return np.where(a > 0.0, found, 0.0)
 
 

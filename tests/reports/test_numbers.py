@@ -7,7 +7,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from contact.files.units import prefix_for
+from contact.records.units import prefix_for
 from reports.words.numbers import NOT_FINITE, duration, measured, memory, small, with_prefix
 
 

@@ -19,10 +19,11 @@ from contact import (
     TruncatedParaboloid,
     UnsupportedSceneError,
 )
+from contact.scene.extent import first_radius
+from fem_reference.discrete_layer.indenter import shape
 from fem_reference.discrete_layer.settings import Discretisation
-from fem_reference.elastic.contact_search import FoundContact, find_contact
-from fem_reference.elastic.several_layers.lifting import contact_without_tension
-from fem_reference.elastic.surface_compliance import STRIP_CELLS
+from fem_reference.elastic.active_set import solve_complementarity
+from fem_reference.elastic.surface_compliance import STRIP_CELLS, condense, strip_mesh
 from mdr import Mdr
 from tests.stacked_scenes import stiff_on_soft
 
@@ -65,16 +66,43 @@ def random_scene(rng: np.random.Generator) -> AnyScene:
     return Scene(layer=layer, indenter=indenter, loading=IndentationDepths([depth]), beyond_small_strains=True)
 
 
-def unilateral(scene: AnyScene, depth: float, cells: int = STRIP_CELLS) -> FoundContact | None:
-    """What touches at the depth [m]; None where `find_contact` says that it is no disc."""
+@dataclass(frozen=True)
+class Touching:
+    """What touches on a strip without tension: whether it is a disc, its radius [m] and force / E* [m^2]."""
+
+    is_disc: bool
+    radius: float
+    force: float
+
+
+def on_strip(scene: AnyScene, reach: float, depth: float, cells: int) -> Touching:
+    """What touches at the depth [m] on a strip of a radius [m]."""
     settings, log = Discretisation(growth=0.8, edge_cell=1e-4), StageLog()
+    strip = condense(scene.layer, strip_mesh(scene.layer, reach, cells, scene.indenter.kinks, settings), "superlu", log)
+    quadrature, _ = strip.pressure_space.gauss(4)
+    inside = np.minimum(quadrature * reach, scene.indenter.max_radius)
+    profile = strip.weighted(shape(scene.indenter, inside).height / reach)
+    state = solve_complementarity(strip.matrix, depth / reach * strip.resultants - profile)
+    last = int(np.flatnonzero(state.active)[-1]) if state.active.any() else 0
+    is_disc = bool(state.active[: last + 1].all())
+    return Touching(is_disc, float(strip.radii[last]) * reach, float(strip.resultants @ state.pressure) * reach**2)
+
+
+def unilateral(scene: AnyScene, depth: float, cells: int = STRIP_CELLS) -> Touching | None:
+    """What touches at the depth [m], on a strip that fits it; None where nothing fits."""
     indenter: Profile = scene.indenter
     if isinstance(indenter, FlatPunch):
-        return contact_without_tension(scene, indenter.radius, depth, settings, log=log)
-    try:
-        return find_contact(scene, depth, settings, "superlu", log, cells=cells)
-    except UnsupportedSceneError:
-        return None
+        return on_strip(scene, indenter.radius, depth, cells)
+    reach = 1.6 * first_radius(indenter, lambda r: float(indenter.height(r)) >= depth)
+    for _ in range(12):
+        found = on_strip(scene, reach, depth, cells)
+        if found.radius > 0.9 * reach:
+            reach *= 1.8
+        elif found.radius < 0.25 * reach:
+            reach = max(1.6 * found.radius, 0.05 * reach)
+        else:
+            return found
+    return None
 
 
 def judge(scene: AnyScene) -> Verdict:
@@ -83,16 +111,16 @@ def judge(scene: AnyScene) -> Verdict:
         raise TypeError("scenes of this campaign prescribe depths")
     depth = float(scene.loading.values[0])
     found = unilateral(scene, depth)
-    shape = "disc" if found is not None and found.is_disc else "gap"
+    kind = "disc" if found is not None and found.is_disc else "gap"
     try:
         path = Mdr().solve(scene)
     except UnsupportedSceneError as refusal:
-        return Verdict(f"{shape}, refused", words=str(refusal))
-    if found is None and not isinstance(scene.indenter, FlatPunch):
+        return Verdict(f"{kind}, refused", words=str(refusal))
+    if kind == "gap" and not isinstance(scene.indenter, FlatPunch):
         # Cells wider than a thin film may see a gap where the pressure dips.
         found = unilateral(scene, depth, FINER * STRIP_CELLS)
-        shape = "disc" if found is not None and found.is_disc else "gap"
-    if found is None or shape == "gap":
+        kind = "disc" if found is not None and found.is_disc else "gap"
+    if found is None or kind == "gap":
         return Verdict("gap, answered")
-    force = found.force * found.radius**2 * scene.layer.contact_modulus
+    force = found.force * scene.layer.contact_modulus
     return Verdict("disc, answered", difference=abs(force / float(path.normal_force[0]) - 1))

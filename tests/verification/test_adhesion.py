@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from bem.layer_equation.flat_punch_source import IntegralEquation
+from bem.flat_punch import IntegralEquation
 from contact import (
     Adhesion,
     Cone,
@@ -24,7 +24,8 @@ from contact import (
     TruncatedCone,
     TruncatedParaboloid,
 )
-from mdr import Mdr, equivalent_system
+from mdr import Mdr
+from tests.bed import bed_of
 
 PUNCH = IntegralEquation()
 WORK = 1e-3  # dgamma [J/m^2] in units where E* = 1 Pa and lengths are metres
@@ -159,7 +160,7 @@ PROFILES = (
 def test_equilibrium_and_stability_are_those_of_the_energy(base, indenter):
     """First variation zero, second variation positive exactly where the path says stable: by differences of energy."""
     path = solve(base, indenter, work=1e-2)
-    springs = equivalent_system(base, indenter, 1.05 * float(path.contact_radius[0]), PUNCH)
+    springs = bed_of(base, indenter, PUNCH)
     for i in range(20, len(path) - 20, 30):
         a, depth, force = path.contact_radius[i], path.indentation_depth[i], path.normal_force[i]
         step = 1e-3 * a
@@ -190,7 +191,8 @@ def _energy(springs, a, depth, work):
 
 def _potential(springs, a, force, work):
     """Energy at prescribed force: the depth adjusts itself."""
-    depth = (force + float(springs.profile_moment(a))) / float(springs.contact_stiffness(a))
+    stiffness = float(springs.contact_stiffness(a))
+    depth = (force - float(springs.force(a, 0.0))) / stiffness
     return _energy(springs, a, depth, work) - force * depth
 
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from bem.layer_equation.flat_punch_source import IntegralEquation
 from contact import Cone, ElasticBase, LayerStack, Paraboloid, Sublayer
-from mdr.springs.assembly import equivalent_system
-from mdr.springs.beside_contact import _stiffens_downwards
+from mdr.admissible import _stiffens_downwards
+from mdr.radius_search import RadiusSearch
+from mdr.spring_bed import Springs
 
 
 def random_stack(rng):
@@ -38,7 +38,7 @@ def profiles_rise(count, seed):
         seen += 1
         indenter = (Cone(slope=0.1), Paraboloid(radius_of_curvature=1.0))[int(rng.integers(2))]
         # A falling profile raises SeveralContacts.
-        equivalent_system(layer, indenter, 4.0 * layer.surface.thickness, IntegralEquation())
+        RadiusSearch(Springs.of(layer, indenter), may_fall=True).refuse_falls(4.0 * layer.surface.thickness)
 
 
 def test_profiles_rise_where_moduli_rise_downwards():

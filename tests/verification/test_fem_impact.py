@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
 
-from bem.layer_equation.flat_punch_source import IntegralEquation
+from bem.flat_punch import IntegralEquation
 from contact import ImpactHistory, Layer, Scene
 from fem_reference import Fem
 from mdr.impact.solver import solve_impact

@@ -7,7 +7,7 @@ the literature are used within their own accuracy.
 import numpy as np
 import pytest
 
-from bem.layer_equation.flat_punch_source import IntegralEquation
+from bem.flat_punch import IntegralEquation
 from contact import Layer
 
 SOURCE = IntegralEquation()
@@ -40,14 +40,14 @@ PRESSURE = {
 
 @pytest.mark.parametrize("layer", TWELVE_DIGITS)
 def test_contact_stiffness_to_ten_digits(layer):
-    computed = SOURCE.solution(LAYERS[layer], 2.0).normalized_contact_stiffness([0.2, 1.0, 2.0])
+    computed = SOURCE.punch(LAYERS[layer]).normalized_contact_stiffness([0.2, 1.0, 2.0])
     np.testing.assert_allclose(computed, TWELVE_DIGITS[layer], rtol=0, atol=1e-11)
 
 
 @pytest.mark.parametrize("nu", HAYES)
 def test_hayes_table(nu):
     ratios = np.array(list(HAYES[nu]))
-    computed = SOURCE.solution(BONDED[nu], 10.0).normalized_contact_stiffness(ratios)
+    computed = SOURCE.punch(BONDED[nu]).normalized_contact_stiffness(ratios)
     assert np.all(np.abs(np.array(list(HAYES[nu].values())) / computed - 1) < 1e-3 + 8e-3 * ratios)
 
 
@@ -60,15 +60,15 @@ def test_hermanowicz_polynomials():
     short = [0.0, 0.7426462444663599, 0.5708600467411756, 0.008619952995014581, -0.1799716509234812, 0.0574929480459991]
     long = [-0.3838553953270864, 1.553893809221951, 0.00138818040746098, -3.107802923772486e-05]
     unbonded = 1 + np.where(t <= 1.65, np.polyval(short[::-1], t), np.polyval(long[::-1], t))
-    np.testing.assert_allclose(SOURCE.solution(LAYERS[0.5], 30.0).normalized_contact_stiffness(t), bonded, rtol=2e-4)
+    np.testing.assert_allclose(SOURCE.punch(LAYERS[0.5]).normalized_contact_stiffness(t), bonded, rtol=2e-4)
     layer = LAYERS["unbonded"]
-    np.testing.assert_allclose(SOURCE.solution(layer, 30.0).normalized_contact_stiffness(t), unbonded, rtol=9e-4)
+    np.testing.assert_allclose(SOURCE.punch(layer).normalized_contact_stiffness(t), unbonded, rtol=9e-4)
 
 
 @pytest.mark.parametrize("layer", LAYERS)
 def test_spring_stiffness_is_the_derivative_of_the_contact_stiffness(layer):
     """c_bar = d(xi k_bar)/dxi, Eq. (10): y1^2 against sixth-order differences of k_bar, which err by about 1e-11."""
-    solution, xi, step = SOURCE.solution(LAYERS[layer], 20.0), np.linspace(0.1, 19.0, 200), 0.01
+    solution, xi, step = SOURCE.punch(LAYERS[layer]), np.linspace(0.1, 19.0, 200), 0.01
     area = {k: (xi + k * step) * solution.normalized_contact_stiffness(xi + k * step) for k in range(-3, 4)}
     slope = sum(c * (area[k] - area[-k]) for k, c in [(1, 45), (2, -9), (3, 1)]) / (60 * step)
     np.testing.assert_allclose(solution.normalized_spring_stiffness(xi), slope, rtol=1e-10)
@@ -76,14 +76,14 @@ def test_spring_stiffness_is_the_derivative_of_the_contact_stiffness(layer):
 
 def test_edge_density_at_printed_ratios():
     """c_bar, bonded nu = 0.5, as the square of the density at the edge."""
-    computed = SOURCE.solution(LAYERS[0.5], 3.0).normalized_spring_stiffness([0.3, 1.0, 3.0])
+    computed = SOURCE.punch(LAYERS[0.5]).normalized_spring_stiffness([0.3, 1.0, 3.0])
     np.testing.assert_allclose(computed, [2.070687, 7.684546, 51.276522], atol=0.51e-6)
 
 
 @pytest.mark.parametrize("ratio", PRESSURE)
 def test_pressure_under_the_punch(ratio):
     rho = np.array([0.0, 0.2, 0.4, 0.6, 0.8, 0.9, 0.95])
-    computed = SOURCE.solution(LAYERS[0.5], ratio).smooth_pressure(rho, ratio) / np.sqrt(1 - rho**2)
+    computed = SOURCE.punch(LAYERS[0.5]).smooth_pressure(rho, ratio) / np.sqrt(1 - rho**2)
     np.testing.assert_allclose(computed, PRESSURE[ratio], rtol=0, atol=0.51e-5)
 
 
@@ -93,13 +93,13 @@ def test_mean_pressure_is_one_half_in_its_normalisation(layer):
     x, w = np.polynomial.legendre.leggauss(80)
     theta = np.pi / 4 * (1 + x)
     for ratio in (1e-3, 0.3, 1.7, 12.4):
-        q = SOURCE.solution(LAYERS[layer], 20.0).smooth_pressure(np.sin(theta), ratio)
+        q = SOURCE.punch(LAYERS[layer]).smooth_pressure(np.sin(theta), ratio)
         assert np.sum(q * np.sin(theta) * w) * np.pi / 4 == pytest.approx(0.5, rel=1e-12, abs=0.0)
 
 
 def test_the_centre_becomes_the_maximum_at_the_known_ratio():
     """p is flat in the middle (p'' = 0 at r = 0) at a/h = 0.788, bonded nu = 0.5."""
-    solution, rho = SOURCE.solution(LAYERS[0.5], 1.0), np.array([0.0, 0.03])
+    solution, rho = SOURCE.punch(LAYERS[0.5]), np.array([0.0, 0.03])
 
     def curvature(ratio):
         middle, beside = solution.smooth_pressure(rho, ratio) / np.sqrt(1 - rho**2)

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.special import gamma
 
+from bem.flat_punch import IntegralEquation
 from bem.kernels.moduli import relaxation_of
-from bem.layer_equation.flat_punch_source import IntegralEquation
 from contact import (
     Cone,
     FlatPunch,
@@ -22,9 +22,10 @@ from contact import (
     TruncatedCone,
     TruncatedParaboloid,
 )
-from mdr import Mdr, equivalent_system
+from mdr import Mdr
 from mdr.closed_forms.flat_punch_restitution import damping_ratio, kelvin_voigt_restitution
 from mdr.impact.solver import impact_batch, solve_impact
+from tests.bed import bed_of
 from tests.mdr.impact_explicit import explicit_impact
 from tests.mdr.viscoelastic_scenes import (
     GLASSY_BRANCH,
@@ -148,7 +149,7 @@ def test_the_papers_explicit_springs_agree(thickness):
     """First order: halving both steps halves the difference, and Richardson's value agrees far closer."""
     scene, fine = figure_12(thickness), history(figure_12(thickness), 1e-10)
     radius = 1.05 * fine.peak_contact_radius
-    springs = equivalent_system(scene.layer, scene.indenter, radius, PUNCH)
+    springs = bed_of(scene.layer, scene.indenter, PUNCH)
 
     def explicit(count):
         return explicit_impact(
@@ -179,7 +180,7 @@ def test_a_layer_that_softens_a_thousandfold_on_the_way_in():
     )
     fine = history(scene)
     radius = 1.05 * fine.peak_contact_radius
-    springs = equivalent_system(scene.layer, scene.indenter, radius, PUNCH)
+    springs = bed_of(scene.layer, scene.indenter, PUNCH)
     coarse, middle = (
         explicit_impact(
             springs, relaxation_of(scene), mass=0.1, velocity=0.05, radius=radius, count=count, time_step=0.1 / count
@@ -310,7 +311,7 @@ def test_batches_are_what_single_impacts_are():
 def test_flat_punch_on_a_layer_follows_its_closed_form():
     layer = incompressible(1e-3, 1e6)
     punch = FlatPunch(radius=1.5e-3)
-    stiffness = float(equivalent_system(layer, punch, punch.radius, PUNCH).contact_stiffness(punch.radius))
+    stiffness = float(bed_of(layer, punch, PUNCH).contact_stiffness(punch.radius))
     scene = kelvin_voigt_punch(0.0).replace(
         layer=layer, indenter=punch, effects=(kelvin_voigt_punch(0.0).effects[0].replace(
             shear_modulus=layer.shear_modulus, viscosity=0.3 * 2.0 * layer.shear_modulus * np.sqrt(0.01 / stiffness)
@@ -328,7 +329,7 @@ def test_a_dashpot_that_stops_a_blunt_cone_far_below_what_its_table_spans(viscos
     cone, model = TruncatedCone(flat_radius=flat, slope=0.1), KelvinVoigt(shear_modulus=1.0, viscosity=viscosity)
     speed, mass = float(cone.height(np.array([flat * (1 + 1e-6)]))[0]), 1.2
     found = history(Scene(layer=layer, indenter=cone, loading=Impact(mass=mass, velocity=speed), effects=(model,)))
-    stiffness = float(equivalent_system(layer, FlatPunch(radius=flat), flat, PUNCH).contact_stiffness(flat))
+    stiffness = float(bed_of(layer, FlatPunch(radius=flat), PUNCH).contact_stiffness(flat))
     fast = -0.5 * (viscosity + np.sqrt(viscosity**2 - 4.0 * mass / stiffness)) * stiffness / mass
     slow = stiffness / mass / fast
     turn = np.log(fast / slow) / (slow - fast)

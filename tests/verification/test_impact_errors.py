@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from bem.layer_equation.flat_punch_source import IntegralEquation
+from bem.flat_punch import IntegralEquation
 from cases.declare.quantities import IMPACT_NUMBERS
 from contact import Impact, Layer, PowerLaw, Scene
 from mdr.impact.solver import impact_batch

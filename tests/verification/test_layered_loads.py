@@ -1,14 +1,11 @@
 """Strains that another program prints: a road of three layers under a wheel, with and without slip below the first."""
 
-import math
-
 import numpy as np
 import pytest
-from scipy.special import j1
 
-from bem.kernels.inside import place_of
-from bem.kernels.stack import Sheet, StackKernel
-from bem.layer_equation.inside.layer_part import layer_fields
+from contact import ElasticBase, LayerStack, Sublayer
+from mdr.inside import Fields
+from tests.mdr.test_inside import UnderUniformPressure, UniformPressure
 
 # Benchmark AMADEUS (Belgian Road Research Centre 2000): thicknesses and radius in mm, moduli and pressure in MPa.
 THICKNESSES, MODULI, RATIOS = (260.0, 500.0), (5000.0, 200.0, 50.0), (0.35, 0.40, 0.45)
@@ -23,23 +20,17 @@ PRINTED = {
 
 def strains(r, z, *, below, slips):
     """Radial and axial strain at a point just above or below an interface."""
-    top = THICKNESSES[0]
-    shear = np.array(MODULI) / (2 * (1 + np.array(RATIOS)))
-    faces = (slips, False)
-    sheets = tuple(
-        Sheet(h / top, G / shear[0], nu, slip)
-        for h, G, nu, slip in zip(THICKNESSES, shear, RATIOS, faces, strict=False)
+    sublayers = tuple(
+        Sublayer(thickness=h, youngs_modulus=E, poissons_ratio=nu)
+        for h, E, nu in zip(THICKNESSES, MODULI, RATIOS, strict=False)
     )
-    kernel = StackKernel(sheets, Sheet(math.inf, shear[2] / shear[0], RATIOS[2], slips_below=False))
-    depth = z / top * (1.0 + (1e-13 if below else -1e-13))
-    sheet = place_of(kernel, depth).sheet
-    assert sheet == (0 if not below else 1 if z == top else 2)
-    load = lambda k: RADIUS / top * j1(k * RADIUS / top) / k  # noqa: E731
-    found = layer_fields(
-        kernel, load, np.array([r / top]), np.array([depth]), beyond_half_space=False, radius=RADIUS / top
-    )
-    hoop = found["hoop_strain"][0]
-    rr, tt, zz = found["s1"][0] - hoop, found["s2"][0] + hoop, found["axial_stress"][0]
+    base = ElasticBase(youngs_modulus=MODULI[2], poissons_ratio=RATIOS[2], interface="bonded")
+    layer = LayerStack(sublayers=sublayers, interfaces=("unbonded" if slips else "bonded",), support=base)
+    sheet = 0 if not below else 1 if z == THICKNESSES[0] else 2
+    body = UnderUniformPressure(layer, UniformPressure(layer, RADIUS))
+    depth = z * (1.0 + (1e-13 if below else -1e-13))
+    found = Fields(*body.at(np.array([r]), np.array([depth]))[0][:, 0])
+    rr, tt, zz = found.radial_stress, found.hoop_stress, found.axial_stress
     E, nu = MODULI[sheet], RATIOS[sheet]
     return [PRESSURE / E * (own - nu * (rr + tt + zz - own)) * 1e6 for own in (rr, zz)]
 

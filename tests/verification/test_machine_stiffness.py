@@ -7,7 +7,7 @@ import pytest
 from scipy.optimize import brentq
 
 from bem import Bem
-from bem.layer_equation.flat_punch_source import IntegralEquation
+from bem.flat_punch import IntegralEquation
 from contact import (
     Adhesion,
     Cone,

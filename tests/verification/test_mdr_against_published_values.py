@@ -4,9 +4,9 @@ import mpmath
 import numpy as np
 import pytest
 
-from bem.layer_equation.flat_punch_source import IntegralEquation
+from bem.flat_punch import IntegralEquation
 from contact import Layer, Paraboloid, TruncatedCone
-from mdr.springs.assembly import equivalent_system
+from tests.bed import bed_of
 
 LAYER_OF = {
     nu: Layer(thickness=1.0, youngs_modulus=1 - nu**2, poissons_ratio=nu) for nu in (0.3, 0.4, 0.45, 0.5)
@@ -45,7 +45,7 @@ PARABOLOID = {
 def test_truncated_cone_on_layers(layer):
     for ratio, depth, force in TRUNCATED_CONE[layer]:
         indenter = TruncatedCone(flat_radius=ratio / 2, slope=1.0)
-        system = equivalent_system(LAYER_OF[layer], indenter, ratio, IntegralEquation())
+        system = bed_of(LAYER_OF[layer], indenter, IntegralEquation())
         assert system.mdr_profile(ratio) / ratio == pytest.approx(depth, abs=0.51e-6)
         assert system.elastic_force(ratio) / ratio**2 == pytest.approx(force, abs=0.51e-6)
 
@@ -53,7 +53,7 @@ def test_truncated_cone_on_layers(layer):
 @pytest.mark.parametrize("layer", PARABOLOID)
 def test_paraboloid_on_layers(layer):
     for ratio, depth, force, digit in PARABOLOID[layer]:
-        system = equivalent_system(LAYER_OF[layer], Paraboloid(radius_of_curvature=1.0), ratio, IntegralEquation())
+        system = bed_of(LAYER_OF[layer], Paraboloid(radius_of_curvature=1.0), IntegralEquation())
         assert system.mdr_profile(ratio) == pytest.approx(depth, abs=0.51 * (1e-5 if depth > 30 else 1e-6))
         assert system.elastic_force(ratio) == pytest.approx(force, abs=0.51 * digit)
 
@@ -66,7 +66,7 @@ def test_truncated_cone_on_the_half_space(flat_over_contact):
         depth = mpmath.acos(b)
         force = depth + b * mpmath.sqrt(1 - b**2)
     indenter = TruncatedCone(flat_radius=flat_over_contact, slope=1.0)
-    system = equivalent_system(HALF_SPACE, indenter, 1.0, IntegralEquation())
+    system = bed_of(HALF_SPACE, indenter, IntegralEquation())
     assert system.mdr_profile(1.0) == pytest.approx(float(depth), rel=1e-14, abs=0.0)
     assert system.elastic_force(1.0) == pytest.approx(float(force), rel=1e-14, abs=0.0)
 
@@ -74,5 +74,5 @@ def test_truncated_cone_on_the_half_space(flat_over_contact):
 def test_printed_half_space_values():
     """The same as printed: b/a, delta/(a tan), F/(E* a^2 tan)."""
     for b, depth, force in [(0.25, 1.318116, 1.560178), (0.5, 1.047198, 1.480210), (0.9, 0.451027, 0.843328)]:
-        system = equivalent_system(HALF_SPACE, TruncatedCone(flat_radius=b, slope=1.0), 1.0, IntegralEquation())
+        system = bed_of(HALF_SPACE, TruncatedCone(flat_radius=b, slope=1.0), IntegralEquation())
         np.testing.assert_allclose([system.mdr_profile(1.0), system.elastic_force(1.0)], [depth, force], atol=0.51e-6)

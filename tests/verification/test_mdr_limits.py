@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from bem.layer_equation.flat_punch_source import IntegralEquation
+from bem.flat_punch import IntegralEquation
 from bem.layer_equation.fredholm_kernel import FredholmKernel
 from contact import Cone, InvalidInput, Layer, Paraboloid, TruncatedCone
-from mdr import equivalent_system
 from mdr.closed_forms.asymptotic import foundation_modulus, is_film, thin_profile, thin_spring_stiffness
 from mdr.closed_forms.truncated_cone import thin_cone_force, thin_cone_pressure, thin_cone_profile
+from tests.bed import bed_of
 from tests.verification.power_law import stiffness_exponent, stiffness_prefactor
 
 SOURCE = IntegralEquation(nodes=16)  # 2e-9 by its own estimate, far below what a limit at finite a/h can show
@@ -52,7 +52,7 @@ def test_thick_layers_deviate_linearly_with_the_known_slope(name):
     layer = LAYERS[name]
     slope = 2 / np.pi * float(FredholmKernel.of_layer(layer.support, layer.poissons_ratio)(0.0))
     ratios = np.array([4e-3, 2e-3, 1e-3])
-    deviation = SOURCE.solution(layer, 1.0).normalized_contact_stiffness(ratios) - 1
+    deviation = SOURCE.punch(layer).normalized_contact_stiffness(ratios) - 1
     remainders = deviation / (slope * ratios) - 1
     np.testing.assert_allclose(np.log2(remainders[:-1] / remainders[1:]), 1, atol=0.02)
     assert abs(remainders[-1]) < 2e-3
@@ -75,7 +75,7 @@ def test_slopes_of_thick_layers():
 def test_contact_stiffness_of_thin_layers(name):
     """Eqs. (16), (18), (21): first order in h/a."""
     layer = LAYERS[name]
-    exact = SOURCE.solution(layer, 80.0).normalized_contact_stiffness(RATIOS) * 2 * layer.contact_modulus * RATIOS
+    exact = SOURCE.punch(layer).normalized_contact_stiffness(RATIOS) * 2 * layer.contact_modulus * RATIOS
     errors = thin_contact_stiffness(layer, RATIOS) / exact - 1
     assert_first_order(errors)
     assert abs(errors[-1]) < 0.08
@@ -89,7 +89,7 @@ def test_thin_layer_errors_as_tabulated():
         "bonded 0.3": (-2.4, -1.2, -0.5),
     }.items():
         layer, ratios = LAYERS[name], np.array([10.0, 20.0, 50.0])
-        exact = SOURCE.solution(layer, 50.0).normalized_contact_stiffness(ratios) * 2 * layer.contact_modulus * ratios
+        exact = SOURCE.punch(layer).normalized_contact_stiffness(ratios) * 2 * layer.contact_modulus * ratios
         errors = 100 * (thin_contact_stiffness(layer, ratios) / exact - 1)
         np.testing.assert_allclose(errors, percent, atol=0.051)
 
@@ -106,7 +106,7 @@ def test_spring_stiffness_of_thin_layers_is_half_the_derivative(name):
 def test_paraboloid_depth_of_thin_layers(name):
     """Table 1: a^2/(2R), or a^2/(4R) for the bonded incompressible layer; first order in h/a."""
     layer = LAYERS[name]
-    system = equivalent_system(layer, Paraboloid(radius_of_curvature=1.0), 80.0, SOURCE)
+    system = bed_of(layer, Paraboloid(radius_of_curvature=1.0), SOURCE)
     limit = RATIOS**2 / (4 if name == "bonded 0.5" else 2)
     np.testing.assert_allclose(thin_profile(layer, Paraboloid(radius_of_curvature=1.0), RATIOS), limit, rtol=1e-14)
     errors = system.mdr_profile(RATIOS) / limit - 1
@@ -120,7 +120,7 @@ def test_truncated_cone_on_thin_layers(name):
     layer, depth_errors, force_errors = LAYERS[name], [], []
     for a in RATIOS:
         cone = TruncatedCone(flat_radius=a / 2, slope=0.1)
-        system = equivalent_system(layer, cone, float(a), SOURCE)
+        system = bed_of(layer, cone, SOURCE)
         depth_errors.append(float(system.mdr_profile(a) / thin_cone_profile(layer, cone, a)) - 1)
         force_errors.append(float(system.elastic_force(a) / thin_cone_force(layer, cone, a)) - 1)
     for errors in (np.array(depth_errors), np.array(force_errors)):
@@ -150,7 +150,7 @@ def test_mean_height_agrees_with_the_closed_form_of_the_cone():
 @pytest.mark.parametrize("name", LAYERS)
 def test_flat_punch_pressure_of_thin_layers(name):
     """Eq. (19) and the constant, in the middle of the punch: first order in h/a."""
-    solution, rho = SOURCE.solution(LAYERS[name], 80.0), np.array([0.0, 0.5])
+    solution, rho = SOURCE.punch(LAYERS[name]), np.array([0.0, 0.5])
     limit = thin_flat_punch_pressure(LAYERS[name], rho)
     errors = np.array([solution.smooth_pressure(rho, a) / np.sqrt(1 - rho**2) / limit - 1 for a in RATIOS])
     assert np.all(np.abs(errors[-1]) < 0.08)
@@ -161,7 +161,7 @@ def test_exponent_and_prefactor_of_the_stiffness_law():
     """m(1) as computed by others from the radius-by-radius integral equation; limits 0, 1 and 3 of Fig. 5."""
     for name, m in {"unbonded": 0.483722, "bonded 0.3": 0.544110, "bonded 0.5": 0.787580}.items():
         assert float(stiffness_exponent(LAYERS[name], 1.0, SOURCE)) == pytest.approx(m, abs=0.51e-6)
-        k = SOURCE.solution(LAYERS[name], 1.0).normalized_contact_stiffness(1.0)
+        k = SOURCE.punch(LAYERS[name]).normalized_contact_stiffness(1.0)
         assert float(stiffness_prefactor(LAYERS[name], 1.0, SOURCE)) == pytest.approx(float(k), rel=1e-13, abs=0.0)
     for name, limit in {"unbonded": 1.0, "bonded 0.3": 1.0, "bonded 0.5": 3.0}.items():
         thick, thin = stiffness_exponent(LAYERS[name], np.array([1e-4, 80.0]), SOURCE)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bem.layer_equation.flat_punch_source import IntegralEquation
+from bem.flat_punch import IntegralEquation
 from contact import ContactRadii, ElasticBase, LayerStack, Paraboloid, Scene, Sublayer
 from mdr import Mdr
 

@@ -24,7 +24,8 @@ from contact import (
     TruncatedCone,
     UnsupportedSceneError,
 )
-from mdr import Mdr, equivalent_system
+from mdr import Mdr
+from tests.bed import bed_of
 from tests.mdr.viscoelastic_scenes import GLASSY_BRANCH, LONG_TERM, RELAXATION_TIME, figure_12, incompressible
 
 TOTAL = GLASSY_BRANCH + LONG_TERM
@@ -154,7 +155,7 @@ def test_flat_punch_oscillates_with_the_complex_modulus(frequency):
     depth = 1e-5 + np.concatenate([[0.0], 1e-6 * np.sin(omega * sway)])
     answer = solve(DepthHistory(time=time, depth=depth), thickness=1e-3, indenter=punch)
     layer = incompressible(1e-3, TOTAL)
-    stiffness = float(equivalent_system(layer, punch, 1e-3, Mdr().flat_punch).contact_stiffness(1e-3)) / TOTAL
+    stiffness = float(bed_of(layer, punch, Mdr().flat_punch).contact_stiffness(1e-3)) / TOTAL
     modulus = LONG_TERM + GLASSY_BRANCH * 1j * omega * RELAXATION_TIME / (1.0 + 1j * omega * RELAXATION_TIME)
     last = slice(-256, None)
     expected = stiffness * (1e-5 * LONG_TERM + 1e-6 * np.imag(modulus * np.exp(1j * omega * sway[last])))
@@ -185,7 +186,7 @@ def brute_force(thickness, time, depth, count=160, substeps=400):
     """Explicit Euler steps of every spring, free ones included: slow, of first order, from Eqs. (51) and (52) alone."""
     layer = incompressible(thickness, TOTAL)
     radius = 1.02 * np.sqrt(CURVATURE * depth.max()) * (1.0 if np.isinf(thickness) else 1.5)
-    springs = equivalent_system(layer, Paraboloid(radius_of_curvature=CURVATURE), radius, Mdr().flat_punch)
+    springs = bed_of(layer, Paraboloid(radius_of_curvature=CURVATURE), Mdr().flat_punch)
     x = radius * (np.arange(count) + 0.5) / count
     weight, profile = 2.0 * radius / count * springs.spring_stiffness(x), springs.mdr_profile(x)
     u, inner, forces = np.zeros(count), np.zeros(count), [0.0]
@@ -321,7 +322,7 @@ def test_a_front_just_inside_a_breakpoint():
 def test_flat_punch_on_a_kelvin_voigt_layer():
     """F = k_N (delta + tau v) on a ramp of depth; under a steady force delta = F/k_N (1 - exp(-t/tau))."""
     punch, layer = FlatPunch(radius=1e-3), incompressible(1e-3, TOTAL)
-    stiffness = float(equivalent_system(layer, punch, 1e-3, Mdr().flat_punch).contact_stiffness(1e-3))
+    stiffness = float(bed_of(layer, punch, Mdr().flat_punch).contact_stiffness(1e-3))
     time = np.linspace(0.0, 4e-3, 9)
     ramp = solve(DepthHistory(time=time, depth=0.01 * time), thickness=1e-3, model=KELVIN_VOIGT, indenter=punch)
     np.testing.assert_allclose(ramp.normal_force[1:], stiffness * 0.01 * (time[1:] + RELAXATION_TIME), rtol=1e-12)

@@ -8,22 +8,22 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from scipy.special import j0, j1
 
-from bem.kernels.graded import GradedKernel, logarithmic_slope
+from bem.kernels.graded import GradedDescent, GradedKernel
 from bem.kernels.inside import Transfer, half_space_transfer
 from bem.layer_equation.inside.errors import LEFT_OUT
 from bem.layer_equation.inside.fields import Body, sizes_of_displacement
-from bem.layer_equation.inside.graded_transfer import FADED, GradedTransfer
 from bem.layer_equation.inside.half_space_part import Points
 from bem.layer_equation.inside.layer_part import NAMES
 from bem.polynomials.gauss_panels import PANEL_NODES, gauss_nodes
 from contact.answer.inside import SURFACE
 from contact.records.validation import FloatArray
 
+# Depths times k up to which tractions are followed: exp(-40) is below all digits.
+FADED = 40.0
 # Largest wavenumber times the contact radius plus the distance from the axis. At the edge of a paraboloid's contact
 # what is left out of stresses is 1e-5 of the mean pressure, elsewhere 1e-8; four times as much takes 16 times as long.
 _LARGEST = 1500.0
@@ -55,7 +55,7 @@ class GradedBody(Body):
         found, layer = super().at(points), self.surface.layer
         z = np.maximum(points.z, SURFACE * self.density.radius)
         added = {name: np.zeros_like(z) for name in (*NAMES, *LEFT_OUT)}
-        octaves = np.floor(np.log2(np.maximum(z, FADED / self._transfer.largest))).astype(int)
+        octaves = np.floor(np.log2(np.maximum(z, FADED * self.density.radius / _LARGEST))).astype(int)
         for octave in np.unique(octaves):
             some = octaves == octave
             for name, values in self._added(points.r[some], z[some]).items():
@@ -66,10 +66,6 @@ class GradedBody(Body):
         total["displacement_terms"] = sizes_of_displacement(points.r, found, added)
         return found | total | {"modulus": np.asarray(modulus)}
 
-    @cached_property
-    def _transfer(self) -> GradedTransfer:
-        return GradedTransfer(self.surface, _LARGEST / self.density.radius)
-
     def _added(self, r: FloatArray, z: FloatArray) -> dict[str, FloatArray]:
         """At depths within one octave."""
         reach = self.density.radius + float(r.max())
@@ -78,10 +74,11 @@ class GradedBody(Body):
         load = w * k * self.density.transform(k)
         last = k > 0.5 * k[-1] if faded > largest else None
         depths, which = np.unique(z, return_inverse=True)
+        descent = self.surface.descent(k)
         rows, values, left = max(1, _BLOCK // k.size), np.empty((len(NAMES), r.size)), np.zeros((len(NAMES), r.size))
         for number, depth in enumerate(depths):
             own = np.flatnonzero(which == number)
-            terms = self._terms(k, float(depth)) * load
+            terms = self._terms(descent, float(depth)) * load
             for start in range(0, own.size, rows):
                 some = own[start : start + rows]
                 waves = _waves_at(np.multiply.outer(r[some], k), r[some], k)
@@ -99,12 +96,11 @@ class GradedBody(Body):
         starts, widths = np.array(ends[:-1]), np.diff(ends)
         return (starts[:, None] + widths[:, None] * u).ravel(), (widths[:, None] * w).ravel()
 
-    def _terms(self, k: FloatArray, depth: float) -> FloatArray:
+    def _terms(self, descent: GradedDescent, depth: float) -> FloatArray:
         """What multiplies the Bessel functions beyond the half-space, shape (9, k)."""
-        layer, z = self.surface.layer, np.array([depth])
-        nu, turns = float(layer.ratio_at(z)[0]), float(layer.ratio_slope(z)[0])
-        stiffens = float(logarithmic_slope(layer, z)[0])
-        own = _of_material(self._transfer.at(k, depth), k, nu, stiffens, turns)
+        z, k = np.array([depth]), descent.k
+        _, nu, stiffens, turns, _ = (float(np.ravel(one)[0]) for one in descent.material(0, z))
+        own = _of_material(Transfer(*(one[0] for one in descent.at(0, z))), k, nu, stiffens, turns)
         return own - _of_material(half_space_transfer(k * depth, self.poissons_ratio), k, self.poissons_ratio, 0.0, 0.0)
 
 

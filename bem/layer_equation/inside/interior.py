@@ -10,7 +10,7 @@ import numpy as np
 
 from bem.kernels.graded import GradedKernel
 from bem.kernels.moduli import contact_modulus
-from bem.kernels.of_layer import stack_of
+from bem.kernels.of_layer import stack_kernel
 from bem.layer_equation.inside.density import Density
 from bem.layer_equation.inside.errors import LEFT_OUT, Magnitudes, left_by, stated_errors
 from bem.layer_equation.inside.fields import Body
@@ -137,7 +137,7 @@ class ContactInterior:
             from bem.layer_equation.inside.graded_part import GradedBody  # noqa: PLC0415
 
             return GradedBody(None, nu, self.density, surface=GradedKernel(layer.in_own_units()))
-        return Body(None if layer.is_half_space else stack_of(layer), nu, self.density)
+        return Body(None if layer.is_half_space else stack_kernel(layer), nu, self.density)
 
     def distances(self, radius: FloatArray) -> FloatArray:
         """Ends of the density's pieces minus radii [m], by the unit, shape (pieces + 1, n).

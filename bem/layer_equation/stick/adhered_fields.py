@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import j0, j1
 
-from bem.kernels.tangential import TangentialKernel
+from bem.kernels.stack import Symmetric as TangentialKernel
 from bem.layer_equation.stick.adhered_punch import AdheredPunch, BasisTransforms, basis_transforms
 from contact.records.validation import FloatArray
 
@@ -64,7 +64,7 @@ class AdheredFields:
         of = self.punch.material
         transforms, extra = self._layer(radius)
         P, Q = self.punch.coefficients @ transforms.cosine, self.punch.coefficients @ transforms.sine
-        density = transforms.weights * (extra.normal * P + extra.coupling * Q)
+        density = transforms.weights * (extra.ww * P + extra.uw * Q)
         waves = j0(np.multiply.outer(radius, transforms.wavenumber)) @ density
         inner, _ = self._inner_integrals(radius)
         outer, _ = self._outer_integrals(radius)
@@ -76,7 +76,7 @@ class AdheredFields:
         radius = np.maximum(radius, _SMALLEST_RADIUS)
         transforms, extra = self._layer(radius)
         P, Q = self.punch.coefficients @ transforms.cosine, self.punch.coefficients @ transforms.sine
-        density = transforms.weights * (extra.radial * Q + extra.coupling * P)
+        density = transforms.weights * (extra.uu * Q + extra.uw * P)
         waves = j1(np.multiply.outer(radius, transforms.wavenumber)) @ density
         _, inner = self._inner_integrals(radius)
         _, outer = self._outer_integrals(radius)
@@ -114,8 +114,8 @@ class AdheredFields:
         transforms, extra = self._layer(s)
         P, Q = self.punch.coefficients @ transforms.cosine, self.punch.coefficients @ transforms.sine
         angle, w = np.multiply.outer(s, transforms.wavenumber), 2.0 / math.pi * transforms.weights
-        normal_waves = np.cos(angle) @ (w * (extra.normal * P + extra.coupling * Q))
-        waves = normal_waves + 1j * np.sin(angle) @ (w * (extra.radial * Q + extra.coupling * P))
+        normal_waves = np.cos(angle) @ (w * (extra.ww * P + extra.uw * Q))
+        waves = normal_waves + 1j * np.sin(angle) @ (w * (extra.uu * Q + extra.uw * P))
         turned: NDArray[np.complex128] = np.exp(-1j * of.charge * np.log((s + 1.0) / (s - 1.0)))
         return np.asarray((1.0 - 1j * of.eta * hilbert - waves) * turned)
 

@@ -19,7 +19,8 @@ from functools import lru_cache
 
 import numpy as np
 
-from bem.kernels.tangential import StickingKernel, TangentialKernel
+from bem.kernels.stack import StackKernel as StickingKernel
+from bem.kernels.stack import Symmetric as TangentialKernel
 from bem.layer_equation.stick.coulomb import coulomb_functions, phases
 from bem.layer_equation.triangular import solve_positive
 from bem.polynomials.gauss import halved_panels, legendre_rule
@@ -144,8 +145,8 @@ def adhered_punch(ratio: float, kernel: StickingKernel, functions: int | None = 
     transforms = basis_transforms(material.charge, ratio, count, longest=kernel.longest)
     extra = _compliance(transforms, ratio, kernel)
     P, Q, w = transforms.cosine, transforms.sine, 4.0 / math.pi * transforms.weights
-    coupling = (P * (w * extra.coupling)) @ Q.T
-    matrix = (P * (w * extra.normal)) @ P.T + (Q * (w * extra.radial)) @ Q.T + coupling + coupling.T
+    coupling = (P * (w * extra.uw)) @ Q.T
+    matrix = (P * (w * extra.ww)) @ P.T + (Q * (w * extra.uu)) @ Q.T + coupling + coupling.T
     matrix[np.diag_indices(count)] += math.sqrt(material.kappa)
     load = np.zeros(count)
     load[0] = _first_moment(material)

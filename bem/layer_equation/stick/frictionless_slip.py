@@ -16,7 +16,7 @@ from functools import cached_property, lru_cache
 import numpy as np
 from numpy.polynomial import legendre
 
-from bem.kernels.tangential import StickingKernel
+from bem.kernels.stack import StackKernel as StickingKernel
 from bem.layer_equation.stick.adhered_punch import BasisTransforms, Material, basis_transforms, functions_for
 from bem.layer_equation.triangular import positive_factor, solve_factored
 from bem.polynomials.gauss_panels import gauss_nodes, lagrange_matrix
@@ -97,7 +97,7 @@ class FrictionlessPunch:
         tables = self.tables
         extra = self.kernel.beyond_half_space(tables.transforms.wavenumber / (self.ratio or 1.0))
         enclosed = self.coefficients[0] - tables.enclosing @ self.even_coefficients
-        layer = tables.waves @ (extra.coupling * self.transform)
+        layer = tables.waves @ (extra.uw * self.transform)
         return np.asarray(2.0 / math.pi * (layer - self.material.eta * enclosed / tables.radius))
 
     def radial_displacement(self, radius: FloatArray) -> FloatArray:
@@ -159,7 +159,7 @@ def frictionless_punch(ratio: float, kernel: StickingKernel) -> FrictionlessPunc
     material, rung = Material.of(kernel.poissons_ratio), rung_of(ratio)
     tables = slip_tables(rung, kernel.longest)
     weights = 4.0 / math.pi * tables.transforms.weights
-    normal = kernel.beyond_half_space(tables.transforms.wavenumber / (ratio or 1.0)).normal
+    normal = kernel.beyond_half_space(tables.transforms.wavenumber / (ratio or 1.0)).ww
     matrix = (tables.even * (weights * normal)) @ tables.even.T
     matrix[np.diag_indices_from(matrix)] += 2.0 * material.beta
     load = np.zeros(len(matrix))

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
-from bem.kernels.tangential import HalfSpaceKernel, StickingKernel
+from bem.kernels.stack import StackKernel as StickingKernel
 from bem.layer_equation.stick.adhered_fields import AdheredFields
 from bem.layer_equation.stick.adhered_punch import Material, adhered_punch
 from contact.records.validation import FloatArray
@@ -56,7 +56,7 @@ class GrowthTable:
     @property
     def is_half_space(self) -> bool:
         """Whether no layer shows."""
-        return isinstance(self.kernel, HalfSpaceKernel)
+        return self.kernel.is_half_space
 
     def beside(self, x: float, a: FloatArray) -> NDArray[np.complex128]:
         """G(x; a) for one x and many a, shape of a."""
@@ -93,7 +93,7 @@ class GrowthTable:
 @lru_cache(maxsize=16)
 def growth_table(max_ratio: float, kernel: StickingKernel) -> GrowthTable:
     """Solve the punches of a table that reaches `max_ratio` thicknesses of the surface material."""
-    if isinstance(kernel, HalfSpaceKernel):
+    if kernel.is_half_space:
         punch = adhered_punch(0.0, kernel)
         return GrowthTable(
             punch.material, kernel, max_ratio, np.ones((1, 1), dtype=complex), np.array([punch.stiffness])

@@ -10,7 +10,7 @@ from typing import Any, Final, TypeAlias
 from cases.declare.case import Case, CaseScene
 from cases.declare.methods import MethodUse, build, load, registered
 from contact import InvalidInput
-from contact.records.record import shown
+from contact.records.errors import shown
 
 # By name of a method: its settings by name; a table is those of the scene of that name.
 Settings: TypeAlias = Mapping[str, Mapping[str, Any]]

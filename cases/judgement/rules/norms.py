@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.polynomial.legendre import leggauss
 
-from bem.polynomials.gauss import legendre_rule
 from contact import InvalidInput
 from contact.records.validation import FloatArray
 
@@ -53,7 +53,7 @@ def ring_quadrature(edges: Sequence[float], nodes: int = 8) -> RingQuadrature:
     radii = np.asarray(edges, dtype=np.float64)
     if radii.size < 2 or radii[0] < 0 or not np.all(np.diff(radii) > 0):
         raise InvalidInput(f"ring edges must increase from 0 or above, got {tuple(edges)}")
-    x, w = legendre_rule(nodes)
+    x, w = leggauss(nodes)
     theta, dtheta = np.pi / 2 * (1 + x), np.pi / 2 * w
     centre, half = (radii[1:] + radii[:-1]) / 2, np.diff(radii) / 2
     radius = centre[:, None] - half[:, None] * np.cos(theta)

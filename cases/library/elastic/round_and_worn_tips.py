@@ -10,8 +10,8 @@ from itertools import pairwise
 from typing import TypeAlias, cast
 
 import numpy as np
+from numpy.polynomial.legendre import leggauss
 
-from bem.polynomials.gauss import legendre_rule
 from cases.declare.case import Case, CaseScene, text_of
 from cases.library._claims import agreements, exact
 from cases.library._layers import THICKNESS, contact_modulus, half_space, layer
@@ -53,7 +53,7 @@ def depth_and_force(scene: Scene) -> tuple[float, float]:
         kink = tip.flat_radius
     else:
         kink = tip.radius * math.sin(math.atan(tip.slope)) if isinstance(tip, Spheroconical) else RADIUS
-    x, w = legendre_rule(48)
+    x, w = leggauss(48)
     depth = force = 0.0
     for start, stop in pairwise((0.0, math.asin(kink / RADIUS), math.pi / 2)):
         r, weight = RADIUS * np.sin(start + (stop - start) * (1 + x) / 2), (stop - start) / 2 * w

@@ -8,9 +8,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.polynomial.legendre import leggauss
 from scipy.special import j0
 
-from bem.polynomials.gauss import legendre_rule
 from cases.declare.case import CaseScene
 from cases.judgement.claims.own_laws import SampledLaw
 from cases.judgement.rules.norms import RingQuadrature
@@ -68,7 +68,7 @@ class Pressed:
 
     def density(self, t: FloatArray) -> FloatArray:
         """int p r dr/sqrt(r^2 - t^2) over r from t to a [Pa m], ring by ring, at t of shape (n,)."""
-        a, x, w = self.rings.edges[-1], *legendre_rule(NODES)
+        a, x, w = self.rings.edges[-1], *leggauss(NODES)
         reach = np.sqrt((a - t) * (a + t))
         total = np.zeros_like(t)
         for ring in range(len(self.rings.edges) - 1):
@@ -89,7 +89,7 @@ class Pressed:
         An answer that falls like 1/k swings about its limit with the last wavenumber, by cos(k a): tapered over the
         upper half, so that the swings cancel, it is the limit.
         """
-        x, w = legendre_rule(NODES)
+        x, w = leggauss(NODES)
         sine = np.sin(np.pi / 4 * (x + 1))
         k, dk = self._wavenumbers(largest)
         softer = compliance(layer, k) - 2 / layer.contact_modulus
@@ -115,7 +115,7 @@ class Pressed:
 
     def _positions(self, largest: float) -> tuple[FloatArray, FloatArray]:
         """Gauss nodes of [0, a] on the rings, cut so that cos(k t) is resolved."""
-        x, w = legendre_rule(NODES)
+        x, w = leggauss(NODES)
         parts = np.maximum(np.ceil(np.diff(self.rings.edges) * largest / 12), 1).astype(int)
         pairs = zip(self.rings.edges, self.rings.edges[1:], parts, strict=False)
         ends = np.concatenate([np.linspace(a, b, n + 1)[:-1] for a, b, n in pairs] + [self.rings.edges[-1:]])
@@ -124,7 +124,7 @@ class Pressed:
 
     def _wavenumbers(self, largest: float) -> tuple[FloatArray, FloatArray]:
         """Gauss nodes and weights on panels that double from small ones, up to what resolves J0(k r) cos(k t)."""
-        x, w = legendre_rule(NODES)
+        x, w = leggauss(NODES)
         widest = 6 / self.rings.edges[-1]
         doubling = min(widest, largest) * 2.0 ** np.arange(-16, 1)
         ends = np.concatenate([[0.0], doubling, np.arange(widest * 2, largest, widest), [largest]])

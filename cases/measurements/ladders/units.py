@@ -76,7 +76,7 @@ def with_numbers(scene: Scene, change: Callable[[Record, str, Any], Any]) -> Sce
 
 
 def _changed(item: R, change: Callable[[Record, str, Any], Any]) -> R:
-    values = {field.name: getattr(item, field.name) for field in dataclasses.fields(item)}  # type: ignore[arg-type]  # all records are dataclasses
+    values = {field.name: getattr(item, field.name) for field in dataclasses.fields(item)}
     numbers = {name: value for name, value in values.items() if value is not None and not isinstance(value, str)}
     return item.replace(**{name: _changed_value(item, name, value, change) for name, value in numbers.items()})
 

@@ -21,7 +21,7 @@ from fem_reference.discrete_layer.assembly import (
 from fem_reference.discrete_layer.elements import ElementPair
 from fem_reference.discrete_layer.material import PointModuli
 from fem_reference.discrete_layer.mesh import LayerMesh
-from fem_reference.discrete_layer.problem import LayerProblem, MeshEnd
+from fem_reference.discrete_layer.problem import LayerProblem
 from fem_reference.discrete_layer.several_layers.far_base import far_spring
 from fem_reference.discrete_layer.several_layers.joined_space import JoinedSpace
 from fem_reference.discrete_layer.several_layers.mesh import PartsMesh
@@ -112,15 +112,6 @@ class SeveralLayersProblem(LayerProblem):
     def has_elastic_edge(self) -> bool:
         """Whether an elastic base goes on beyond the mesh."""
         return self.parts_mesh.body.base_modulus > 0
-
-    @property
-    def end(self) -> MeshEnd:
-        """Energies of parts fall no slower than those of a membrane, like 1/r^2; springs stand for the base beyond."""
-        mesh, body = self.parts_mesh, self.parts_mesh.body
-        strip = mesh.mesh.p[0, mesh.mesh.t].mean(axis=0) > mesh.outer_radius / 2
-        if body.base_modulus:
-            strip &= mesh.part < len(body.parts) - 1
-        return MeshEnd(strip, 3.0, 2 / mesh.outer_radius)
 
 
 def several_layers(layer: ElasticLayer, mesh: LayerMesh, pair: ElementPair, backend: str) -> SeveralLayersProblem:

@@ -21,14 +21,14 @@ from contact.answer.solution import Setting
 from contact.records.validation import FloatArray
 from fem_reference.discrete_layer.material import contact_modulus
 from fem_reference.discrete_layer.settings import Discretisation
-from fem_reference.elastic.contact_search import edge_radius
+from fem_reference.elastic.active_set import edge_radius
 from fem_reference.elastic.friction.fields import Blend, RubbedFields
 from fem_reference.elastic.friction.growth import Growing
 from fem_reference.elastic.friction.step import RubbedContact, RubbedState
 from fem_reference.elastic.friction.strips import StripMaker
 from fem_reference.elastic.friction.walk import followed, stick_radius
 
-# An edge radius is known to this share of a cell (`contact_search.EDGE_POLYNOMIAL`).
+# An edge radius is known to this share of a cell (`active_set.EDGE_POLYNOMIAL`).
 EDGE_UNCERTAIN = 0.1
 
 

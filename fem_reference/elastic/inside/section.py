@@ -70,6 +70,11 @@ class MeridianSection:
         total[np.ix_(on_axis, ODD)] = 0.0
         return total
 
+    def units(self, modulus: float) -> FloatArray:
+        """Units of the fields [m, Pa, Pa/m] for E* [Pa], shape (9,)."""
+        a = self.contact.contact_radius
+        return np.array([a, a, *[modulus] * 5, modulus / a, modulus / a])
+
     def at(self, places: Places) -> FloatArray:
         """Values at points, shape (n, 9)."""
         basis = tabulate(self.contact.pair.displacement, places.local).value

@@ -23,7 +23,7 @@ from docs.gallery.figure_07 import pressed
 from mdr.closed_forms.asymptotic import thin_profile
 from mdr.closed_forms.truncated_cone import thin_cone_pressure
 from mdr.coated_pairs import mean_thickness_error
-from mdr.elastic import solve_elastic
+from mdr.equilibria import solve_elastic
 from mdr.impact.solver import solve_impact
 from tests.verification.paper.profiles import cone
 from tests.verification.paper.statement import FORMULA, GOOD, SAME, Measured, Statement, deviation, reads, within

@@ -10,7 +10,7 @@ from contact import Layer, Paraboloid, TruncatedCone
 from docs.gallery._parts import SOURCE, UNBONDED, layer, name_of
 from docs.gallery.figure_07 import depth_over_height, pressed
 from mdr.closed_forms.truncated_cone import thin_cone_force
-from mdr.elastic import solve_elastic
+from mdr.equilibria import solve_elastic
 from tests.verification.paper.statement import GOOD, Measured, Statement, deviation, within
 
 FLAT = 0.5

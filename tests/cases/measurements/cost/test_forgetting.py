@@ -1,7 +1,7 @@
 """A first solution is a first solution, whatever the process has solved before."""
 
+from bem.flat_punch import IntegralEquation
 from bem.layer_equation import flat_punch_source as integral_equation
-from bem.layer_equation.flat_punch_source import IntegralEquation
 from cases.run.empty_caches import forget
 from contact import Layer
 

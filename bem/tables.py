@@ -1,0 +1,322 @@
+"""Tables of flat punches on uniform layers, as the paper made them: section 3.2 of Forsbach (2023).
+
+A table holds k_bar(a/h) and p_bar(r/a; a/h), Eq. (10), at 400 ratios and 500 radii, made with discs of cells.
+Between its rows k_bar and q = p_bar sqrt(1 - rho^2) are splines over ln(a/h); below the first row 1/k_bar and q are
+linear in a/h, towards the half-space. Over rho, q is a polynomial in u = sqrt(1 - rho^2), and with it the Abel density
+phi_1 of the punch is known:
+
+    2 k_bar q = sum_n c_n P_2n(u)/P_2n(0),    phi_1(t) = sum_n c_n P_2n(t/a),    int_0^1 phi_1 d(t/a) = c_0 = k_bar.
+
+At its edge phi_1 = y_1 = sqrt(k_bar + d k_bar/d ln a), Eq. (6). Errors are stated by the same table of half as many
+cells, ratios and radii, which every table carries along (`FlatPunchTable.coarser`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
+from pathlib import Path
+from typing import Any, Final, NamedTuple, Self
+
+import numpy as np
+from numpy.polynomial import chebyshev
+from scipy.interpolate import BSpline, make_interp_spline
+
+from bem.grid.discs import LARGEST_DEGREE, punch
+from bem.grid.operators import Boundary
+from bem.numerics import even_legendre
+from contact import ElasticLayer, InvalidInput, Layer, UnsupportedSceneError
+from contact.files.storage import read_tree, write_tree
+from contact.records.record import Record, record
+from contact.records.validation import FloatArray
+from contact.scene.layer import Support
+
+SCHEMA: Final = "contact-verification/flat-punch-table/4"
+SMALLEST_RATIO, LARGEST_RATIO = 1e-3, 1e3
+# Ratios a/h up to which rows are solved together. With half as many a search solves rows that it does not need.
+RUNGS: Final = (1.0, 4.0, 16.0, 64.0, 256.0, LARGEST_RATIO)
+# Rows beyond the largest ratio asked for, since splines end less well than they run; and the fewest rows of a table.
+BEYOND: Final = 6
+# a/h at which lattices with a gap between images begin to replace free space; at twice of it they have done so. A
+# sudden change would put a spike into the slope of k_bar.
+THIN: Final = 8.0
+
+
+class Densities(NamedTuple):
+    """Flat punches at some ratios a/h.
+
+    Attributes:
+        y1: phi_1 at the edge, shape (n,).
+        density: c_0 = k_bar, c_1, .., shape (n, m).
+        slope: Their derivatives by ln(a), shape (n, m).
+    """
+
+    y1: FloatArray
+    density: FloatArray
+    slope: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class FlatPunchTable:
+    """Flat punches on one layer at tabulated ratios and radii.
+
+    Attributes:
+        support: "bonded" or "unbonded".
+        poissons_ratio: nu; zero on an unbonded layer, where it has no influence.
+        ratios: a/h, increasing, shape (n,).
+        radii: rho = r/a in [0, 1), increasing, shape (m,).
+        stiffness: k_bar, shape (n,).
+        pressure: p_bar, shape (n, m).
+        cells: Cells across the grid that it was made on.
+        coarser: The table whose difference states errors; None in that table itself.
+
+    Raises:
+        InvalidInput: If shapes, order or values cannot be a table of flat punches.
+    """
+
+    support: Support
+    poissons_ratio: float
+    ratios: FloatArray
+    radii: FloatArray
+    stiffness: FloatArray
+    pressure: FloatArray
+    cells: int
+    coarser: FlatPunchTable | None = None
+
+    def __post_init__(self) -> None:
+        """Refuse what is not a table."""
+        shape = self.ratios.size, self.radii.size
+        checks = {
+            f"ratios must be at least {BEYOND}, positive and increasing": (
+                self.ratios.size >= BEYOND and self.ratios[0] > 0.0 and np.all(np.diff(self.ratios) > 0.0)
+            ),
+            "radii must increase within [0, 1)": (
+                np.all(np.diff(self.radii) > 0.0) and self.radii[0] >= 0.0 and self.radii[-1] < 1.0
+            ),
+            f"stiffness and pressure must have shapes {shape[:1]} and {shape}": (
+                self.stiffness.shape == shape[:1] and self.pressure.shape == shape
+            ),
+            "stiffness and pressure must be finite and not negative": all(
+                np.all(np.isfinite(one) & (one >= 0.0)) for one in (self.stiffness, self.pressure)
+            ),
+        }
+        for text, holds in checks.items():
+            if not holds:
+                raise InvalidInput(f"flat-punch table: {text}")
+
+    @property
+    def largest_ratio(self) -> float:
+        """Largest a/h that is covered."""
+        return float(self.ratios[-1])
+
+    def at(self, ratio: FloatArray) -> Densities:
+        """Punches at ratios a/h > 0, shape (n,).
+
+        Raises:
+            InvalidInput: Beyond the last row.
+        """
+        refuse_beyond(float(ratio.max()), self.largest_ratio)
+        first, place = self.ratios[0], np.log(np.maximum(ratio, self.ratios[0]))
+        value, slope = self._spline(place), self._spline.derivative()(place)
+        below = np.minimum(ratio / first, 1.0)
+        soft = (1.0 - 1.0 / self.stiffness[0]) * below
+        inside = ratio < first
+        k = np.where(inside, 1.0 / (1.0 - soft), np.exp(value[:, 0]))
+        growth = np.where(inside, soft / (1.0 - soft), slope[:, 0])[:, None]
+        share = np.column_stack([np.ones_like(k), 2.0 * below[:, None] * value[:, 1:]])
+        change = np.where(inside[:, None], share, 2.0 * np.column_stack([0.0 * k, slope[:, 1:]]))
+        change[:, 0] = 0.0
+        return Densities(np.sqrt(k * (1.0 + growth[:, 0])), k[:, None] * share, k[:, None] * (growth * share + change))
+
+    @cached_property
+    def _spline(self) -> BSpline:
+        """ln k_bar and c_n/(2 k_bar), n > 0, over ln(a/h): least squares over the radii, which decay like q."""
+        u = np.sqrt(1.0 - self.radii**2)
+        rows = even_legendre(u, min(LARGEST_DEGREE, self.radii.size // 2) + 1)
+        n = np.arange(1, rows.shape[1])
+        at_zero = np.cumprod(-(2 * n - 1) / (2 * n))  # P_2n(0)
+        fitted = np.linalg.lstsq(rows[:, 1:], (self.pressure * u - 0.5).T, rcond=None)[0].T * at_zero
+        return make_interp_spline(np.log(self.ratios), np.column_stack([np.log(self.stiffness), fitted]), k=5)
+
+    def tree(self) -> dict[str, Any]:
+        """Arrays and settings under the names of the paper, for HDF5."""
+        settings = {"support": self.support, "poissons_ratio": self.poissons_ratio, "cells": self.cells}
+        arrays = {"ratios": self.ratios, "radii": self.radii, "k_bar": self.stiffness, "p_bar": self.pressure}
+        return settings | arrays | ({"coarser": self.coarser.tree()} if self.coarser else {})
+
+    @classmethod
+    def of_tree(cls, tree: dict[str, Any]) -> Self:
+        """The inverse of `tree`."""
+        fields = {name: tree[name] for name in ("support", "poissons_ratio", "ratios", "radii", "cells")}
+        coarser = cls.of_tree(tree["coarser"]) if "coarser" in tree else None
+        return cls(**fields, stiffness=tree["k_bar"], pressure=tree["p_bar"], coarser=coarser)
+
+
+def refuse_beyond(ratio: float, largest: float) -> None:
+    """Refuse a ratio a/h beyond the largest one of a table.
+
+    Raises:
+        InvalidInput: With both.
+    """
+    if not 0.0 < ratio <= largest * (1.0 + 1e-9):
+        raise InvalidInput(
+            f"a/h = {ratio:g}: the flat-punch table covers ratios up to {largest:g} and is never extrapolated; "
+            "make it up to a larger ratio, or ask for smaller contacts"
+        )
+
+
+def write_table(path: str | Path, table: FlatPunchTable) -> None:
+    """Write a table, and the one that states its errors, to an HDF5 file."""
+    write_tree(path, {"schema": SCHEMA} | table.tree())
+
+
+def read_table(path: str | Path) -> FlatPunchTable:
+    """Read what `write_table` wrote.
+
+    Raises:
+        InvalidInput: If the file is missing, damaged, or no such table.
+    """
+    tree = read_tree(path)
+    if tree.get("schema") != SCHEMA:
+        raise InvalidInput(f"{path}: schema {tree.get('schema')!r}; this version reads {SCHEMA!r}: make the table anew")
+    return FlatPunchTable.of_tree(tree)
+
+
+def tabulated_layer(layer: ElasticLayer) -> Layer:
+    """The layer with h = 1 and E* = 1.
+
+    Raises:
+        UnsupportedSceneError: If it is no uniform layer of finite thickness.
+    """
+    plain = layer.simplest()
+    if not isinstance(plain, Layer) or plain.is_half_space:
+        raise UnsupportedSceneError(
+            f"tables of flat punches are of uniform layers of finite thickness, not of a {type(plain).__name__}; "
+            "use the integral equation"
+        )
+    nu = plain.poissons_ratio if plain.support == "bonded" else 0.0
+    return plain.replace(thickness=1.0, youngs_modulus=1.0 - nu**2, poissons_ratio=nu)
+
+
+@record
+class FftTable(Record):
+    """Settings of tables by boundary elements; where MDR's flat punches come from (`Mdr.flat_punch`).
+
+    Attributes:
+        cells: Cells across the grid, a multiple of 4.
+        ratios: Number of log-spaced ratios a/h from 1e-3 to 1e3; those beyond the contacts asked for are not solved.
+        radii: Number of radii r/a = sin(theta), equally spaced in theta.
+
+    Raises:
+        InvalidInput: If there are too few of any, or `cells` is no multiple of 4.
+    """
+
+    cells: int = 256
+    ratios: int = 400
+    radii: int = 500
+
+    largest_ratio = LARGEST_RATIO
+
+    def __post_init__(self) -> None:
+        """Refuse grids that cannot be halved."""
+        if self.cells < 64 or self.cells % 4:
+            raise InvalidInput(f"cells must be a multiple of 4 and at least 64, got {self.cells}")
+        if min(self.ratios, self.radii) < 2 * BEYOND:
+            raise InvalidInput(f"ratios and radii must be at least {2 * BEYOND}, got {self.ratios} and {self.radii}")
+
+    def solution(self, layer: ElasticLayer, largest_ratio: float = LARGEST_RATIO) -> FlatPunchTable:
+        """The table of a layer, complete by default, or up to at least a smaller ratio a/h.
+
+        Raises:
+            InvalidInput: If the ratio is beyond 1000.
+            UnsupportedSceneError: If the layer is not uniform, or a half-space.
+        """
+        refuse_beyond(largest_ratio, LARGEST_RATIO)
+        rung = next((rung for rung in RUNGS if largest_ratio <= rung), LARGEST_RATIO)
+        return _table(self, tabulated_layer(layer), rung)
+
+    def refined(self) -> Self:
+        """A copy with half the cell size."""
+        return self.replace(cells=2 * self.cells)
+
+
+@lru_cache(maxsize=64)
+def _table(settings: FftTable, layer: Layer, rung: float) -> FlatPunchTable:
+    cells, count, radii = settings.cells, settings.ratios, settings.radii
+    coarser = _made(layer, rung, cells // 2, (count + 1) // 2, radii // 2)
+    return replace(_made(layer, rung, cells, count, radii), coarser=coarser)
+
+
+def _made(layer: Layer, rung: float, cells: int, count: int, columns: int) -> FlatPunchTable:
+    """The table of one grid; Q of each row has the edge value y_1, which the stiffness of all rows tells."""
+    ratios = np.geomspace(SMALLEST_RATIO, LARGEST_RATIO, count)
+    ratios = ratios[: int(np.searchsorted(ratios, rung * (1.0 - 1e-9))) + 1 + BEYOND]
+    growth, at_zero, at_one = zip(*(_row(layer, ratio, cells) for ratio in ratios.tolist()), strict=True)
+    k, place = np.array(growth), np.log(ratios)
+    y1 = np.sqrt(k * (1.0 + make_interp_spline(place, np.log(k), k=5).derivative()(place)))
+    series = np.array(at_zero) + y1[:, None] * (np.array(at_one) - np.array(at_zero))
+    theta = (np.arange(columns) + 0.5) * (np.pi / (2 * columns))
+    q = np.maximum(chebyshev.chebval(-np.cos(2.0 * theta), series.T), 0.0) / (2.0 * k[:, None])
+    pressure = q / np.cos(theta)
+    return FlatPunchTable(layer.support, layer.poissons_ratio, ratios, np.sin(theta), k, pressure, cells)
+
+
+@lru_cache(maxsize=4096)
+def _row(layer: Layer, ratio: float, cells: int) -> tuple[float, FloatArray, FloatArray]:
+    """k_bar, and Chebyshev coefficients of Q in 2 rho^2 - 1 with the edge values 0 and 1, of which they are linear.
+
+    Grids are in free space, or lattices with a gap between images, or shares of both in between.
+    """
+    way = float(np.clip(np.log2(ratio / THIN), 0.0, 1.0))
+    periodic = way * way * (3.0 - 2.0 * way)
+    shares: dict[Boundary, float] = {"free": 1.0 - periodic, "periodic": periodic}
+    k, series = 0.0, np.zeros((2, LARGEST_DEGREE + 1))
+    for boundary, share in shares.items():
+        if share:
+            one = punch(layer, ratio, cells, boundary)
+            k += share * one.growth
+            series[:, : one.degree + 1] += [share * one.series(one.degree, edge) for edge in (0.0, 1.0)]
+    return k, series[0], series[1]
+
+
+@record
+class TableFile(Record):
+    """A stored table as MDR's flat punches.
+
+    Attributes:
+        path: HDF5 file that `write_table` wrote.
+    """
+
+    path: str
+
+    @property
+    def largest_ratio(self) -> float:
+        """Largest a/h that the file covers."""
+        return _stored(self.path).largest_ratio
+
+    def solution(self, layer: ElasticLayer, largest_ratio: float = SMALLEST_RATIO) -> FlatPunchTable:
+        """The stored table.
+
+        Raises:
+            InvalidInput: If it is of another layer, or ends below the ratio a/h.
+            UnsupportedSceneError: If the layer is not uniform, or a half-space.
+        """
+        asked, table = tabulated_layer(layer), _stored(self.path)
+        if (table.support, table.poissons_ratio) != (asked.support, asked.poissons_ratio):
+            raise InvalidInput(
+                f"{self.path}: the table is of a {table.support} layer with nu = {table.poissons_ratio:g}, not of a "
+                f"{asked.support} one with nu = {asked.poissons_ratio:g}; make one with FftTable"
+            )
+        refuse_beyond(largest_ratio, table.largest_ratio)
+        return table
+
+    def refined(self) -> Self:
+        """There is no finer file.
+
+        Raises:
+            InvalidInput: Always.
+        """
+        raise InvalidInput(f"{self.path} cannot be refined; make a finer table with FftTable")
+
+
+_stored = lru_cache(maxsize=8)(read_table)

@@ -1,0 +1,173 @@
+"""Where contact ends at each instant, and Gauss rules over the springs between these fronts.
+
+Springs of one MDR profile g behave alike on every layer and under every indenter, so the fronts gamma(t), outside of
+which nothing touches, are found in g from the history alone. Spring forces are smooth in g between the fronts of all
+instants, and in the radius between kinks of the profile, so that
+
+    F(t) = 2 E* int f(g(x), t) y_1^2(x) dx
+
+is a sum of Gauss rules on panels that end there. Beside a front forces bend within the way that it goes in a relaxation
+time; where that is less than an interval of the history, more panels end on that way.
+"""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bem.numerics import EPS, panels
+from contact import UnsupportedSceneError
+from contact.records.validation import FloatArray
+from mdr.history.spring_bed import Path, SpringBed, followed
+from mdr.history.spring_law import SpringLaw
+from mdr.spring_bed import Springs
+
+# Secant steps to a front; eight are usual.
+_MOST_STEPS = 100
+# Springs among which fronts are bracketed, besides one between all depths of the history.
+_SPREAD = 33
+# Ratio of neighbouring panels beside a front, and the most of them. With 2 springs double.
+_GROWTH, _MOST_PANELS = 4.0, 12
+# Share of a stretch between kinks below which two ends of panels are one.
+_APART = 1e-9
+# Power of the distance from a kink, or from the axis, in which springs are smooth: g goes with roots of the former, and
+# tips like r^1.7 are not analytic at the latter.
+_KINK_POWER, _AXIS_POWER = 2.0, 4.0
+
+
+def fronts(law: SpringLaw, path: Path) -> FloatArray:
+    """gamma [m] at each instant, -1 where nothing touches, shape (n,)."""
+    depth, peaks = path.depth, path.peaks
+    # Deeper than ever, the indenter touches all springs up to its depth.
+    grows = (depth > 0) & (depth >= peaks * (1 - EPS))
+    gamma, unknown = np.where(grows, depth, -1.0), np.flatnonzero(~grows & (peaks > 0))
+    if not unknown.size:
+        return gamma
+    low, high = _brackets(law, path)
+    unknown = unknown[low[0, unknown] >= 0]
+    gamma[unknown] = _refined(law, path, unknown, low[:, unknown], high[:, unknown])
+    return gamma
+
+
+def _brackets(law: SpringLaw, path: Path) -> tuple[FloatArray, FloatArray]:
+    """Neighbouring springs inside and outside each front, and `SpringBed.edge` there, each of shape (2, n)."""
+    top = path.peaks[-1]
+    knots = np.unique(np.concatenate([[0.0], path.depth[path.depth > 0], np.linspace(0, top, _SPREAD)]))
+    g = np.unique(np.concatenate([knots, (knots[1:] + knots[:-1]) / 2]))
+    low, high = np.full((2, path.time.size), -1.0), np.zeros((2, path.time.size))
+    for k, (bed, speed) in enumerate(zip(followed(law, g, path), path.final_speed, strict=True)):
+        first = int(np.argmin(np.append(bed.touching, False)))
+        edge = bed.edge(float(path.depth[k]), float(speed))
+        if first:
+            low[:, k] = g[first - 1], edge[first - 1]
+        high[:, k] = (g[first], edge[first]) if first < g.size else (top, 0.0)
+    return low, high
+
+
+def _refined(law: SpringLaw, path: Path, instants: NDArray[np.intp], low: FloatArray, high: FloatArray) -> FloatArray:
+    """Fronts at some instants by the Illinois rule, all at once."""
+    (a, f_a), (b, f_b) = low.copy(), high.copy()
+    top = path.peaks[-1]
+    open_, side = np.arange(instants.size), np.zeros(instants.size)
+    for step in range(_MOST_STEPS):
+        o = open_
+        with np.errstate(invalid="ignore", divide="ignore"):
+            g = np.nan_to_num(b[o] - f_b[o] * (b[o] - a[o]) / (f_b[o] - f_a[o]))
+        middle = (a[o] + b[o]) / 2
+        g = np.where((g > a[o]) & (g < b[o]) & (step % 4 != 3), g, middle)
+        f = _edges(law, path, instants[o], g)
+        inside = f > 0
+        f_b[o] = np.where(inside & (side[o] > 0), f_b[o] / 2, f_b[o])
+        f_a[o] = np.where(~inside & (side[o] < 0), f_a[o] / 2, f_a[o])
+        side[o] = np.where(inside, 1.0, -1.0)
+        a[o], f_a[o] = np.where(inside, g, a[o]), np.where(inside, f, f_a[o])
+        b[o], f_b[o] = np.where(inside, b[o], g), np.where(inside, f_b[o], f)
+        rounded = np.abs(f) <= 2 * EPS * top
+        a[o[rounded]] = b[o[rounded]] = g[rounded]
+        open_ = o[b[o] - a[o] > 4 * EPS * b[o]]
+        if not open_.size:
+            break
+    return (a + b) / 2
+
+
+def _edges(law: SpringLaw, path: Path, instants: NDArray[np.intp], g: FloatArray) -> FloatArray:
+    """`SpringBed.edge` of one spring per instant, each at its own, which increase."""
+    found, done = np.empty(g.size), 0
+    bed = SpringBed.undeformed(law, g, float(path.depth[0]))
+    speed = path.final_speed
+    for k in range(int(instants[-1]) + 1):
+        if k:
+            bed.along(path, k - 1)
+        while done < g.size and instants[done] == k:
+            found[done] = bed.edge(float(path.depth[k]), float(speed[k]))[0]
+            bed, done = bed.beyond(1), done + 1
+    return found
+
+
+def panel_ends(law: SpringLaw, path: Path, gamma: FloatArray) -> FloatArray:
+    """Values of g [m] at which panels end: fronts, and the way beside them in a relaxation time."""
+    steps = np.diff(path.time)
+    shortest = float(law.times[-1]) if law.times.size else np.inf
+    ways = [gamma]
+    for number in range(_MOST_PANELS):
+        way = shortest / 2 * _GROWTH**number
+        share = way / steps
+        some = (share < 0.5) & (gamma[1:] > 0) & (gamma[:-1] > 0)
+        if not some.any():
+            break
+        before, after = gamma[:-1][some], gamma[1:][some]
+        ways += [before + share[some] * (after - before), after - share[some] * (after - before)]
+    ends = np.concatenate(ways)
+    return np.unique(ends[ends > 0])
+
+
+class Layout(NamedTuple):
+    """Springs that stand for the layer.
+
+    Attributes:
+        g: MDR profile [m], increasing, shape (n,); the first is the axis, or the whole flat end.
+        weight: What they add to K [m], shape (n,).
+    """
+
+    g: FloatArray
+    weight: FloatArray
+
+
+def layout(springs: Springs, radii: FloatArray, nodes: int) -> Layout:
+    """Gauss rules of so many nodes between the flat end, radii [m], kinks of the profile and octaves of the thickness."""
+    tip, flat = springs.tip, springs.tip.flat
+    core = springs.at([flat]).K if flat else np.zeros(1)
+    top = float(radii.max(initial=flat))
+    if top <= flat:
+        return Layout(np.zeros(1), core)
+    octaves = springs.unit * 2.0 ** np.arange(-2.0, 12.0)
+    inner = np.unique(np.concatenate([radii, octaves[octaves < top]]))
+    stretches = [flat, *(b for b in tip.breaks if flat < b < top), top]
+    parts = []
+    for low, high in pairwise(stretches):
+        power = _KINK_POWER if low else _AXIS_POWER
+        share = ((inner[(inner > low) & (inner < high)] - low) / (high - low)) ** (1 / power)
+        ends = np.concatenate([[0.0], share, [1.0]])
+        ends = ends[np.append(True, np.diff(ends) > _APART)]
+        v, w = panels(np.append(ends[ends < 1 - _APART], 1.0), nodes + springs.sizes.extra)
+        parts.append(np.array([low - flat + (high - low) * v**power, w * (high - low) * power * v ** (power - 1)]))
+    excess, weight = np.concatenate(parts, axis=1)
+    values = springs.at(flat + excess, excess)
+    g, weight = np.maximum(values.g, 0.0), weight * values.y1**2
+    return Layout(np.append(0.0, g), np.append(core, weight))
+
+
+def refuse_open_inside(touching: NDArray[np.bool_], time: float) -> None:
+    """Refuse a contact with a gap inside.
+
+    Raises:
+        UnsupportedSceneError: With the instant.
+    """
+    if (np.diff(touching.astype(int)) > 0).any():
+        raise UnsupportedSceneError(
+            f"at t = {time:g} s the contact opens inside while it holds outside: the method needs one circle; "
+            "end the history earlier, or let the layer recover before reloading"
+        )

@@ -1,0 +1,205 @@
+"""One relaxing spring: its law in contact, its creep when it is free, and its creep under a force.
+
+In units of the instantaneous modulus a spring in contact with the indenter, displaced by w, carries
+
+    f = g_inf w + eta w' + sum_j g_j e_j,   e_j' = w' - e_j/tau_j,                    Eqs. (47), (51), (52)
+
+and a free one carries nothing. With the stretches q_j = u - e_j of its dashpots its surface u obeys
+
+    g_inf u + eta u' + sum_j g_j (u - q_j) = 0,   q_j' = (u - q_j)/tau_j.
+
+A mode exp(-lambda t) of it has q_j = d_j/(d_j - lambda) for u = 1, d_j = 1/tau_j, where lambda solves
+
+    g_inf - eta lambda - sum_j g_j lambda/(d_j - lambda) = 0.
+
+The left side falls from one rate to the next, so each root lies between two rates. Each is stored as its distance from
+the nearer rate, and the moduli are computed from the roots (Gu and Eisenstat 1994, SIAM J. Matrix Anal. Appl. 15,
+1266): the modes are orthogonal to rounding however close or far apart the rates are.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from contact.records.validation import FloatArray
+from contact.scene.effects import Relaxation
+
+# Halvings of the integers that store a positive double: its 63 bits without the sign.
+_HALVINGS = 63
+# Coefficients of (x - 1 + exp(-x))/x^2, and where the series is used: there the first one left out is 1e-17. Beyond, at
+# most four digits cancel in a hundred thousand.
+_SERIES = np.array([(-1.0) ** n / math.factorial(n + 2) for n in range(11)])
+_SMALL = 0.3
+
+
+def ramp_response(x: FloatArray) -> FloatArray:
+    """(x - 1 + exp(-x))/x^2 at x >= 0."""
+    large = np.maximum(x, _SMALL)
+    found = (large + np.expm1(-large)) / large**2
+    small = x < _SMALL
+    if small.any():
+        found[small] = np.polynomial.polynomial.polyval(x[small], _SERIES)
+    return found
+
+
+class Modes(NamedTuple):
+    """Modes of a free spring, k of them, with m branches.
+
+    Attributes:
+        rates: lambda [1/s], shape (k,).
+        of_surface: Amplitudes that a unit surface displacement has, shape (k, 1).
+        of_dashpots: Amplitudes that unit stretches q_j of the dashpots have, shape (k, m).
+        of_force: Rates [1/s] at which amplitudes grow under a unit force, shape (k, 1). Without eta the surface is
+            displaced by the force over the instantaneous modulus besides.
+        strains: Elastic strains u - q_j of the branches in each mode of unit surface displacement, shape (m, k).
+    """
+
+    rates: FloatArray
+    of_surface: FloatArray
+    of_dashpots: FloatArray
+    of_force: FloatArray
+    strains: FloatArray
+
+    def amplitudes(self, surface: FloatArray, strains: FloatArray) -> FloatArray:
+        """Amplitudes of the modes, shape (k, n), from u, shape (n,), and e_j, shape (m, n)."""
+        return np.asarray(self.of_surface * surface + self.of_dashpots @ (surface - strains))
+
+
+@dataclass(frozen=True)
+class SpringLaw:
+    """A relaxation function in units of its instantaneous modulus.
+
+    Attributes:
+        long_term: g_inf.
+        viscosity: eta over the modulus [s].
+        weights: g_j, shape (m,).
+        times: tau_j [s], decreasing and no two of them equal, shape (m,).
+    """
+
+    long_term: float
+    viscosity: float
+    weights: FloatArray
+    times: FloatArray
+
+    @classmethod
+    def of(cls, relaxation: Relaxation) -> SpringLaw:
+        """From moduli in pascals; relaxation times must increase."""
+        modulus = relaxation.instantaneous_modulus
+        weights, times = relaxation.moduli[::-1] / modulus, relaxation.times[::-1]
+        return cls(relaxation.long_term_modulus / modulus, relaxation.viscosity / modulus, weights, times)
+
+    @property
+    def is_elastic(self) -> bool:
+        """Whether forces depend on the present displacement only."""
+        return self.viscosity == 0.0 and not self.weights.size
+
+    def drive(self, t: FloatArray, accelerates: bool = True) -> tuple[FloatArray | float, FloatArray, FloatArray]:
+        """Force after times t [s] at constant acceleration 1, at constant speed 1, and the slope of the latter.
+
+        f(t) = g_inf w(0) + speed A(t) + acceleration B(t) + sum_j g_j e_j(0) exp(-t/tau_j) with A' = relaxation
+        function, B' = A. Each of shape (n,); the first is zero if nothing accelerates.
+        """
+        x = t / self.times[:, None]
+        faded = np.expm1(-x)
+        speed = self.viscosity + self.long_term * t - (self.weights * self.times) @ faded
+        slope = 1 + self.weights @ faded
+        if not accelerates:
+            return 0.0, speed, slope
+        return self.viscosity * t + (self.long_term / 2 + self.weights @ ramp_response(x)) * t * t, speed, slope
+
+    def pressed(self, strains: FloatArray, motion: tuple[float, float], t: FloatArray) -> FloatArray:
+        """e_j after times t [s] in contact, shape (m, n).
+
+        Args:
+            strains: e_j before, shape (m, n).
+            motion: Speed [m/s] and acceleration [m/s^2] of the indenter.
+            t: Shape (n,) or (1,).
+        """
+        tau = self.times[:, None]
+        x = t / tau
+        moved = motion[0] * tau * -np.expm1(-x)
+        if motion[1]:
+            moved = moved + motion[1] * t * t * ramp_response(x)
+        return np.asarray(strains * np.exp(-x) + moved)
+
+    def free(self, surface: FloatArray, strains: FloatArray, t: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """u, shape (n,), and e_j, shape (m, n), of free springs after times t [s], shape (n,) or (1,)."""
+        faded = self.modes.amplitudes(surface, strains) * np.exp(-self.modes.rates[:, None] * t)
+        return faded.sum(axis=0), self.modes.strains @ faded
+
+    def force(self, w: FloatArray, strains: FloatArray, speed: float) -> FloatArray:
+        """f of springs in contact, shape (n,)."""
+        return np.asarray(self.long_term * w + self.viscosity * speed + self.weights @ strains)
+
+    @cached_property
+    def modes(self) -> Modes:
+        """How a free spring creeps back."""
+        rates = 1 / self.times
+        origin, way = self._roots(rates)
+        distances = (rates[:, None] - origin) - way
+        found = self._moduli(rates, distances)
+        size = self.viscosity + (found * rates / distances.T**2).sum(axis=1, keepdims=True)
+        return Modes(
+            rates=origin + way,
+            of_surface=self.viscosity / size,
+            of_dashpots=found / distances.T / size,
+            of_force=1 / size,
+            strains=-(origin + way) / distances,
+        )
+
+    def _roots(self, rates: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Rates of the modes as nearest d_j, or zero, and distance from it, each of shape (k,)."""
+        low, high = np.concatenate([[0.0], rates]), np.append(rates, 0.0)
+        if self.viscosity > 0:
+            high[-1] = 2 / self.viscosity + 2 * (rates[-1] if rates.size else 0.0)
+        else:
+            low, high = low[:-1], high[:-1]
+
+        def secular(origin: FloatArray, way: FloatArray) -> FloatArray:
+            branches = self.weights[:, None] / ((rates[:, None] - origin) - way)
+            return np.asarray(self.long_term - (origin + way) * (self.viscosity + branches.sum(axis=0)))
+
+        half = (high - low) / 2
+        from_low = secular(low, half) <= 0
+        origin, sign = np.where(from_low, low, high), np.where(from_low, 1.0, -1.0)
+        # Bisection of the bits of a positive number converges to its last digit whatever its magnitude.
+        least = np.where(origin == 0, 0.0, np.minimum(np.finfo(float).tiny, half))
+        inner, outer = least.view(np.int64), half.view(np.int64)
+        for _ in range(_HALVINGS):
+            middle = inner + (outer - inner) // 2
+            above = sign * secular(origin, sign * middle.view(np.float64)) > 0
+            inner, outer = np.where(above, middle, inner), np.where(above, outer, middle)
+        return origin, sign * inner.view(np.float64)
+
+    def _moduli(self, rates: FloatArray, distances: FloatArray) -> FloatArray:
+        """The g_j, shape (m,), for which the roots at these distances d_j - lambda_k, shape (m, k), are exact."""
+        spread = np.abs(rates[:, None] - rates) + np.eye(rates.size)
+        product = np.prod(np.abs(distances[:, : rates.size]) / spread, axis=1)
+        if self.viscosity > 0:
+            product = product * self.viscosity * np.abs(distances[:, rates.size])
+        return np.asarray(product / rates)
+
+    def elastic_force(self, time: FloatArray, force: FloatArray) -> FloatArray:
+        """F_e = J * dF: force under which springs without relaxation are displaced as far at each instant, shape (n,).
+
+        Args:
+            time: Instants [s].
+            force: F, linear between them; a force at the first instant is applied at once.
+        """
+        if self.is_elastic:
+            return force
+        z = self.modes.rates[:, None] * np.diff(time)
+        steady = np.divide(-np.expm1(-z), z, out=np.ones_like(z), where=z > 0)
+        gained = force[:-1] * steady + np.diff(force) * ramp_response(z)
+        gained = (self.modes.of_force * np.diff(time) * gained).T
+        amplitudes = [np.zeros(self.modes.rates.size)]
+        for decay, gain in zip(np.exp(-z.T), gained, strict=True):
+            amplitudes.append(amplitudes[-1] * decay + gain)
+        crept = np.sum(amplitudes, axis=1)
+        # A dashpot beside the springs holds them where they are: a force that is there at first does not move it.
+        return np.asarray(crept if self.viscosity > 0 else force + crept)

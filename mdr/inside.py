@@ -1,0 +1,358 @@
+"""Displacement and stress inside the body under one contact, from the Abel density phi of its pressure.
+
+Half-space part: the contact is a superposition of flat punches of radius t and weight -phi'(t), and one of radius a
+and weight phi(a). With I_mn = int p^ k^m exp(-kz) J_n(kr) dk, zeta = z + i t, R = sqrt(r^2 + zeta^2), Re R > 0, a
+density of one on [0, t] has
+
+    I_00: Im ln(zeta + R)   I_10: -Im 1/R   I_20: -Im zeta/R^3   I_01/r: -Im 1/(zeta + R)   I_11/r: -Im 1/(R (zeta + R))
+    I_21: -Im r/R^3
+
+    2G u_r/r = -(1 - 2nu) I_01/r + z I_11/r    2G u_z = 2(1 - nu) I_00 + z I_10    zz = -I_10 - z I_20    rz = -z I_21
+    rr + 2G u_r/r = -I_10 + z I_20             tt - 2G u_r/r = -2nu I_10           p = (2/3)(1 + nu) I_10
+
+By parts nothing cancels towards the surface. Layer part: an integral over the wave number k of what the layers add to
+the transfer from the surface to a depth, times p^ = (E*/pi) phi^. z points into the body, tension is positive.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import j0, j1
+
+from bem.equation import Sizes
+from bem.kernels.of_layer import surface_kernel
+from bem.kernels.stack import Material, Transfer, half_space_at
+from bem.numerics import EPS, even_bessel, gauss, panels
+from contact import ElasticLayer, InvalidInput
+from contact.answer.inside import InsideFields, KnownContact
+from contact.records.validation import FloatArray
+from contact.stated import SAFETY
+from mdr.contact_surface import Surface, surface_of
+from mdr.spring_bed import Springs
+
+# Fields take so many times more polynomials than k_N, which is stationary: with half of it they err by 1e-9 at a/h = 5.
+_POLYNOMIALS = 2.0
+# The surface is looked at this share of a below it; with 1e-9 it is seen beside edges.
+_NEAREST = 1e-12
+# Largest wave number of stacks times the top layer's thickness: exp(-45) is left out; with half of it 1e-10.
+_REACH = 45.0
+# Of graded layers times a, whose waves fall like exp(-kz)/k: half of it doubles the error beside the edge. Also k z.
+_GRADED_REACH, _GRADED_FADED = 400.0, 40.0
+# Radians that `Sizes.nodes` = 20 Gauss nodes resolve to the last digit; with twice of it to 1e-8.
+_PHASE = 25.0
+# Points at a time, and numbers in a table of waves at a time: what fits into the cache.
+_POINTS, _WAVES = 1000, 1 << 18
+# Contact radii from the contact of which stresses on a half-space, which fall like 1/r^2, are below all roundings; and
+# contact radii and thicknesses by which those on a layer, which fall exponentially, have vanished long ago.
+_FARTHEST, _FARTHEST_OF_WAVES = 1e8, 1e3
+# Roundings of the sum of the sizes of all terms, in those of the contact's force, and of the distance to its edge;
+# half of it is exceeded at times.
+_ROUNDINGS = 4.0
+
+
+class Fields(NamedTuple):
+    """Arrays over points: displacements [m], stresses, pressure [Pa] and its gradient [Pa/m]."""
+
+    radial_displacement: FloatArray
+    axial_displacement: FloatArray
+    radial_stress: FloatArray
+    hoop_stress: FloatArray
+    axial_stress: FloatArray
+    shear_stress: FloatArray
+    hydrostatic_pressure: FloatArray
+    pressure_gradient_radial: FloatArray
+    pressure_gradient_axial: FloatArray
+
+
+class Body:
+    """A layer under the pressure of one contact.
+
+    Args:
+        layer: The layer.
+        surface: The contact; its density, and nothing else, enters.
+    """
+
+    def __init__(self, layer: ElasticLayer, surface: Surface) -> None:
+        self.layer, self.surface, self.a = layer, surface, surface.a
+        self.tip, self.nodes = surface.tip, surface.sizes.nodes
+        self.kernel, self.nu = surface_kernel(layer), layer.surface.poissons_ratio
+        self.unit = 1.0 if layer.is_half_space else layer.surface.thickness
+
+    def at(self, r: FloatArray, z: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Rows of `Fields` at points [m] of shape (n,), and the sizes of the terms they are sums of, shape (9, n)."""
+        z = np.maximum(z, _NEAREST * self.a)
+        blocks = np.array_split(np.arange(r.size), 1 + r.size // _POINTS)
+        near = np.concatenate([self._half_space(r[some], z[some]) for some in blocks], axis=1)
+        shear, own, far = np.ones(r.size), np.ones(r.size, dtype=bool), np.zeros_like(near)
+        if not self.layer.is_half_space:
+            far, shear, own = self._layer(r, z)
+        parts = [_from_rows(part, r, shear * self.layer.shear_modulus) for part in (np.where(own, near, 0.0), far)]
+        return parts[0] + parts[1], np.abs(parts[0]) + np.abs(parts[1])
+
+    # The nine rows of a part: u_r/r and u_z times 2 G; zz, rz; rr + 2 G u_r/r; tt - 2 G u_r/r; p, dp/dr, dp/dz.
+
+    def _half_space(self, r: FloatArray, z: FloatArray) -> FloatArray:
+        i00, i10, i20, h01, h11, i21 = self._integrals(r, z)
+        nu, share = self.nu, 2 * (1 + self.nu) / 3
+        rows = [-(1 - 2 * nu) * h01 + z * h11, 2 * (1 - nu) * i00 + z * i10, -i10 - z * i20, -z * i21]
+        return np.array([*rows, -i10 + z * i20, -2 * nu * i10, share * i10, -share * i21, -share * i20])
+
+    def _integrals(self, r: FloatArray, z: FloatArray) -> FloatArray:
+        """I_00, I_10, I_20, I_01/r, I_11/r, I_21, shape (6, n)."""
+        surface, a = self.surface, self.a
+        found = surface.edge * _punch(r, z, a, (r - a) * (r + a))
+        for low, high in pairwise([0.0, *(b for b in self.tip.breaks if b < a), a]):
+            own, above, gap, weight, rest = self._nodes(low, high, r, z)
+            t = np.sqrt(low**2 + above)
+            falls = self.tip.transform_slope(t) - surface.smooth_slope(t)  # -phi'
+            for b, jump in self.tip.kinks:
+                if b <= low:
+                    falls += jump * b / np.sqrt((low - b) * (low + b) + above)
+            if surface.corner and high == a:
+                falls -= surface.corner * np.log((a + t) ** 2 / rest)
+            elif surface.corner:
+                falls -= surface.corner * np.log((a + t) / (a - t))
+            falls *= weight / t
+            for i, one in enumerate(_punch(r[own, None], z[own, None], t, gap)):
+                found[i] += np.bincount(own, (one * falls).sum(axis=1), r.size)
+        return self.surface.springs.modulus / np.pi * found
+
+    def _nodes(
+        self, low: float, high: float, r: FloatArray, z: FloatArray
+    ) -> tuple[NDArray[np.intp], FloatArray, FloatArray, FloatArray, FloatArray]:
+        """Gauss nodes of all panels: their point, t^2 - low^2, r^2 - t^2, t dt, high^2 - t^2.
+
+        t^2 = low^2 + (high^2 - low^2) sin^2(angle) has roots at both ends. Panels end at the angle of r, and go
+        fourfold away from it, first by the distance of the pole r + i z.
+        """
+        span, end = (high - low) * (high + low), np.pi / 2
+        share = np.arcsin(high / self.a) - np.arcsin(low / self.a)
+        fixed = [np.linspace(0, end, 2 + int(self.surface.degree * max(share, 0.2) / _PHASE))]
+        if low == 0:  # tips like r^1.7 are not analytic
+            fixed.append(fixed[0][1] * 0.1 ** np.arange(1.0, 10))
+        if high == self.a and (self.surface.corner or self.tip.profile.ends_upright):
+            fixed.append(end - fixed[0][1] * 0.1 ** np.arange(1.0, 8))
+        closest = np.clip(r, low, high)
+        middle = np.arcsin(np.sqrt((closest - low) * (closest + low) / span))
+        pole = np.abs(np.arcsin(np.sqrt(((r + 1j * z) ** 2 - low**2) / span)) - middle)
+        own, start, width = _panels(middle, pole, np.concatenate(fixed))
+        x, w = gauss(self.nodes)
+        offset = start[:, None] + width[:, None] * x
+        angle = middle[own, None] + offset
+        # With the digits of the offset, however close to r.
+        gap = ((r - closest) * (r + closest))[own, None] - span * np.sin(offset) * np.sin(angle + middle[own, None])
+        weight = span * np.sin(angle) * np.cos(angle) * width[:, None] * w
+        return own, span * np.sin(angle) ** 2, gap, weight, span * np.cos(angle) ** 2
+
+    def _layer(self, r: FloatArray, z: FloatArray) -> tuple[FloatArray, FloatArray, NDArray[np.bool_]]:
+        """What layers add; G of the material over the surface's; whether the half-space part counts there."""
+        found, shear, own = np.empty((9, r.size)), np.empty(r.size), np.empty(r.size, dtype=bool)
+        groups = np.zeros(z.size) if self.kernel.is_smooth else np.floor(np.log2(z))
+        for number in np.unique(groups):
+            some = np.flatnonzero(groups == number)
+            k, load = self._load(float(z[some].min()), float(r[some].max()))
+            descent = self.kernel.descent(k * self.unit)
+            places = descent.places(z[some] / self.unit)
+            for place in np.unique(places).tolist():
+                here = some[places == place]
+                parts = 1 + here.size * k.size // _WAVES
+                for few in np.array_split(here[np.argsort(z[here], kind="stable")], parts):
+                    (depth, at), (radius, beside) = (np.unique(x[few], return_inverse=True) for x in (z, r))
+                    scaled = depth[:, None] / self.unit
+                    material = descent.material(place, scaled)
+                    rows = load * self._rows(k, depth[:, None], material, descent.at(place, scaled))
+                    shear[few], own[few] = np.broadcast_to(material.shear_modulus, scaled.shape)[at, 0], material.is_top
+                    if depth.size * radius.size <= 4 * few.size:  # a grid
+                        found[:, few] = _waves(rows, k, radius)[:, at, beside]
+                    else:
+                        found[:, few] = _waves(rows, k, r[few], at)
+        return found, shear, own
+
+    def _rows(self, k: FloatArray, z: FloatArray, material: Material, transfer: Transfer) -> FloatArray:
+        """Factors of the Bessel functions at depths z, shape (9, m, n), in the top layer beyond the half-space's."""
+        unit = self.unit
+        rows = _row_factors(
+            transfer, k, material._replace(stiffens=material.stiffens / unit, turns=material.turns / unit)
+        )
+        if not material.is_top:
+            return rows
+        return rows - _row_factors(half_space_at(k * z, self.nu), k, Material(1.0, self.nu, 0.0, 0.0, is_top=True))
+
+    def _load(self, lowest: float, widest: float) -> tuple[FloatArray, FloatArray]:
+        """Wave numbers [1/m] and p^ times their weights, for points below a depth and up to a radius.
+
+        Panels of four periods, halved towards k = 0 down to where the layer answers like a polynomial.
+        """
+        top = _REACH / self.unit
+        if not self.kernel.is_smooth:
+            most = _GRADED_REACH * (1 + self.surface.sizes.extra / 2)
+            top = min(_GRADED_FADED / lowest, most / self.a)
+        width = 8 * np.pi / (self.a + widest)
+        first = min(width, top, 0.25 / self.unit / self.kernel.longest)
+        doubled = first * 2.0 ** np.arange(max(0, int(np.ceil(np.log2(min(width, top) / first)))))
+        even = np.linspace(doubled[-1], top, 2 + int((top - doubled[-1]) / width)) if doubled.size else np.array([top])
+        k, w = panels(np.concatenate([[0.0], doubled, even[doubled.size > 0 :]]), self.nodes)
+        return k, w * self.surface.springs.modulus / np.pi * self._transform(k)
+
+    def _transform(self, k: FloatArray) -> FloatArray:
+        """phi^(k) = int_0^a phi cos kt dt [m^2]: that of the profile by as many moments as k a resolves."""
+        a, surface = self.a, self.surface
+        count = 12 + int(k[-1] * a / 2)
+        n = np.arange(count)
+        load = -self.tip.moments(np.array([a]), count, surface.sizes.extra)[0]
+        load[0] += surface.depth
+        known = a * (load * np.sqrt(4 * n + 1) * (-1.0) ** n) @ even_bessel(k * a, count)
+        return np.asarray(known + surface.smooth_transform(k))
+
+
+def _punch(r: FloatArray, z: FloatArray, t: FloatArray | float, gap: FloatArray) -> FloatArray:
+    """The six integrals of a density of one on [0, t], those with n = 1, m < 2 over r; gap = r^2 - t^2."""
+    zeta = z + 1j * t
+    inverse = 1 / np.sqrt(gap + z * z + 2j * z * t)
+    beyond = 1 / (zeta + 1 / inverse)
+    cube = inverse**3
+    return np.array([-np.log(beyond), -inverse, -zeta * cube, -beyond, -inverse * beyond, -r * cube]).imag
+
+
+def _panels(middle: FloatArray, pole: FloatArray, fixed: FloatArray) -> tuple[NDArray[np.intp], FloatArray, FloatArray]:
+    """Panels of [0, pi/2]: of each its point, its start relative to `middle`, its width."""
+    steps = pole[:, None] * 4.0 ** np.arange(25)
+    ends = np.concatenate([fixed - middle[:, None], 0 * steps[:, :1], steps, -steps], axis=1)
+    ends = np.sort(np.clip(ends, -middle[:, None], np.pi / 2 - middle[:, None]), axis=1)
+    width = np.diff(ends)
+    own, number = np.nonzero(width > 0)
+    return own, ends[own, number], width[own, number]
+
+
+def _row_factors(transfer: Transfer, k: FloatArray, material: Material) -> FloatArray:
+    """What multiplies p^ and the Bessel function of each row."""
+    u, w, q, p = transfer
+    _, nu, stiffens, turns, _ = material
+    m, share = nu / (1 - nu), (1 + nu) / (3 * (1 - nu))
+    along = share * (k * (q - w) - stiffens * u) + 2 * turns / (3 * (1 - nu) ** 2) * (p - u)
+    rows = [u, w, -k * p, -k * q, k * (u / (1 - nu) - m * p), k * m * (u - p), share * k * (p - u)]
+    return np.array([*rows, -share * k * k * (p - u), k * along])
+
+
+def _waves(rows: FloatArray, k: FloatArray, r: FloatArray, at: NDArray[np.intp] | None = None) -> FloatArray:
+    """Sums over k of rows times J1/r, J0 or J1: all depths by all radii, or each radius at its own depth."""
+    kr = np.multiply.outer(r, k)
+    even, odd = j0(kr), j1(kr)
+    over_r = np.where(r[:, None] > 0, odd / np.where(r > 0, r, 1.0)[:, None], k / 2)
+    waves = [over_r, even, even, odd, even, even, even, odd, even]
+    if at is None:
+        return np.array([row @ wave.T for row, wave in zip(rows, waves, strict=True)])
+    return np.array([np.einsum("pk,pk->p", row[at], wave) for row, wave in zip(rows, waves, strict=True)])
+
+
+def _from_rows(rows: FloatArray, r: FloatArray, shear: FloatArray) -> FloatArray:
+    """In the order of `Fields`, from the nine rows and G [Pa]."""
+    hoop, axial, zz, rz, s1, s2, p, p_r, p_z = rows
+    return np.array([r * hoop / (2 * shear), axial / (2 * shear), s1 - hoop, s2 + hoop, zz, rz, p, p_r, p_z])
+
+
+@dataclass(frozen=True, eq=False)
+class Interior:
+    """Fields inside a layer under contacts, each counted so many times, with errors by another resolution.
+
+    Attributes:
+        layer: The layer.
+        contacts: (weight, contact at two resolutions, the finer one first): one contact of weight 1, or many whose
+            weighted pressures add up.
+        known: Radius and errors of the contact.
+        depth: delta [m], to which errors of displacements are relative.
+    """
+
+    layer: ElasticLayer
+    contacts: Sequence[tuple[float, tuple[Surface, Surface]]]
+    known: KnownContact
+    depth: float
+
+    def at(self, radius: FloatArray, depth: FloatArray) -> InsideFields:
+        """At points [m] of shape (n,).
+
+        Raises:
+            InvalidInput: A point so far away that nothing is left to be resolved.
+        """
+        self._refuse_distant(radius, depth)
+        z = np.minimum(depth, self.layer.thickness)
+        values, sizes = self._sum(0, radius, z)
+        other, _ = self._sum(1, radius, z)
+        surface = self.contacts[0][1][0]
+        floor = _ROUNDINGS * float(surface.springs.floor(np.array([surface.a]))[1][0])
+        near = np.hypot(radius - self.known.radius, np.maximum(z, _NEAREST * self.known.radius))
+        errors = SAFETY * np.abs(values - other) + (floor + _ROUNDINGS * EPS * self.known.radius / near) * sizes
+        rises = 1 / min(
+            1.0, max(getattr(surface.tip, "exponent", 2.0) - 1, 0.1)
+        )  # stress at a tip r^n goes with z^(n-1)
+        raised = 2 * rises * np.maximum(_NEAREST * self.known.radius - z, 0.0)
+        errors[:2] += raised * np.abs(values[2:6]).max(axis=0) / self.layer.contact_modulus
+        errors[2:7] += raised * np.abs(values[7:]).max(axis=0)
+        return InsideFields(**Fields(*values)._asdict(), error_estimate=self._stated(values, errors))
+
+    def _sum(self, which: int, r: FloatArray, z: FloatArray) -> tuple[FloatArray, FloatArray]:
+        parts = [(weight, Body(self.layer, pair[which]).at(r, z)) for weight, pair in self.contacts]
+        return (
+            np.sum([weight * values for weight, (values, _) in parts], axis=0),
+            np.sum([abs(weight) * sizes for weight, (_, sizes) in parts], axis=0),
+        )
+
+    def _stated(self, values: FloatArray, errors: FloatArray) -> dict[str, float]:
+        """Largest errors of each kind over their scales, see `InsideFields`."""
+        stress, steepest = float(np.abs(values[2:6]).max()), float(np.abs(values[7:]).max())
+        length = min(self.known.radius, self.layer.thickness)
+        kinds: dict[str, tuple[slice, float]] = {
+            "displacement": (slice(0, 2), abs(self.depth)),
+            "stress": (slice(2, 6), stress),
+            "hydrostatic_pressure": (slice(6, 7), stress),
+            "pressure_gradient": (slice(7, 9), max(steepest, stress / length)),
+        }
+        known = self.known.density_error
+        return {name: float(errors[rows].max()) / (scale or np.inf) + known for name, (rows, scale) in kinds.items()}
+
+    def _refuse_distant(self, radius: FloatArray, depth: FloatArray) -> None:
+        layer, a = self.layer, self.known.radius
+        farthest = _FARTHEST * a if layer.is_half_space else _FARTHEST_OF_WAVES * (a + layer.thickness)
+        distant = np.flatnonzero(np.maximum(radius, depth) > farthest)
+        if distant.size:
+            r, z = radius[distant[0]], depth[distant[0]]
+            raise InvalidInput(
+                f"(r, z) = ({r:g}, {z:g}) m: nothing is left to resolve beyond {farthest:g} m; ask nearer"
+            )
+
+
+def interior(
+    springs: Springs, layer: ElasticLayer, known: KnownContact, depth: float, *, is_singular: bool
+) -> Interior:
+    """The body under one contact [m]; `is_singular`: whether phi(a) is not zero."""
+    return Interior(layer, [(1.0, pair_of(springs, known, depth, is_singular=is_singular))], known, depth)
+
+
+def pair_of(springs: Springs, known: KnownContact, depth: float, *, is_singular: bool) -> tuple[Surface, Surface]:
+    """One contact with finer sizes, and with the usual ones at a radius that is off by its error."""
+    build: Callable[[Sizes, float], Surface] = lambda sizes, a: surface_of(  # noqa: E731
+        springs.at_sizes(sizes._replace(rate=_POLYNOMIALS * sizes.rate)), a, depth, is_singular=is_singular
+    )
+    sizes, a = springs.sizes, known.radius
+    return build(sizes.finer, a), build(sizes, min(a * (1 + known.radius_error), springs.tip.end))
+
+
+def superposed(
+    springs: Springs, layer: ElasticLayer, contacts: Sequence[tuple[float, float]], known: KnownContact, depth: float
+) -> Interior:
+    """The body under a sum of elastic contacts without adhesion, given by (radius [m], weight).
+
+    A history's pressure at an instant is such a sum: every contact that has grown to a radius counts as much as is left
+    of its stress.
+    """
+    pairs = []
+    for a, weight in contacts:
+        own = float(springs.at([a]).g[0])
+        pairs.append((weight, pair_of(springs, known._replace(radius=a), own, is_singular=False)))
+    return Interior(layer, pairs, known, depth)

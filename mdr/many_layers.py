@@ -1,0 +1,97 @@
+"""One indenter on many layers that differ in thickness and modulus only: all contacts at once.
+
+The flat punches of such layers depend on a/h alone, so one interpolation of them serves all contacts
+(`Springs.thickness`). Radii under prescribed depths or forces: a search on coarse springs, ended on accurate ones.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from bem.equation import Sizes
+from bem.kernels.moduli import contact_modulus
+from bem.kernels.of_contact import ContactKernel
+from contact import ContactRadii, FlatPunch, IndentationDepths, Layer, NormalForces, Scene
+from contact.records.validation import FloatArray
+from mdr.equilibria import is_simple
+from mdr.radius_search import Quantity, RadiusSearch
+from mdr.spring_bed import LARGEST_RATIO, Springs
+
+# ln of radii [m] beside a flat end at which the half-space's answer is tabulated for first guesses.
+_TABLE = np.linspace(-60.0, 40.0, 400)
+# Secant steps on coarse springs; six are usual. They end at this logarithmic residual.
+_STEPS, _CLOSE = 40, 1e-4
+# Least and largest powers with which depth or force grow: beside a flat end, and of the steepest tips.
+_POWERS = (0.2, 25.0)
+
+
+def takes_part(scene: Scene) -> bool:
+    """Whether a scene may be answered together with others: one value, and a circle that nothing can disturb."""
+    values = getattr(scene.loading, "values", np.zeros(1))
+    rises = not isinstance(scene.indenter, FlatPunch)
+    is_layer = isinstance(scene.layer, Layer) and not scene.layer.is_half_space
+    return bool(values.size == 1 and values[0] > 0.0 and rises and is_layer and is_simple(scene))
+
+
+def equilibria_on_layers(scenes: Sequence[Scene], sizes: Sizes) -> FloatArray:
+    """Radius [m], depth [m], force [N] and stiffness [N/m], shape (4, n); NaN where a scene is out of reach.
+
+    Args:
+        scenes: Scenes that take part, of one indenter, one kind of loading, one support and Poisson's ratio.
+        sizes: Resolution.
+    """
+    layer, indenter = scenes[0].layer, scenes[0].indenter
+    values = np.array([getattr(scene.loading, "values", np.zeros(1))[0] for scene in scenes])
+    thickness = np.array([scene.layer.surface.thickness for scene in scenes])
+    modulus = np.array([contact_modulus(scene.layer) for scene in scenes])
+    springs = replace(Springs.of(layer, indenter, sizes), unit=1.0, modulus=1.0, thickness=thickness)
+    loading = scenes[0].loading
+    by_depth, by_force = isinstance(loading, IndentationDepths), isinstance(loading, NormalForces)
+    radius, targets = values, values / modulus if by_force else values
+    if not isinstance(loading, ContactRadii):
+        radius = _radii(springs, "force" if by_force else "depth", targets)
+    reached = (radius < indenter.max_radius) & (radius < LARGEST_RATIO * thickness) & (radius > indenter.flat_radius)
+    springs = replace(springs, thickness=thickness[reached])
+    at, targets = springs.at(radius[reached]), targets[reached]
+    state = springs.state(radius[reached], at, targets if by_depth else None)
+    if by_force:
+        state = springs.state(radius[reached], at, springs.depth_of(targets, at))._replace(force=targets)
+    found = np.full((4, values.size), np.nan)
+    found[:, reached] = state
+    found[2:] *= modulus
+    if by_force:
+        found[2, reached] = values[reached]
+    return found
+
+
+def _radii(springs: Springs, quantity: Quantity, targets: FloatArray) -> FloatArray:
+    """Contact radii [m] with these depths [m] or forces over E* [m^2]; infinite where the search does not end."""
+    y, search = np.log(targets), RadiusSearch(springs, may_fall=False)
+    start = search.scale(_on_half_space(springs, quantity, y))
+    slope, before = np.full_like(start, 2.0 if quantity == "force" else 1.0), np.full((2, y.size), np.nan)
+    for _ in range(_STEPS):
+        off = search.logarithm(springs.coarse, quantity, start) - y
+        now = np.stack([start, off])
+        step, change = now - before
+        rise = np.divide(change, step, out=slope.copy(), where=np.abs(step) > 0)
+        slope, before = np.clip(rise, *_POWERS), now
+        if float(np.abs(off).max()) < _CLOSE:
+            break
+        start = start - np.clip(off / slope, -1.0, 1.0)
+    usable = np.abs(off) < _CLOSE
+    radius = np.full_like(y, np.inf)
+    some = RadiusSearch(replace(springs, thickness=np.asarray(springs.thickness)[usable]), may_fall=False)
+    radius[usable] = some.refined(quantity, y[usable], start[usable], slope[usable])
+    return radius
+
+
+def _on_half_space(springs: Springs, quantity: Quantity, y: FloatArray) -> FloatArray:
+    """Contact radii [m] with these logarithms of depth or force on a half-space, roughly."""
+    search = RadiusSearch(replace(springs, kernel=ContactKernel(None), thickness=1.0), may_fall=False)
+    with np.errstate(all="ignore"):
+        table = search.logarithm(search.springs, quantity, _TABLE)
+    known = np.isfinite(table)
+    return search.place(np.interp(y, np.maximum.accumulate(table[known]), _TABLE[known]))

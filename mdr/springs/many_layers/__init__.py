@@ -1,1 +1,0 @@
-"""Contacts of one indenter with many layers, solved at once."""

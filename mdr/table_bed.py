@@ -1,0 +1,161 @@
+"""Springs from a table of flat punches, Eqs. (11) and (12): the equation of contact is replaced by measured punches.
+
+A table knows the Abel density phi_1(t; a) of every punch (`bem.tables`). Reciprocity gives the force of a profile, and
+the release of energy at the edge its depth:
+
+    M(a) = int_0^a phi_1(t; a) g_hs(t) dt,   g = M'/K',   K' = y_1^2,   y_1 = phi_1(a; a),            Eqs. (4), (11)
+    R(a, t) = d phi_1(t; a)/da / y_1,        y_1 g = g_hs(a) + int_0^a R(a, t) g_hs(t) dt.
+
+So phi_1 and R stand where `bem.equation` has punch and resolvent. Any other pressure is a superposition of punches,
+Eq. (12): phi = W + int_0^r R W + int_r^a R (..), in operators A^-1 = (1 + R)^T (1 + R) with A of the equation.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import ClassVar, TypeAlias
+
+import numpy as np
+
+from bem.equation import Radius, Rows, Sizes
+from bem.grid.discs import shared_error
+from bem.kernels.of_contact import contact_kernel
+from bem.layer_equation.protocol import FlatPunchSource
+from bem.numerics import even_legendre, gauss
+from bem.tables import RUNGS, SMALLEST_RATIO, FftTable, FlatPunchTable, TableFile
+from contact import ElasticLayer, InvalidInput, Profile
+from contact.records.validation import FloatArray
+from mdr.spring_bed import Springs
+
+TableSource: TypeAlias = FftTable | TableFile
+
+# Relative errors that both tables share: of q, where conjugate gradients stop, and of k_bar, stationary there.
+_PRESSURE_FLOOR, _STIFFNESS_FLOOR = 1e-6, 2e-9
+
+
+@dataclass(frozen=True, eq=False)
+class TablePunches:
+    """Flat punches of all radii by tables, with the interface of `bem.equation.FlatPunches`.
+
+    Attributes:
+        source: Of the tables.
+        layer: Layer that they are of.
+        is_coarser: Whether these are the punches that state errors.
+    """
+
+    source: TableSource
+    layer: ElasticLayer
+    is_coarser: bool = False
+
+    def table(self, ratio: float) -> FlatPunchTable:
+        """The table that covers a ratio a/h."""
+        table = self.source.solution(self.layer, ratio)
+        return table.coarser if self.is_coarser and table.coarser else table
+
+    def at(self, ratios: FloatArray) -> Iterator[Rows]:
+        """Punches and resolvents at ratios a/h, shape (n,), rung after rung."""
+        rung = np.searchsorted(np.array(RUNGS[:-1]), ratios)
+        for one in np.unique(rung).tolist():
+            index = np.flatnonzero(rung == one)
+            y1, density, slope = self.table(float(ratios[index].max())).at(ratios[index])
+            n = np.arange(density.shape[1])
+            degree = np.sqrt(4 * n + 1)
+            # t dP_2n(t)/dt = 2n P_2n + sum_(j < n) (4j + 1) P_2j: rows fall with t where t/a is kept.
+            stretch = np.diag(2.0 * n) + np.triu(np.repeat(4.0 * n + 1, n.size).reshape(n.size, n.size), 1)
+            resolvent = (slope - density @ stretch.T) / (y1[:, None] * degree)
+            # phi_1 ends with y_1, whatever its series does.
+            resolvent[:, 0] = y1 - 1
+            yield Rows(index, density / degree, resolvent, np.ones((index.size, 2)))
+
+    def radius(self, ratio: float) -> TableRadius:
+        """The operator of one contact radius."""
+        return TableRadius(self, ratio)
+
+    def unknowns(self, ratio: float) -> int:
+        """Cells of a quadrant of the grid."""
+        return self.table(ratio).cells ** 2 // 4
+
+
+class TableRadius(Radius):
+    """A^-1 = (1 + R)^T (1 + R) of one contact radius in the polynomials b_n.
+
+    Args:
+        punches: Of all radii.
+        ratio: a/h.
+    """
+
+    def __init__(self, punches: TablePunches, ratio: float) -> None:
+        super().__init__(contact_kernel(punches.layer), ratio)
+        self.count = next(punches.at(np.array([ratio]))).punch.shape[1]
+        self.degree = np.sqrt(4 * np.arange(self.count) + 1)  # b_n(1)
+        self._waves = self._waves._replace(orders=self.count)
+        v, w = gauss(2 * self.count)
+        resolvent = np.empty((v.size, self.count))
+        for rows in punches.at(ratio * v):
+            resolvent[rows.which] = rows.resolvent
+        within = w[:, None] * self.degree * even_legendre(v, self.count)
+        stretched = even_legendre(np.outer(v, v), self.count) * self.degree
+        lower = self.degree * even_legendre(v, self.count) + np.einsum("jk,ik,jin->jn", resolvent, within, stretched)
+        self._inverse = lower.T @ (w[:, None] * lower)
+
+    def solve(self, right: FloatArray) -> FloatArray:
+        """A^-1 right, shape (count,)."""
+        return np.asarray(self._inverse @ right)
+
+
+@dataclass(frozen=True, eq=False)
+class TableSprings(Springs):
+    """Springs and MDR profile from tables of flat punches.
+
+    Attributes:
+        measured: Flat punches of the layer.
+    """
+
+    measured: TablePunches = field(kw_only=True)
+    is_tabulated: ClassVar[bool] = True
+
+    @classmethod
+    def of_table(cls, layer: ElasticLayer, indenter: Profile, source: FlatPunchSource) -> TableSprings:
+        """Springs of a uniform layer.
+
+        Raises:
+            UnsupportedSceneError: If the layer is not uniform.
+            InvalidInput: If a stored table is of another layer, or the source no table.
+        """
+        if not isinstance(source, FftTable | TableFile):
+            raise InvalidInput(f"flat_punch = {type(source).__name__}: give an IntegralEquation, FftTable or TableFile")
+        source.solution(layer, SMALLEST_RATIO)
+        springs = Springs.of(layer, indenter)
+        return cls(springs.kernel, springs.unit, springs.modulus, springs.tip, measured=TablePunches(source, layer))
+
+    def at_sizes(self, sizes: Sizes) -> TableSprings:
+        """The same springs with other quadratures of the profile."""
+        return replace(self, sizes=sizes)
+
+    @cached_property
+    def finer(self) -> Springs:
+        """The companion whose change states errors: tables of half as many cells, and finer quadratures."""
+        return replace(self, sizes=self.sizes.finer, measured=replace(self.measured, is_coarser=True))
+
+    @property
+    def coarse(self) -> Springs:
+        """The same springs, which cost little."""
+        return self
+
+    @property
+    def punches(self) -> TablePunches:  # type: ignore[override]
+        """Flat punches of all radii on this layer."""
+        return self.measured
+
+    @property
+    def largest_ratio(self) -> float:
+        """Largest a/h of the tables."""
+        return self.measured.source.largest_ratio
+
+    def floor(self, radii: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Relative errors of depth, and of force and stiffness, that both tables share, shape (n,)."""
+        ratio = radii / self.unit
+        edge = _PRESSURE_FLOOR + shared_error(self.measured.table(float(ratio.max())).cells, ratio)
+        return edge, np.full(radii.size, _STIFFNESS_FLOOR)
