@@ -33,7 +33,7 @@ _PHASE = 48.0
 # Wave numbers that are summed at a time: memory only.
 _CHUNK = 4000
 # Share of the contact radius below which the pressure is that of this radius. Half of it doubles roundings there.
-_AXIS = 1e-8
+_AXIS = 1e-6
 # Share of the contact radius on which the first panel under a power law r^n ends: 0.02 leaves 1e-13 for n = 1.07.
 _TIP = 0.02
 # B times the thickness. Half or twice of it leave a hundred times more.
