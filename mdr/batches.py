@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
-from bem.flat_punch import IntegralEquation
-from bem.layer_equation.protocol import FlatPunchSource
+from bem.flat_punch import FlatPunchSource, IntegralEquation
 from contact import (
     ContactRadii,
     Detachment,

@@ -13,7 +13,7 @@ import numpy as np
 
 from bem.adhesion.equilibrium_branch import DEPTH, FORCE
 from bem.adhesion.withdrawal import CONTROLS, Route
-from bem.layer_equation.protocol import FlatPunchSource
+from bem.flat_punch import FlatPunchSource
 from contact import Detachment, DetachmentPath, FlatPunch, InvalidInput, Scene, StageLog, UnsupportedSceneError
 from contact.answer.solution import Setting
 from contact.records.validation import BoolArray, FloatArray

@@ -15,8 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bem.equation import USUAL, Sizes
-from bem.flat_punch import IntegralEquation
-from bem.layer_equation.protocol import FlatPunchSource
+from bem.flat_punch import FlatPunchSource, IntegralEquation
 from bem.numerics import EPS, gauss
 from contact import (
     ContactPath,

@@ -7,8 +7,7 @@ from typing import Annotated, ClassVar, Self, overload
 
 from pydantic import Field
 
-from bem.flat_punch import IntegralEquation
-from bem.layer_equation.protocol import FlatPunchSource
+from bem.flat_punch import FlatPunchSource, IntegralEquation
 from contact import (
     ContactPath,
     Detachment,
@@ -30,8 +29,7 @@ from contact.answer.small_strains import within_small_strains
 from contact.answer.solution import Setting
 from contact.records.record import Record, record
 from contact.records.validation import in_range
-from mdr.dispatch import solver_of
-from mdr.springs.error_model import DEFAULT_ACCURACY
+from mdr.dispatch import DEFAULT_ACCURACY, solver_of
 
 # The coarsest accuracy that time steps are chosen for: what coarser steps would save is too little to be measured.
 COARSEST = 1e-4

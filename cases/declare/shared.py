@@ -86,7 +86,7 @@ SHARED: tuple[Shared, ...] = (
     ),
     Shared(
         name="fields inside from the contact's density",
-        place="bem.layer_equation.inside",
+        place="mdr.inside",
         methods=("mdr",),
         guard="agreement with finite elements; laws of elastic bodies",
         cases=("inside_half_space", "inside_layer"),

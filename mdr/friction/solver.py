@@ -12,10 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import brentq
 
-from bem.flat_punch import IntegralEquation
+from bem.flat_punch import FlatPunchSource, IntegralEquation
 from bem.kernels.moduli import contact_modulus
 from bem.kernels.of_layer import stack_kernel
-from bem.layer_equation.protocol import FlatPunchSource
 from bem.numerics import EPS
 from contact import (
     ContactPath,

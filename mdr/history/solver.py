@@ -13,8 +13,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from bem.flat_punch import FlatPunchSource
 from bem.kernels.moduli import relaxation_of
-from bem.layer_equation.protocol import FlatPunchSource
 from bem.numerics import EPS
 from contact import (
     DepthHistory,
@@ -31,6 +31,7 @@ from contact.records.validation import FloatArray
 from contact.stated import stated_error
 from mdr.admissible import refuse_pulling, refuse_touching_outside
 from mdr.contact_surface import surface_of
+from mdr.dispatch import DEFAULT_ACCURACY
 from mdr.equilibria import is_simple, is_singular, springs_on
 from mdr.history.force_control import March, Steps, never_larger, steps_of
 from mdr.history.fronts import Layout, fronts, layout, panel_ends, refuse_open_inside
@@ -38,7 +39,6 @@ from mdr.history.spring_bed import Path, SpringBed, followed
 from mdr.history.spring_law import SpringLaw
 from mdr.radius_search import RadiusSearch, refuse_too_wide
 from mdr.spring_bed import Springs
-from mdr.springs.error_model import DEFAULT_ACCURACY
 
 # Nodes per panel under a depth, and under a force, where panels are as many as instants. With half as many errors of
 # 1e-6 are stated.

@@ -14,10 +14,9 @@ from typing import NamedTuple
 import numpy as np
 
 from bem.equation import Sizes
+from bem.flat_punch import FlatPunchSource, IntegralEquation
 from bem.kernels.moduli import contact_modulus
 from bem.kernels.of_contact import ContactKernel, contact_kernel, unit_of
-from bem.layer_equation.flat_punch_source import IntegralEquation
-from bem.layer_equation.protocol import FlatPunchSource
 from contact import ElasticLayer, FlatPunch, PowerLaw, Profile, Scene, UnsupportedSceneError
 from contact.records.validation import FloatArray
 from mdr.equilibria import springs_on

@@ -9,8 +9,8 @@ from typing import NamedTuple
 import numpy as np
 
 from bem.equation import Sizes
+from bem.flat_punch import FlatPunchSource
 from bem.kernels.moduli import relaxation_of
-from bem.layer_equation.protocol import FlatPunchSource
 from bem.numerics import EPS
 from contact import Impact, InvalidInput, NotConvergedError, Scene, UnsupportedSceneError
 from contact.records.validation import FloatArray

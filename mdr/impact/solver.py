@@ -12,8 +12,7 @@ from typing import TypeAlias
 import numpy as np
 
 from bem.equation import USUAL, Sizes
-from bem.layer_equation.flat_punch_source import IntegralEquation
-from bem.layer_equation.protocol import FlatPunchSource
+from bem.flat_punch import FlatPunchSource, IntegralEquation
 from contact import FlatPunch, ImpactHistory, InvalidInput, Scene, StageLog
 from contact.answer.small_strains import refuse_deep
 from contact.answer.solution import Setting

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from bem.flat_punch import IntegralEquation
-from bem.polynomials.gauss_panels import gauss_nodes
+from bem.numerics import gauss
 from contact import (
     Cone,
     ContactRadii,
@@ -231,7 +231,7 @@ def test_the_first_order_under_a_flat_end_is_that_of_the_pressure():
     indenter = TruncatedCone(flat_radius=0.2, slope=0.1)
     path = Mdr().solve(Scene(layer=layer(0.0), indenter=indenter, loading=ContactRadii([0.3])))
     slid_by = _slip(path.scene.layer.in_own_units(), 0.3)[0]
-    nodes, weights = gauss_nodes(80)
+    nodes, weights = gauss(80)
     # Nodes crowd with the fourth power towards both ends of each stretch.
     crowded, slope = nodes**4 * (35 - 84 * nodes + 70 * nodes**2 - 20 * nodes**3), 140 * (nodes * (1 - nodes)) ** 3
     total = 0.0

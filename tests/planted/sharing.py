@@ -262,7 +262,7 @@ FAULTS = (
     SharedFault(
         "fields inside from the contact's density",
         "fields of the half-space's part",
-        swap("bem.layer_equation.inside.half_space_part:fields", all_larger),
+        wrong_method("mdr.inside:Body", "at"),
         ("inside", "inside half-space"),
     ),
     SharedFault(
