@@ -233,7 +233,7 @@ def solved(
                 one = attempted([blows[i]], sizes, number, excess[[place]], again=True), 0
             old, error = found[i], np.nan_to_num(one[0].error[:, one[1]].max(), nan=np.inf)
             before = np.inf if old is None else old[0].error[:, old[1]].max()
-            if old is None or error < before:
+            if old is None or (not _unsure(*old) < _CONVERGED) or (_unsure(*one) < _CONVERGED and error < before):
                 found[i] = one
             nodes[i] = round(_NEXT * number)
             if error < accuracy or nodes[i] > _MOST_NODES or (before < _CONVERGED and error > before / 2):

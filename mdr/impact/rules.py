@@ -67,7 +67,8 @@ class Rule:
 
     def at(self, values: FloatArray, s: FloatArray) -> FloatArray:
         """Polynomials through values at the nodes, shape (lanes, n), at s, shape (lanes, k)."""
-        basis = legendre.legvander(2 * s - 1, self.nodes.size - 1) @ self.analysis
+        # Contiguous, since products of other arrays round otherwise for many lanes than for one.
+        basis = np.ascontiguousarray(legendre.legvander(2 * s - 1, self.nodes.size - 1)) @ self.analysis
         return np.asarray((basis @ values[..., None])[..., 0])
 
 
