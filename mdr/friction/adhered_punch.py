@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cached_property
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -160,7 +160,7 @@ class Adhered:
     def polynomial(self, t: FloatArray) -> tuple[ComplexArray, ComplexArray]:
         """g(t) and g'(t) of Phi = rho g."""
         eps, factor = self.eps, self._factors
-        here: ComplexArray = t - 1j * eps
+        here: NDArray[Any] = t - 1j * eps
         below, slope_below, slope = np.ones_like(here), np.zeros_like(here), np.ones_like(here)
         value, change = factor[0] + factor[1] * here, factor[1] * slope
         for m in range(1, self.count - 1):

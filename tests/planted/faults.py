@@ -50,15 +50,21 @@ HALF_SPACE = ("half-space depth", "half-space force")
 
 def plane_stress_kolosov(kernel):
     """kappa = (3 - nu)/(1 + nu), that of plane stress, is the kernel of another Poisson's ratio."""
-    return lambda q, support, nu: kernel(q, support, nu / (1 + nu))
+    return lambda self, q: kernel(_with_ratio(self, lambda nu: nu / (1 + nu)), q)
+
+
+def _with_ratio(stack, change):
+    """The same layers with other Poisson's ratios."""
+    sheets = (dataclasses.replace(one, poissons_ratio=change(one.poissons_ratio)) for one in stack.sheets)
+    return dataclasses.replace(stack, sheets=tuple(sheets))
 
 
 def unbonded_without_linear_term(kernel):
     """2 sinh^2(q)/sinh(2q): the 2q of the denominator is forgotten, 1 - chi = 2 D/(1 + D) with D = exp(-2q)."""
 
-    def wrong(q, support, nu):
+    def wrong(self, q):
         D = np.exp(-2 * np.asarray(q))
-        return 2 * D / (1 + D) if support == "unbonded" else kernel(q, support, nu)
+        return 2 * D / (1 + D) if self.sheets[0].slips_below else kernel(self, q)
 
     return wrong
 
@@ -72,13 +78,13 @@ KERNELS = [
     Fault(
         "Kolosov's constant of plane stress",
         "kernels",
-        swap("bem.kernels.layer:one_minus_kernel", plane_stress_kolosov),
+        override("bem.kernels.stack:StackKernel", "one_minus_chi", plane_stress_kolosov),
         cone(LAYER, "bonded nu=0.45 a/h=1", "mdr"),
     ),
     Fault(
         "2q forgotten in the unbonded kernel",
         "kernels",
-        swap("bem.kernels.layer:one_minus_kernel", unbonded_without_linear_term),
+        override("bem.kernels.stack:StackKernel", "one_minus_chi", unbonded_without_linear_term),
         cone(LAYER, "unbonded a/h=1", "mdr"),
     ),
     Fault(
@@ -90,7 +96,7 @@ KERNELS = [
     Fault(
         "mean mode of a layer taken as zero",
         "kernels",
-        swap("bem.kernels.layer:zero_mode", lambda _: lambda support, nu: 0.0),
+        override("bem.kernels.stack:StackKernel", "zero_mode", lambda _: property(lambda self: 0.0)),
         Test(
             "bem.test_grid:test_a_uniform_pressure_compresses_a_layer_by_its_finite_mean_mode",
             ("unbonded", 0.3, 0.5),
