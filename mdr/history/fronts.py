@@ -35,7 +35,7 @@ _GROWTH, _MOST_PANELS = 4.0, 12
 _APART = 1e-9
 # Power of the distance from a kink, or from the axis, in which springs are smooth: g goes with roots of the former, and
 # tips like r^1.7 are not analytic at the latter.
-_KINK_POWER, _AXIS_POWER = 2.0, 6.0
+KINK_POWER, _AXIS_POWER = 2.0, 6.0
 
 
 def fronts(law: SpringLaw, path: Path) -> FloatArray:
@@ -148,7 +148,7 @@ def layout(springs: Springs, radii: FloatArray, nodes: int) -> Layout:
     stretches = [flat, *(b for b in tip.breaks if flat < b < top), top]
     parts = []
     for low, high in pairwise(stretches):
-        power = _KINK_POWER if low else _AXIS_POWER
+        power = KINK_POWER if low else _AXIS_POWER
         share = ((inner[(inner > low) & (inner < high)] - low) / (high - low)) ** (1 / power)
         ends = np.concatenate([[0.0], share, [1.0]])
         ends = ends[np.append(True, np.diff(ends) > _APART)]

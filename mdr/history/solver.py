@@ -35,6 +35,7 @@ from mdr.dispatch import DEFAULT_ACCURACY
 from mdr.equilibria import is_simple, is_singular, springs_on
 from mdr.history.force_control import March, Steps, never_larger, steps_of
 from mdr.history.fronts import Layout, fronts, layout, panel_ends, refuse_open_inside
+from mdr.history.inside import HistoryFields
 from mdr.history.spring_bed import Path, SpringBed, followed
 from mdr.history.spring_law import SpringLaw
 from mdr.radius_search import RadiusSearch, refuse_too_wide
@@ -74,6 +75,7 @@ class Response(NamedTuple):
         known: Where the depth is known in closed form, shape (n,).
         bent: Whether spring forces ever rose outwards.
         springs: Number of them.
+        fronts: Radii at which spring forces bend [m].
         doubt: Last correction of the depth [m].
     """
 
@@ -85,6 +87,7 @@ class Response(NamedTuple):
     known: NDArray[np.bool_]
     bent: bool
     springs: int
+    fronts: FloatArray
     doubt: float = 0.0
 
 
@@ -133,6 +136,16 @@ def solve_history(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
         indentation_depth=answer.depth,
         normal_force=answer.force,
         contact_radius=answer.radius,
+        fields=HistoryFields(
+            scene=scene,
+            springs=springs,
+            law=law,
+            path=answer.path,
+            given=answer.given,
+            radius=answer.radius,
+            fronts=np.unique(answer.fronts[answer.fronts > 0]),
+            density_error=errors["normal_force"] + errors["indentation_depth"],
+        ),
     )
 
 
@@ -177,7 +190,7 @@ def _by_depth(scene: Scene, springs: Springs, law: SpringLaw, loading: DepthHist
         held = force > _HELD * force.max()
         radius, every = radii_of(scene, one, np.where(held, front, -1.0)), np.arange(path.time.size)
         force = np.where(held, force, 0.0)
-        found.append(Response(path, every, path.depth, force, radius, every < 0, bent, bed.g.size))
+        found.append(Response(path, every, path.depth, force, radius, every < 0, bent, bed.g.size, radius))
     return found
 
 
@@ -224,7 +237,7 @@ def _marched(scene: Scene, springs: Springs, law: SpringLaw, loading: ForceHisto
     depth = np.where(own, closed[steps.given], path.depth[steps.given])
     gamma = depth if own.all() else np.where(own, depth, gamma[steps.given])
     radius = radii_of(scene, springs, np.where(loading.force > 0, gamma, -1.0))
-    return Response(path, steps.given, depth, loading.force, radius, own, bent, size, doubt)
+    return Response(path, steps.given, depth, loading.force, radius, own, bent, size, radius, doubt)
 
 
 def _elastic_depths(scene: Scene, springs: Springs, load: FloatArray) -> FloatArray:
