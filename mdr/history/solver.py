@@ -33,7 +33,7 @@ from mdr.admissible import refuse_pulling, refuse_touching_outside
 from mdr.contact_surface import surface_of
 from mdr.dispatch import DEFAULT_ACCURACY
 from mdr.equilibria import is_simple, is_singular, springs_on
-from mdr.history.force_control import March, Steps, never_larger, steps_of
+from mdr.history.force_control import March, Steps, never_larger, resting_depth, steps_of
 from mdr.history.fronts import Layout, fronts, layout, panel_ends, refuse_open_inside
 from mdr.history.inside import HistoryFields
 from mdr.history.spring_bed import Path, SpringBed, followed
@@ -176,7 +176,7 @@ def _refuse_idle(loading: DepthHistory | ForceHistory) -> None:
 def _by_depth(scene: Scene, springs: Springs, law: SpringLaw, loading: DepthHistory) -> list[Response]:
     """The answer to depths, and the same on finer springs with fronts a rounding further out."""
     path = Path.linear(loading.time, loading.depth)
-    gamma = fronts(law, path)
+    gamma = np.zeros(path.time.size) if isinstance(scene.indenter, FlatPunch) else fronts(law, path)
     moved = np.where(gamma > 0, gamma + 8 * EPS * path.peaks[-1], gamma)
     found = []
     for one, front in ((springs, gamma), (springs.finer, moved)):
@@ -215,7 +215,7 @@ def _marched(scene: Scene, springs: Springs, law: SpringLaw, loading: ForceHisto
     known = never_larger(law, load) | law.is_elastic | isinstance(scene.indenter, FlatPunch)
     closed = _elastic_depths(scene, springs, load)
     path, ends = Path.linear(steps.time, closed), np.max(closed) * np.linspace(0, 1, _FIRST_PANELS + 1)[1:] ** 2
-    size, bent, doubt = 0, False, 0.0
+    size, doubt, last = 1, 0.0, None
     for _ in range(0 if known[steps.given].all() else _MOST_MARCHES):
         bed = layout_of(scene, springs, ends, _NODES)
         march = March(
@@ -226,18 +226,21 @@ def _marched(scene: Scene, springs: Springs, law: SpringLaw, loading: ForceHisto
             load,
             closed,
             known,
+            last,
         )
         before, path, size = path.depth, march.path(), bed.g.size
-        doubt = float(np.abs(path.depth - before).max())
+        doubt, last = float(np.abs(path.depth - before).max()), path
         gamma = fronts(law, path)
         if doubt < _STAYS * closed.max():
             break
         ends = panel_ends(law, path, gamma)
     own = known[steps.given]
     depth = np.where(own, closed[steps.given], path.depth[steps.given])
+    for i in np.flatnonzero(~own & (loading.force <= 0)):
+        depth[i] = resting_depth(law, bed.g, path, int(steps.given[i]))
     gamma = depth if own.all() else np.where(own, depth, gamma[steps.given])
     radius = radii_of(scene, springs, np.where(loading.force > 0, gamma, -1.0))
-    return Response(path, steps.given, depth, loading.force, radius, own, bent, size, radius, doubt)
+    return Response(path, steps.given, depth, loading.force, radius, own, False, size, radius, doubt)
 
 
 def _elastic_depths(scene: Scene, springs: Springs, load: FloatArray) -> FloatArray:
