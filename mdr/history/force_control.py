@@ -71,8 +71,8 @@ def steps_of(law: SpringLaw, loading: ForceHistory, substeps: int, times: int) -
     closed = never_larger(law, load)
     counts = times * np.maximum(np.ceil(substeps * share), 2).astype(int)
     instants = [loading.time[:1]]
-    for k, count in enumerate(counts.tolist()):
-        count *= _MORE if closed[k] and closed[k + 1] else 1
+    for k, fewest in enumerate(counts.tolist()):
+        count = fewest * (_MORE if closed[k] and closed[k + 1] else 1)
         s = np.arange(count + 1) / count
         fades = loading.force[k + 1] <= 0 < loading.force[k]
         way = s * s * (6 - 8 * s + 3 * s * s) if fades else s**1.5 if load[k] > 0 else s**4
@@ -165,6 +165,7 @@ class March:
         scale = np.array([1 / t[1], 2 / t[1] ** 2])  # unknowns are parts of the way [m]
         ways = np.column_stack([t * scale[0], t * t / 2 * scale[1]])
         x, slopes, before, best = pace / scale, np.empty((2, 2)), np.zeros(2), (np.inf, pace, self.bed)
+        move = np.zeros(2)
         for number in range(_MOST_STEPS):
             (reached, stiffness), bed = self._displaced(depth, x * scale, spans)
             missed = reached - target
@@ -196,7 +197,7 @@ def resting_depth(law: SpringLaw, g: FloatArray, path: Path, k: int) -> float:
         path: Depths.
         k: Number of the instant.
     """
-    until = Path(*(part[: k + 1 - (part.size < path.time.size)] for part in path))
+    until = Path(path.time[: k + 1], path.depth[: k + 1], path.speed[:k], path.acceleration[:k], path.free[:k])
     for _ in range(_ROUNDS):
         *_, bed = followed(law, g, until)
         height = bed.surface + g

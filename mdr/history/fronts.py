@@ -91,7 +91,7 @@ def _refined(law: SpringLaw, path: Path, instants: NDArray[np.intp], low: FloatA
         open_ = o[b[o] - a[o] > 4 * EPS * b[o]]
         if not open_.size:
             break
-    return (a + b) / 2
+    return np.asarray((a + b) / 2)
 
 
 def _edges(law: SpringLaw, path: Path, instants: NDArray[np.intp], g: FloatArray) -> FloatArray:
@@ -138,7 +138,7 @@ class Layout(NamedTuple):
 
 
 def layout(springs: Springs, radii: FloatArray, nodes: int) -> Layout:
-    """Gauss rules of so many nodes between the flat end, radii [m], kinks of the profile and octaves of the thickness."""
+    """Gauss rules of so many nodes between flat end, radii [m], kinks of the profile and octaves of the thickness."""
     tip, flat = springs.tip, springs.tip.flat
     core = springs.at([flat]).K if flat else np.zeros(1)
     top = float(radii.max(initial=flat))

@@ -35,6 +35,8 @@ _NODES = 16
 _WIDEST = 1.0
 # Shares of the first panel at which more panels end towards a pointed tip.
 _TOWARDS_AXIS = 0.3 ** np.arange(1, 5)
+# Shares of the way from a front at which panels end.
+_BESIDE_FRONT = 0.2 ** np.arange(1, 7)
 # Share of the widest radius below which two ends of panels are one.
 _APART = 1e-9
 
@@ -75,7 +77,7 @@ class SpringDensity:
         self, springs: Springs, profile: Profile, panels: FloatArray, values: FloatArray, *, has_edge: bool
     ) -> None:
         self.springs, self.sizes, self.kernel = springs, springs.sizes, springs.kernel
-        self._panels, self._count = panels, values.shape[1]
+        self._panels, self._count = panels, int(values.shape[1])
         self.a = float(panels[-1, 1])
         v, w = gauss(self._count)
         # Values at nodes to Legendre coefficients in 2 v - 1.
@@ -91,7 +93,7 @@ class SpringDensity:
     @property
     def degree(self) -> int:
         """Of polynomials on a panel."""
-        return 2 * self._count
+        return 2 * int(self._count)
 
     @staticmethod
     def _at(panels: FloatArray, s: FloatArray) -> FloatArray:
@@ -225,8 +227,7 @@ class HistoryFields:
         depth = float(self.path.depth[self.given[step]])
         pairs = [self._densities(one, nodes, a, widest, step) for one, nodes in self._resolutions]
         bodies = (
-            Interior(self.scene.layer, [(1.0, (one, other))], known, depth)  # type: ignore[list-item]
-            for one, other in zip(*pairs, strict=True)
+            Interior(self.scene.layer, [(1.0, (one, other))], known, depth) for one, other in zip(*pairs, strict=True)
         )
         return HistoryInterior(*bodies)
 
@@ -238,7 +239,7 @@ class HistoryFields:
         """phi of the spring forces within the contact, and of the displacements of all springs that were touched."""
         found = []
         for b, moved in ((a, False), (widest, True)):
-            panels = self._panels_to(springs, b)
+            panels = self._panels_to(springs, b, a if self.law.viscosity and moved else 0.0)
             x = SpringDensity._at(panels, gauss(nodes)[0])
             q = self._springs_at(springs, x.ravel(), step, moved=moved).reshape(x.shape)
             # Dashpots press as soon as they are touched.
@@ -246,16 +247,17 @@ class HistoryFields:
             found.append(SpringDensity(springs, self.scene.indenter, panels, q, has_edge=has_edge))
         return found
 
-    def _panels_to(self, springs: Springs, b: float) -> FloatArray:
-        """Panels of [0, b]."""
+    def _panels_to(self, springs: Springs, b: float, front: float) -> FloatArray:
+        """Panels of [0, b], closer beside a front at which springs let go by and by."""
         tip, rows = springs.tip, []
+        beside = front + np.concatenate([[0.0], (b - front) * _BESIDE_FRONT, -front * _BESIDE_FRONT])
         flat = self.scene.indenter.flat_radius
         stretches = [0.0, *(end for end in sorted({flat, *tip.breaks}) if 0 < end < b * (1 - _APART)), b]
         for low, high in pairwise(stretches):
             power = KINK_POWER if low or not flat else 1.0
             even = np.linspace(low, high, 1 + int(np.ceil((high - low) / (_WIDEST * springs.unit))))[1:-1]
             inner = np.unique(
-                [f for f in (*self.fronts, *(even if not springs.kernel.is_uniform else ())) if low < f < high]
+                [f for f in (*self.fronts, *beside, *(even if not springs.kernel.is_uniform else ())) if low < f < high]
             )
             share = np.append(0.0, ((inner - low) / (high - low)) ** (1 / power))
             if power != 1.0 and low == 0:  # tips like r^1.7 are not analytic at the axis

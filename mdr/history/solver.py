@@ -153,7 +153,7 @@ def _stated(answer: FloatArray, other: FloatArray, known: NDArray[np.bool_], dou
     """Errors relative to the largest value: one for all instants known in closed form, one for all others."""
     scale = max(float(np.abs(answer).max()), np.finfo(float).tiny)
     change = stated_error(answer, other, scale=scale, floor=floor, sequence=False)
-    return np.where(known, change[known].max(initial=0.0), change.max() + doubt)
+    return np.asarray(np.where(known, change[known].max(initial=0.0), change.max() + doubt))
 
 
 def _substeps(settings: Mapping[str, Setting]) -> int:
