@@ -101,7 +101,7 @@ def smooth_depth_slope(trace: TraceSpace, pressures: FloatArray, scale: float) -
     punch, smooth = (trace.evaluate(values, radius) for values in pressures.T)
     widths = 2.0 ** -np.arange(float(RINGS))
     # An upright end may be nearer than the last cells, of which the narrowest ring holds as many as there are rings.
-    widest = max(WIDEST * scale, (1.0 - trace.vertices[-1 - RINGS]) / widths[-1])
+    widest = max(WIDEST * scale, (1.0 - trace.vertices[-min(1 + RINGS, len(trace.vertices))]) / widths[-1])
     share = (1.0 - radius) / (widest * widths[:, None])
     weight = weight * share * np.maximum(1.0 - share, 0.0) ** 2
     means = (weight @ smooth) / (weight @ (2.0 * (1.0 - radius) * punch))
