@@ -8,17 +8,15 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from bem.direct_method import IntegralEquationMethod
-    from bem.flat_punch import IntegralEquation
-    from bem.layer_equation.protocol import FlatPunchSolution, FlatPunchSource
+    from bem.flat_punch import FlatPunchSource, IntegralEquation
     from bem.method import Bem
     from bem.tables import FftTable, TableFile
 
 _HOME = {
     "Bem": "bem.method",
     "FftTable": "bem.tables",
-    "FlatPunchSolution": "bem.layer_equation.protocol",
-    "FlatPunchSource": "bem.layer_equation.protocol",
-    "IntegralEquation": "bem.layer_equation.flat_punch_source",
+    "FlatPunchSource": "bem.flat_punch",
+    "IntegralEquation": "bem.flat_punch",
     "IntegralEquationMethod": "bem.direct_method",
     "TableFile": "bem.tables",
 }
@@ -26,7 +24,6 @@ _HOME = {
 __all__ = [
     "Bem",
     "FftTable",
-    "FlatPunchSolution",
     "FlatPunchSource",
     "IntegralEquation",
     "IntegralEquationMethod",

@@ -188,7 +188,7 @@ def _detachment(fine: CellGrid, coarse: CellGrid) -> dict[str, Any]:
     for name, value in scalars.items():
         # At a fold depth and force are stationary: the radius is known to the root of their error.
         flat = 0.0 if name == "pull_off_force" else 2.0 * sqrt(FOLD)
-        errors[name] = _errors(np.array([value]), np.array([others[name]]), 1.5 * lag[:1] + flat / LAG)
+        errors[name] = _errors(np.array([value]), np.array([others[name]]), lag[:1] + flat / LAG)
     states = [dict(zip(NAMES, column, strict=False)) for column in found.T.tolist()]
     points = {"force": states[least], "displacement": states[-1]}
     return scalars | {

@@ -9,7 +9,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Annotated, Final, Self
+from typing import Annotated, Any, Final, Protocol, Self, TypeAlias, runtime_checkable
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -23,9 +23,6 @@ from contact.answer.one_thread import one_thread
 from contact.records.record import Record, record
 from contact.records.validation import FloatArray, positive
 from contact.stated import stated_error
-
-if TYPE_CHECKING:
-    from bem.layer_equation.protocol import FlatPunchSolution
 
 # Nodes by default, and the most; a refined setting has so many more.
 USUAL_NODES: Final = 24
@@ -56,16 +53,24 @@ class IntegralEquation(Record):
         """The flat punch on this layer."""
         return FlatPunchValues(layer, self.sizes)
 
-    @one_thread
-    def solution(self, layer: ElasticLayer, max_ratio: float) -> FlatPunchSolution:
-        """The flat punch by panels, up to at least a/h = max_ratio."""
-        from bem.layer_equation.flat_punch_source import panel_solution  # noqa: PLC0415 - loaded with old panels only
-
-        return panel_solution(self, layer, max_ratio)
-
     def refined(self) -> Self:
         """Settings with about twice the resolution."""
         return self.replace(panel_width=self.panel_width / 2, nodes=min(self.nodes + MORE_NODES, MOST_NODES))
+
+
+@runtime_checkable
+class TableSource(Protocol):
+    """Settings that make a table of flat punches (`bem.tables`)."""
+
+    def solution(self, layer: ElasticLayer, largest_ratio: float, /) -> Any:
+        """The table of a layer up to at least a/h = largest_ratio."""
+
+    def refined(self) -> Self:
+        """A copy with half the discretisation length."""
+
+
+FlatPunchSource: TypeAlias = IntegralEquation | TableSource
+"""Where the flat punches of MDR come from."""
 
 
 class FlatPunchValues:

@@ -44,7 +44,7 @@ from fem_reference.discrete_layer.problem import LayerProblem
 from fem_reference.discrete_layer.settings import Discretisation
 from fem_reference.discrete_layer.solving.linear_solver import BACKENDS
 from fem_reference.elastic.answer import contact_path
-from fem_reference.elastic.equilibria import elastic_equilibria, refuse_other_contacts
+from fem_reference.elastic.equilibria import RadiusSearch, elastic_equilibria, refuse_other_contacts
 from fem_reference.elastic.path import ContactSolver, FemEquilibrium, flat_punch_equilibria
 from fem_reference.elastic.prescribed_radius import PrescribedContact, solve_contact
 from fem_reference.elastic.surface_fields import FemFields
@@ -170,13 +170,12 @@ class Fem:
             return partial(self._rubbed, scene, log)
         if isinstance(scene.loading, Impact | DepthHistory | ForceHistory):
             return self._moved(scene, scene.loading, log)
-        return partial(self._at_rest, scene, log)
+        return partial(self._at_rest, scene, RadiusSearch(scene, log), log)
 
-    def _at_rest(self, scene: Scene, log: StageLog, settings: Discretisation) -> ContactPath:
+    def _at_rest(self, scene: Scene, search: RadiusSearch, log: StageLog, settings: Discretisation) -> ContactPath:
         """Equilibria at prescribed radii, depths or forces."""
         modulus, sticks = contact_modulus(scene.layer), scene.effect(Friction) is not None
-        coarser = self._states(scene, settings.coarser(), None, log)
-        states = self._states(scene, settings, coarser, log)
+        coarser, states = (self._states(scene, each, search, log) for each in (settings.coarser(), settings))
         if not sticks:
             refuse_other_contacts(scene, states, coarser)
             fields: Fields = FemFields(states, modulus, coarser)
@@ -193,9 +192,9 @@ class Fem:
         return answer
 
     def _states(
-        self, scene: Scene, settings: Discretisation, before: list[FemEquilibrium] | None, log: StageLog
+        self, scene: Scene, settings: Discretisation, search: RadiusSearch, log: StageLog
     ) -> list[FemEquilibrium]:
-        """Equilibria at one resolution; those ``before`` are of a coarser one."""
+        """Equilibria at one resolution."""
         if scene.effect(Friction) is not None:
             from fem_reference.elastic.stick.adhered_punch import AdheredProblem  # noqa: PLC0415 - only stick loads it
 
@@ -206,7 +205,7 @@ class Fem:
             from fem_reference.adhesion.equilibria import adhesive_equilibria  # noqa: PLC0415 - only listed effects load
 
             return adhesive_equilibria(scene, solve, settings.growth)
-        return elastic_equilibria(scene, solve, settings.coarsening, before, log)
+        return elastic_equilibria(scene, solve, settings.coarsening, search)
 
     def _detached(self, scene: Scene, log: StageLog, settings: Discretisation) -> DetachmentPath:
         from fem_reference.adhesion.detachment import Separation, detachment_path  # noqa: PLC0415 - as above

@@ -12,7 +12,7 @@ from typing import TypeAlias
 import numpy as np
 
 from bem.adhesion.equilibrium_branch import DEPTH, FORCE, EquilibriumBranch
-from bem.layer_equation.protocol import FlatPunchSource
+from bem.flat_punch import FlatPunchSource
 from contact import (
     ContactPath,
     ContactRadii,

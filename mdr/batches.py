@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
-from bem.flat_punch import IntegralEquation
-from bem.layer_equation.protocol import FlatPunchSource
+from bem.flat_punch import FlatPunchSource, IntegralEquation
 from contact import (
     ContactRadii,
     Detachment,
@@ -81,13 +80,12 @@ def impacts(
     flat_punch: FlatPunchSource,
     *,
     accuracy: float = 1e-9,
-    compiled: bool = False,
     progress: Progress | None = None,
 ) -> ImpactResults:
-    """Restitution, contact time and peaks of many impacts, if asked for by compiled loops as in `Mdr`."""
+    """Restitution, contact time and peaks of many impacts."""
     from mdr.impact.solver import impact_batch  # noqa: PLC0415  # loaded only when asked for
 
-    return impact_batch(scenes, flat_punch, accuracy=accuracy, compiled=compiled, progress=progress)
+    return impact_batch(scenes, flat_punch, accuracy=accuracy, progress=progress)
 
 
 @one_thread

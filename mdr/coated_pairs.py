@@ -11,6 +11,7 @@ while Eq. (25) is the kernel chi_1(k h*) of the mean. The method itself is uncha
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import ClassVar, NoReturn
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -18,7 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 from bem.kernels.of_contact import ContactKernel
 from bem.kernels.of_layer import surface_kernel
 from bem.kernels.protocol import SurfaceKernel
-from contact import CoatedPair, InvalidInput
+from contact import CoatedPair, InvalidInput, UnsupportedSceneError
 from contact.records.validation import FloatArray
 from mdr.spring_bed import Springs
 
@@ -38,7 +39,9 @@ class PairKernel:
     thinner: SurfaceKernel
     ratio: float
 
-    is_smooth, edge_slope = True, 0.0
+    is_smooth: ClassVar[bool] = True
+    edge_slope: ClassVar[float] = 0.0
+    tail: ClassVar[tuple[float, ...]] = ()
 
     @property
     def longest(self) -> float:
@@ -58,6 +61,10 @@ class PairKernel:
         """1 - chi at wave numbers k > 0."""
         both = self.thinner.one_minus_chi(wavenumber), self.thinner.one_minus_chi(self.ratio * wavenumber)
         return np.asarray(both[0] + both[1]) / 2
+
+    def descent(self, k: FloatArray) -> NoReturn:
+        """Nothing: the two coatings have different insides."""
+        raise UnsupportedSceneError("a pair of unequal coatings has no inside of its own; ask for one of the coatings")
 
 
 @dataclass(frozen=True, kw_only=True)

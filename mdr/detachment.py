@@ -13,7 +13,7 @@ import numpy as np
 
 from bem.adhesion.equilibrium_branch import DEPTH, FORCE
 from bem.adhesion.withdrawal import CONTROLS, Route
-from bem.layer_equation.protocol import FlatPunchSource
+from bem.flat_punch import FlatPunchSource
 from contact import Detachment, DetachmentPath, FlatPunch, InvalidInput, Scene, StageLog, UnsupportedSceneError
 from contact.answer.solution import Setting
 from contact.records.validation import BoolArray, FloatArray
@@ -28,8 +28,11 @@ POINTS = 200
 _PINNED = POINTS // 5
 # A punch's tension may be largest in its centre from this Poisson's ratio on; beyond this a/h it keeps its shape.
 _CONFINED, _THINNEST, _INSIDE = 0.45, 50.0, 0.1
+# Change between resolutions where contact is lost, over that of other states: it is the place of a minimum, which moves
+# by the slope of the branch's error. With 1 two of fifty graded layers are not covered.
+_PLACE = 2.0
 # Rounding errors where contact is lost, over those of other states: the place itself is rounded there.
-_LOST = 4.0
+_LOST = 2.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -145,7 +148,7 @@ def _detachment_errors(own: Withdrawal, other: Withdrawal, control: int) -> dict
     for name, value in first.items():
         size = abs(value) or 1.0
         own_floor = floor.get(name, floors[FORCE])
-        found[name] = stated_error(value, second[name], scale=size, floor=float(own_floor) / size)
+        found[name] = _PLACE * stated_error(value, second[name], scale=size, floor=float(own_floor) / size)
     return found
 
 

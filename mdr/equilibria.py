@@ -15,8 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bem.equation import USUAL, Sizes
-from bem.flat_punch import IntegralEquation
-from bem.layer_equation.protocol import FlatPunchSource
+from bem.flat_punch import FlatPunchSource, IntegralEquation
 from bem.numerics import EPS, gauss
 from contact import (
     ContactPath,
@@ -38,6 +37,7 @@ from contact.records.validation import FloatArray
 from contact.stated import stated_error
 from mdr.admissible import refuse_pulling, refuse_touching_outside
 from mdr.contact_surface import Surface, is_hard, surface_of
+from mdr.profiles import FlatTip
 from mdr.radius_search import Quantity, RadiusSearch, refuse_too_wide
 from mdr.spring_bed import Springs, SpringValues, State
 
@@ -49,6 +49,9 @@ _COMPARED, _CHECKED = 8, 12
 _INSIDE, _OUTSIDE = 8, np.array([1.02, 2.0, 4.0])
 # Relative rounding error of pressure and displacement by their quadratures.
 _FIELD_ROUNDING = 2e-13
+# Error of pressures that are infinite at the edge of a graded layer: their series converge slowly. With half of it one
+# of thirty scenes is not covered.
+_GRADED_EDGE = 2e-9
 
 
 def sizes_of(source: IntegralEquation) -> Sizes:
@@ -302,13 +305,15 @@ def compared_pressure(pair: list[Surface], scale: float) -> float:
     """Stated error of a contact's pressure over a pressure [Pa], by two resolutions."""
     inside = pair[0].a * np.sin(np.pi / 2 * gauss(_INSIDE)[0])
     values = [surface.pressure(inside) for surface in pair]
-    return float(stated_error(values[0], values[1], scale=scale, floor=_FIELD_ROUNDING).max())
+    floor = _GRADED_EDGE if pair[0].kernel.tail and pair[0].edge else _FIELD_ROUNDING
+    return float(stated_error(values[0], values[1], scale=scale, floor=floor).max())
 
 
 def compared_displacement(pair: list[Surface]) -> float:
     """Stated error of the displacement outside a contact over the depth, by two resolutions."""
     outside = pair[0].a * _OUTSIDE
-    outside = outside[outside < pair[0].tip.end]
+    if not isinstance(pair[0].tip, FlatTip):  # a punch's flank is upright
+        outside = outside[outside < pair[0].tip.end]
     if not outside.size:
         return _FIELD_ROUNDING
     values = [surface.displacement(outside) for surface in pair]

@@ -16,7 +16,7 @@ the transfer from the surface to a depth, times p^ = (E*/pi) phi^. z points into
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import NamedTuple
@@ -106,7 +106,9 @@ class Body:
     def _integrals(self, r: FloatArray, z: FloatArray) -> FloatArray:
         """I_00, I_10, I_20, I_01/r, I_11/r, I_21, shape (6, n)."""
         surface, a = self.surface, self.a
-        found = surface.edge * _punch(r, z, a, (r - a) * (r + a))
+        # Series of graded layers converge slowly at the edge; what they leave there belongs to their transform, too.
+        edge = surface.edge if self.kernel.is_smooth else surface.edge_of_series
+        found = edge * _punch(r, z, a, (r - a) * (r + a))
         for low, high in pairwise([0.0, *(b for b in self.tip.breaks if b < a), a]):
             own, above, gap, weight, rest = self._nodes(low, high, r, z)
             t = np.sqrt(low**2 + above)
@@ -185,19 +187,12 @@ class Body:
         return rows - _row_factors(half_space_at(k * z, self.nu), k, Material(1.0, self.nu, 0.0, 0.0, is_top=True))
 
     def _load(self, lowest: float, widest: float) -> tuple[FloatArray, FloatArray]:
-        """Wave numbers [1/m] and p^ times their weights, for points below a depth and up to a radius.
-
-        Panels of four periods, halved towards k = 0 down to where the layer answers like a polynomial.
-        """
+        """Wave numbers [1/m] and p^ times their weights, for points below a depth and up to a radius."""
         top = _REACH / self.unit
         if not self.kernel.is_smooth:
             most = _GRADED_REACH * (1 + self.surface.sizes.extra / 2)
             top = min(_GRADED_FADED / lowest, most / self.a)
-        width = 8 * np.pi / (self.a + widest)
-        first = min(width, top, 0.25 / self.unit / self.kernel.longest)
-        doubled = first * 2.0 ** np.arange(max(0, int(np.ceil(np.log2(min(width, top) / first)))))
-        even = np.linspace(doubled[-1], top, 2 + int((top - doubled[-1]) / width)) if doubled.size else np.array([top])
-        k, w = panels(np.concatenate([[0.0], doubled, even[doubled.size > 0 :]]), self.nodes)
+        k, w = wave_rule(top, self.a + widest, self.unit * self.kernel.longest, self.nodes)
         return k, w * self.surface.springs.modulus / np.pi * self._transform(k)
 
     def _transform(self, k: FloatArray) -> FloatArray:
@@ -209,6 +204,18 @@ class Body:
         load[0] += surface.depth
         known = a * (load * np.sqrt(4 * n + 1) * (-1.0) ** n) @ even_bessel(k * a, count)
         return np.asarray(known + surface.smooth_transform(k))
+
+
+def wave_rule(top: float, length: float, longest: float, nodes: int) -> tuple[FloatArray, FloatArray]:
+    """Nodes and weights of wave numbers up to `top` for functions like cos(k length).
+
+    Panels of four periods, halved towards k = 0 down to where the kernel of that longest length is like a polynomial.
+    """
+    width = 8 * np.pi / length
+    first = min(width, top, 0.25 / longest)
+    doubled = first * 2.0 ** np.arange(1 + max(0, int(np.log2(min(width, top) / first))))
+    even = np.linspace(doubled[-1], top, 1 + int(np.ceil((top - doubled[-1]) / width * (1 - 1e-12))))
+    return panels(np.concatenate([[0.0], doubled, even[1:]]), nodes)
 
 
 def _punch(r: FloatArray, z: FloatArray, t: FloatArray | float, gap: FloatArray) -> FloatArray:
@@ -336,11 +343,20 @@ def interior(
 
 def pair_of(springs: Springs, known: KnownContact, depth: float, *, is_singular: bool) -> tuple[Surface, Surface]:
     """One contact with finer sizes, and with the usual ones at a radius that is off by its error."""
-    build: Callable[[Sizes, float], Surface] = lambda sizes, a: surface_of(  # noqa: E731
-        springs.at_sizes(sizes._replace(rate=_POLYNOMIALS * sizes.rate)), a, depth, is_singular=is_singular
-    )
     sizes, a = springs.sizes, known.radius
-    return build(sizes.finer, a), build(sizes, min(a * (1 + known.radius_error), springs.tip.end))
+    shifted = min(a * (1 + known.radius_error), springs.tip.end)
+    return tuple(_surface(springs, *one, depth, is_singular) for one in ((sizes.finer, a), (sizes, shifted)))  # type: ignore[return-value]
+
+
+def field_sizes(sizes: Sizes) -> Sizes:
+    """Sizes with polynomials enough for fields inside."""
+    return sizes._replace(rate=_POLYNOMIALS * sizes.rate)
+
+
+def _surface(springs: Springs, sizes: Sizes, a: float, depth: float, is_singular: bool) -> Surface:
+    """A contact whose density ends with zero, or with adhesion, in the same discretisation as the density itself."""
+    own = springs.at_sizes(field_sizes(sizes))
+    return surface_of(own, a, depth if is_singular else float(own.at([a]).g[0]), is_singular=is_singular)
 
 
 def superposed(

@@ -7,8 +7,7 @@ from typing import Annotated, ClassVar, Self, overload
 
 from pydantic import Field
 
-from bem.flat_punch import IntegralEquation
-from bem.layer_equation.protocol import FlatPunchSource
+from bem.flat_punch import FlatPunchSource, IntegralEquation
 from contact import (
     ContactPath,
     Detachment,
@@ -30,8 +29,7 @@ from contact.answer.small_strains import within_small_strains
 from contact.answer.solution import Setting
 from contact.records.record import Record, record
 from contact.records.validation import in_range
-from mdr.dispatch import solver_of
-from mdr.springs.error_model import DEFAULT_ACCURACY
+from mdr.dispatch import DEFAULT_ACCURACY, solver_of
 
 # The coarsest accuracy that time steps are chosen for: what coarser steps would save is too little to be measured.
 COARSEST = 1e-4
@@ -45,16 +43,12 @@ class Mdr(Record):
         flat_punch: Where the flat punch's stiffness and pressure come from.
         accuracy: Wanted relative accuracy of what is integrated in time (impacts, histories). Coarser ones than
             `COARSEST` are answered by it; what does not move is more accurate whatever is asked.
-        compiled: Whether impacts are integrated by loops that numba compiles (extra `fast`): 0.3 to 0.5 of the time,
-            the same numbers but for roundings. The first impact of a process loads them in 0.4 s, that of an
-            installation compiles them in 13 s.
     """
 
     name: ClassVar[str] = "mdr"
 
     flat_punch: FlatPunchSource = Field(default_factory=IntegralEquation)
     accuracy: Annotated[float, *in_range(1e-13, 0.1, "1e-9 costs twice as much as 1e-6")] = DEFAULT_ACCURACY
-    compiled: bool = False
 
     def supports(self, scene: Scene) -> Supported | Unsupported:
         """Contact of any profile with layers and half-spaces: elastic, adhesive, or incompressible and viscoelastic."""
@@ -85,8 +79,7 @@ class Mdr(Record):
         solver = solver_of(scene)
         if isinstance(solver, Unsupported):
             raise UnsupportedSceneError(solver.reason)
-        compiled: dict[str, Setting] = {"compiled": True} if self.compiled and isinstance(scene.loading, Impact) else {}
-        return solver.load()(scene, self.flat_punch, self._settings() | compiled)
+        return solver.load()(scene, self.flat_punch, self._settings())
 
     def refined(self) -> Self:
         """Flat-punch data with half the discretisation length; one more digit in time, from the default on."""

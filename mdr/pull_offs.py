@@ -14,8 +14,7 @@ from functools import lru_cache
 import numpy as np
 
 from bem.equation import Sizes
-from bem.flat_punch import IntegralEquation
-from bem.layer_equation.protocol import FlatPunchSource
+from bem.flat_punch import FlatPunchSource, IntegralEquation
 from bem.polynomials import chebyshev
 from bem.polynomials.adaptive import NODES, Piecewise, resolved_panels
 from contact import Detachment, ElasticLayer, Profile, Scene

@@ -143,6 +143,7 @@ class RadiusSearch:
         """Radius [m] at which a table of ln g stops rising, computed again by the accurate springs; None if never."""
         radius = self.place(z)
         apart = radius > self.springs.tip.flat * (1 + 1e-12)
+        apart[1:] &= np.diff(radius) > 1e-9 * radius[1:]  # places crowd at the indenter's end
         if (np.diff(logarithm[apart]) > 0).all():
             return None
         exact = self.logarithm(self.springs, "depth", z[apart])

@@ -20,9 +20,9 @@ from typing import ClassVar, TypeAlias
 import numpy as np
 
 from bem.equation import Radius, Rows, Sizes
+from bem.flat_punch import FlatPunchSource
 from bem.grid.discs import shared_error
 from bem.kernels.of_contact import contact_kernel
-from bem.layer_equation.protocol import FlatPunchSource
 from bem.numerics import even_legendre, gauss
 from bem.tables import RUNGS, SMALLEST_RATIO, FftTable, FlatPunchTable, TableFile
 from contact import ElasticLayer, InvalidInput, Profile

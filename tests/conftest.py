@@ -1,4 +1,4 @@
-"""What holds for every test: no width of a terminal, no random examples."""
+"""What holds for every test: no width of a terminal, no random examples, no limit of the depth in tests of numbers."""
 
 from __future__ import annotations
 

@@ -38,8 +38,9 @@ from contact.scene.layer_stack import ElasticBase
 
 # Depth times |k| below which nothing is felt: exp(-2 DEEP cos(15 degrees)) is 1e-17, with half of it 1e-9.
 DEEP = 21.0
-# Depth times k down to which the inside is followed: exp(-40) is below all digits, exp(-20) would be seen.
-_FADED = 40.0
+# Depth times k down to which the inside is followed: exp(-43) is below all digits, exp(-21) would be seen. With `DEEP`
+# it is a power of two, so that no octave holds waves that reach the base and waves that do not.
+_FADED = 43.0
 # Relative and absolute tolerance of the integration; ten times as much costs a digit and saves a tenth of the time.
 TOLERANCE, ABSOLUTE = 1e-13, 1e-15
 # Chebyshev nodes over the depth between two breakpoints: exp(-61 z) is resolved by 64 to 1e-14, by 32 to 1e-5.

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 FAST = ("mdr", "mdr_table")
-EQUATIONS = ("mdr", "integral_equation")
 GRIDS = ("bem", "mdr_table")
 # Those that solve layered bodies, finite elements left out.
 ON_STACKS = ("mdr", "integral_equation", "bem")
@@ -59,7 +58,7 @@ NOT_SAID = "not said by its package"
 SHARED: tuple[Shared, ...] = (
     Shared(
         name=LAYER_KERNEL,
-        place="bem.kernels.layer",
+        place="bem.kernels.stack",
         methods=ON_THE_KERNEL,
         guard="agreement with finite elements; values of the kernel in extended precision",
     ),
@@ -86,7 +85,7 @@ SHARED: tuple[Shared, ...] = (
     ),
     Shared(
         name="fields inside from the contact's density",
-        place="bem.layer_equation.inside",
+        place="mdr.inside",
         methods=("mdr",),
         guard="agreement with finite elements; laws of elastic bodies",
         cases=("inside_half_space", "inside_layer"),

@@ -99,12 +99,12 @@ def fem_cells(degree: int, *, thin: bool = False) -> Refinement:
     return Refinement(name=name, method="fem", ladder=ladder, reason=WHY["cells"], ratio=ROOT_TWO)
 
 
-def in_turn(name: str, values: Iterable[float], **fixed: float) -> tuple[Mapping[str, float], ...]:
+def in_turn(name: str, values: Iterable[float], **fixed: float | str) -> tuple[Mapping[str, float | str], ...]:
     """Return settings with each of ``values`` of one setting in turn."""
     return tuple({**fixed, name: value} for value in values)
 
 
-def neighbours(name: str, groups: Iterable[Iterable[float]], **fixed: float) -> tuple[Grids, ...]:
+def neighbours(name: str, groups: Iterable[Iterable[float]], **fixed: float | str) -> tuple[Grids, ...]:
     """Return groups of settings: each group is one refinement."""
     return tuple(in_turn(name, group, **fixed) for group in groups)
 

@@ -3,7 +3,7 @@
 from cases.declare.methods import MethodUse
 
 MDR = MethodUse(label="mdr")
-FEM = MethodUse(label="fem", settings={"order": 4, "growth": 0.4, "edge_cell": 1e-7, "truncation": 1e-10})
+FEM = MethodUse(label="fem", settings={"order": 4, "growth": 0.33, "edge_cell": 1e-7, "truncation": 1e-10})
 QUICK_FEM = MethodUse(label="fem", settings={"accuracy": 1e-4})
 DETACHING_FEM = MethodUse(label="fem", settings={"accuracy": 3e-5})
 PEELING_FEM = MethodUse(label="fem", settings={"accuracy": 5e-5})

@@ -5,7 +5,7 @@ Fig. 8: normalised elongation of the outermost spring before it lets go, Eq. (42
 
 import numpy as np
 
-from bem.layer_equation.protocol import FlatPunchSource
+from bem.flat_punch import FlatPunchSource
 from cases.results.records.figure import Figure, Panel, Series
 from contact import Adhesion, Detachment, DetachmentPath, FlatPunch, Layer, Scene
 from contact.records.validation import FloatArray

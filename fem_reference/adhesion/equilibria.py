@@ -17,8 +17,8 @@ from fem_reference.discrete_layer.material import contact_modulus
 from fem_reference.elastic.path import ContactSolver, FemEquilibrium
 from fem_reference.elastic.prescribed_radius import PrescribedContact
 
-# Chebyshev points of a piece at a growth of 1/2, and the power of the growth by which they become more. With half the
-# points interpolation errs by 1e-4, with twice as many it takes twice the time.
+# Chebyshev points of a piece at a growth of 1/2, and the power of the growth by which they become more. Not measured:
+# half and twice.
 NODES, NODE_POWER = 12, 0.75
 # First over last radius of a branch, tried in turn until it becomes unstable.  From the radius where height and
 # elongation are equal, half-spaces detach a paraboloid at 1/6 of it and a cone at 1/40; a prescribed first radius may

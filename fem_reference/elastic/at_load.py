@@ -18,8 +18,7 @@ from fem_reference.discrete_layer.settings import NARROW, NARROWEST, narrowest_r
 from fem_reference.elastic.path import ContactSolver, FemEquilibrium
 from fem_reference.elastic.prescribed_radius import PrescribedContact, quick_solution
 
-# Relative load that is left to the first-order correction, whose own error is its square. A tenth takes a second full
-# solution of most loads, ten times as much errs by 1e-6.
+# Relative load that is left to the first-order correction, whose own error is its square. Not measured: half and twice.
 LEFT_OVER = 1e-4
 # Full solutions of one load: on coarse meshes each radius has a mesh that misses the load by its own error.
 ATTEMPTS = 3
@@ -28,7 +27,14 @@ MOST_LEFT = 0.03
 
 
 def state_at_load(
-    scene: Scene, target: float, start: float, narrowest: float, solve: ContactSolver, *, by_depth: bool
+    scene: Scene,
+    target: float,
+    start: float,
+    narrowest: float,
+    solve: ContactSolver,
+    *,
+    by_depth: bool,
+    most_left: float = MOST_LEFT,
 ) -> FemEquilibrium:
     """The state at a prescribed load, by full solutions.
 
@@ -39,6 +45,7 @@ def state_at_load(
         narrowest: smallest radius [m] that is meshed.
         solve: contact of a given radius [m].
         by_depth: whether the target is a depth.
+        most_left: relative load that the last solution may leave to the correction.
 
     Raises:
         NotConvergedError: the radius does not settle.
@@ -53,7 +60,7 @@ def state_at_load(
             defect = _load(contact, by_depth) / scaled
         exponent = grows_like(contact, flat / contact.contact_radius, by_depth=by_depth)
         corrected = flat + (contact.radius * contact.contact_radius - flat) * defect ** (-1 / exponent)
-        if abs(defect - 1) <= (LEFT_OVER if attempt < ATTEMPTS - 1 else MOST_LEFT):
+        if abs(defect - 1) <= (LEFT_OVER if attempt < ATTEMPTS - 1 else most_left):
             moved = 0.0 if by_depth else (scaled - contact.smooth_force) / contact.stiffness
             depth = scaled if by_depth else contact.smooth_depth + moved
             force = contact.force(depth) if by_depth else scaled
@@ -77,7 +84,8 @@ def searched_radius(scene: Scene, target: float, log: StageLog, *, by_depth: boo
         load = _load(contact, by_depth) * radius ** (1 if by_depth else 2)
         return load / target, grows_like(contact, flat / radius, by_depth=by_depth)
 
-    start = first_radius(indenter, lambda r: height(indenter, r) * (1.0 if by_depth else 4.0 * r) >= target)
+    # Half the load: of several contacts the narrowest is found, as it is when the load grows.
+    start = first_radius(indenter, lambda r: height(indenter, r) * (1.0 if by_depth else 4.0 * r) >= target / 2)
     return radius_of_load(load_at, start, flat, indenter.max_radius, narrowest_radius(scene.layer, indenter))
 
 
@@ -87,14 +95,14 @@ def _load(contact: PrescribedContact, by_depth: bool) -> float:
 
 
 def grows_like(contact: PrescribedContact, flat: float, *, by_depth: bool) -> float:
-    """d ln(load) / d ln(a - flat) of one solution, lengths by its radius, within [0.2, 20].
+    """d ln(load) / d ln(a - flat) of one solution, lengths by its radius, within [0.2, 1e6].
 
     The depth grows by its slope, the force by k_N times that.  Differences of neighbouring radii, each with a mesh of
     its own, say nothing where the errors of the meshes are as large.
     """
     slope = contact.smooth_depth_slope
     grows = slope / contact.smooth_depth if by_depth else contact.stiffness * slope / contact.smooth_force
-    return float(np.clip(grows * (contact.radius - flat), 0.2, 20))
+    return float(np.clip(grows * (contact.radius - flat), 0.2, 1e6))
 
 
 def radius_of_load(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from contact import (
     IndentationDepths,
     InvalidInput,
     NormalForces,
+    NotConvergedError,
     Scene,
     StageLog,
     UnsupportedSceneError,
@@ -19,17 +21,36 @@ from contact import (
 from contact.answer.one_circle import Circle, no_single_circle, refuse_touching
 from fem_reference.discrete_layer.material import contact_modulus
 from fem_reference.discrete_layer.settings import narrowest_radius
-from fem_reference.elastic.at_load import searched_radius, state_at_load
+from fem_reference.elastic.at_load import MOST_LEFT, searched_radius, state_at_load
 from fem_reference.elastic.path import ContactSolver, FemEquilibrium, flat_punch_equilibria, smooth_equilibrium
 from fem_reference.elastic.prescribed_radius import quick_solution
 from fem_reference.stated import change_beside
 
 # Relative error of the depth in a quick solution: about three times the largest, that of tabulated profiles.
 QUICK_ERROR = 2e-4
+# Error of the pressure of a cell over what coarser cells change of it, and the same at points of a flat punch, where
+# pressures have waves. Ten times as much answers contacts that MDR refuses.
+FINE_SHARE, POINT_SHARE = 0.1, 0.5
+
+
+@dataclass
+class RadiusSearch:
+    """Radii [m] of depths [m] or forces / E* [m^2], each searched once for all resolutions."""
+
+    scene: Scene
+    log: StageLog
+    _found: dict[float, float] = field(default_factory=dict)
+
+    def of(self, target: float) -> float:
+        """Radius near which a load is carried."""
+        if target not in self._found:
+            by_depth = isinstance(self.scene.loading, IndentationDepths)
+            self._found[target] = searched_radius(self.scene, target, self.log, by_depth=by_depth)
+        return self._found[target]
 
 
 def elastic_equilibria(
-    scene: Scene, solve: ContactSolver, coarsening: float, before: Sequence[FemEquilibrium] | None, log: StageLog
+    scene: Scene, solve: ContactSolver, coarsening: float, search: RadiusSearch
 ) -> list[FemEquilibrium]:
     """States without adhesion at prescribed radii, depths or forces.
 
@@ -37,8 +58,7 @@ def elastic_equilibria(
         scene: the scene.
         solve: contact of a given radius [m].
         coarsening: of the companion's cells, see `Discretisation`.
-        before: states of a coarser resolution, near which those of loads are found; None searches them.
-        log: of the stages.
+        search: finds the radii of loads.
     """
     loading = scene.loading
     if isinstance(loading, ContactRadii):
@@ -50,10 +70,18 @@ def elastic_equilibria(
     by_depth = isinstance(loading, IndentationDepths)
     targets = loading.values / (1.0 if by_depth else contact_modulus(scene.layer))
     narrowest = narrowest_radius(scene.layer, scene.indenter, coarsening)
+    # A companion may miss the load by any error: that is what is stated of the answer.
+    most_left = MOST_LEFT if coarsening == 1.0 else np.inf
     states = []
-    for step, target in enumerate(map(float, targets)):
-        near = before[step].contact_radius if before else searched_radius(scene, target, log, by_depth=by_depth)
-        states.append(state_at_load(scene, target, near, narrowest, solve, by_depth=by_depth))
+    for target in map(float, targets):
+        start = search.of(target)
+        try:
+            states.append(state_at_load(scene, target, start, narrowest, solve, by_depth=by_depth, most_left=most_left))
+        except NotConvergedError:
+            # Contacts with tension inside depend on their radius in any way.
+            state = smooth_equilibrium(quick_solution(scene, start, search.log))
+            _refuse_pulled(scene, state, state)
+            raise
     return states
 
 
@@ -73,7 +101,8 @@ def refuse_other_contacts(scene: Scene, states: Sequence[FemEquilibrium], coarse
 
 def _refuse_pulled(scene: Scene, state: FemEquilibrium, other: FemEquilibrium) -> None:
     radius, is_punch = state.contact_radius, isinstance(scene.indenter, FlatPunch)
-    if not (scene.layer.is_uniform and scene.indenter.is_convex):
+    rises = bool(state.contact.indenter.slope(np.array([1e-9]))[0] >= 0)
+    if not (scene.layer.is_uniform and scene.indenter.is_convex and rises):
         where = pulled_radius(state, other)
         if where is not None:
             raise no_single_circle(radius, f"would be pulled at r = {where:g} m")
@@ -97,9 +126,9 @@ def pulled_radius(state: FemEquilibrium, other: FemEquilibrium) -> float | None:
         for each in (state, other)
     )
     change = np.abs(fine - coarse)
-    is_pulled = np.sum((fine + change) * weight, axis=1) < 0
+    is_pulled = np.sum((fine + FINE_SHARE * change) * weight, axis=1) < 0
     if is_punch:
-        is_pulled |= np.any(fine + change < 0, axis=1)
+        is_pulled |= np.any(fine + POINT_SHARE * change < 0, axis=1)
     pulled = np.flatnonzero(is_pulled)
     return float(radius[pulled[0]].mean() * contact.contact_radius) if pulled.size else None
 

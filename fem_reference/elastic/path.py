@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from contact import FlatPunch, IndentationDepths, InvalidInput, NormalForces, Scene
+from contact import IndentationDepths, InvalidInput, NormalForces, Scene
 from contact.records.validation import FloatArray
 from fem_reference.discrete_layer.material import contact_modulus
 from fem_reference.elastic.prescribed_radius import PrescribedContact
@@ -69,8 +69,3 @@ def flat_punch_equilibria(scene: Scene, radius: float, solve: ContactSolver) -> 
     else:
         raise InvalidInput(f"loading = {type(loading).__name__}: a flat punch takes depths or forces")
     return [FemEquilibrium(contact=contact, depth=depth, force=contact.force(depth)) for depth in map(float, depths)]
-
-
-def is_flat_punch(scene: Scene) -> bool:
-    """Whether the contact radius is that of the indenter."""
-    return isinstance(scene.indenter, FlatPunch)

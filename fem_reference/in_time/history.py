@@ -19,8 +19,7 @@ from fem_reference.in_time.motions import CondensedLayer, Samples, simulate_pres
 from fem_reference.in_time.setup import HistorySetup, Resolution
 from fem_reference.stated import FLOOR, exact_names
 
-# Instants of the companion to either side, among which the largest change is stated. With two of them one history in
-# five is missed right after a bend, with twice as many stated errors are a third larger.
+# Instants of the companion to either side, among which the largest change is stated. Not measured: half and twice.
 WINDOW = 6
 # Contact narrower than so many cells states the largest change while it is; the first cells err in every way.
 NARROW = 8.0

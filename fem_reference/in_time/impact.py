@@ -22,7 +22,7 @@ from fem_reference.stated import FLOOR, exact_names, relative_change
 # Steps of a pilot in the time that contact is expected to take; more than half as many tell how long it lasts.
 PILOT_STEPS = 60
 # Largest change of velocity in a step of the pilot and in one of two hundred steps, over the first velocity: a strong
-# dashpot stops a body far sooner than the layer throws it back. With twice as much peak forces err by 1e-2.
+# dashpot stops a body far sooner than the layer throws it back. Not measured: half and twice.
 LARGEST_CHANGE, WANTED_CHANGE = 0.2, 0.05
 # Most steps over those of an impact on an elastic layer.
 MOST = 16

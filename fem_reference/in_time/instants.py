@@ -9,7 +9,7 @@ import numpy as np
 from contact.records.validation import FloatArray
 
 # Octaves of steps in a segment, the fewest and the most, and those that all segments share: every scale of time after a
-# bend has its own steps. Half of the most errs by a few per cent of the load right after a bend.
+# bend has its own steps. Not measured: half and twice.
 FEWEST, MOST, SHARED = 3, 12, 48
 
 

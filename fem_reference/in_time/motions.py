@@ -23,8 +23,7 @@ from fem_reference.in_time.top import Top
 
 # Steps after which a body counts as held by the layer: five hundred times what an impact at the default settings takes.
 MAX_STEPS = 200_000
-# The step in which a load that is there at first is reached, over the step after it: half and twice of it change
-# nothing.
+# The step in which a load that is there at first is reached, over the step after it: not measured: half and twice.
 INSTANT = 1e-7
 
 

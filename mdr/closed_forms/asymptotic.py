@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bem.kernels.moduli import confined_modulus, contact_modulus
-from bem.polynomials.gauss_panels import gauss_nodes
+from bem.numerics import gauss
 from contact import InvalidInput, Layer, Profile
 from contact.records.validation import FloatArray
 
@@ -53,7 +53,7 @@ def thin_profile(layer: Layer, indenter: Profile, x: ArrayLike) -> FloatArray:
 
 def _mean_height(indenter: Profile, x: FloatArray) -> FloatArray:
     """(2/x^2) int_0^x f(r) r dr by Gauss quadrature between breakpoints."""
-    nodes, weights = gauss_nodes(NODES)
+    nodes, weights = gauss(NODES)
     flat = indenter.flat_radius
     ends = [flat, *(k for k in indenter.breakpoints if flat < k < np.max(x, initial=0.0)), np.inf]
     total = np.zeros_like(x)

@@ -1,175 +1,208 @@
-"""Growing contact under full stick: the depth delta(a) at which the contact has grown to the radius a.
+"""A convex tip that sticks where it touches: contact that grows by adhered punches of all radii.
 
-Points that come into contact stay where they touched. The contact is a sequence of adhered punches, each pressed in by
-delta'(a) da, and follows the indenter if
+    g_hs(x) = int_0^x M(x; a) d delta(a),   F = int k_stick d delta,   M = Re[((x + a)/(x - a))^(i eps) G(x; a)]
 
-    g_hs(x) = int_0^x M(x; a) delta'(a) da,        F(a) = int_0^a k_stick delta' da.
-
-M is smooth but for ``((x+a)/(x-a))^(i eps)`` at a = x, which the tanh-sinh rule takes. On each stretch of the profile
-delta' is a polynomial in a variable in which it is smooth, found by least squares over places, stretch after stretch.
+with G of `Adhered.beside`, a polynomial of x and a. Between radii where the profile is not analytic, d delta/du is
+u^(lead - 1) times a polynomial of u, a = start + length u^power, found by least squares. Lengths in units of the
+kernel.
 """
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
+from functools import lru_cache
 from itertools import pairwise
 
 import numpy as np
 from numpy.polynomial import chebyshev
+from numpy.typing import NDArray
+from scipy.special import j0
 
-from bem.layer_equation.stick.adhered_fields import tanh_sinh
-from bem.layer_equation.stick.growth import GrowthTable
-from contact import PowerLaw, Profile
+from bem.kernels.stack import StackKernel
 from contact.records.validation import FloatArray
-from mdr.springs.half_space_profile import half_space_profile
+from mdr.friction.adhered_punch import Adhered, Rule, abel, towards_one
+from mdr.inside import wave_rule
+from mdr.profiles import Tip
 
-# Places at which the indenter is followed, over unknowns. With as many as unknowns, those of a film over a base a
-# hundred times as soft answered roundings so much that 60 and 66 of them differed by 2e-9 to 6e-9, by the processor;
-# least squares over a quarter more leave 4e-10 to 2e-9 (cone, a/h = 1.6, nu = 0, four kernels of BLAS, 2026-11-26).
-_PLACES = 1.25
+# Punches and places of the table, at a/h = 0 and per a/h; a fifth less loses three digits.
+_PUNCHES, _PLACES = (26, 4.5), (28, 5.5)
+# At least so many for the root of the longest length that a/h spans: with 6 growth over a base a hundred times as soft
+# errs by 1e-7.
+_PER_ROOT = 9.0
+# Unknowns of a stretch likewise, and the most for the root of the length: with 70 rounding leaves 5e-8.
+_UNKNOWNS, _UNKNOWNS_PER_ROOT, _MOST = (20, 5.0), 2.5, 46.0
+
+
+def _nodes(count: int) -> FloatArray:
+    """Chebyshev nodes on [0, 1]."""
+    return np.asarray((1 - np.cos(np.pi * (np.arange(count) + 0.5) / count)) / 2)
+
+
+class Punches:
+    """Adhered punches of all radii up to `end` on one layer: G(x; a) and k_stick as polynomials of x and a."""
+
+    def __init__(self, kernel: StackKernel, end: float, extra: int) -> None:
+        self.kernel, self.end = kernel, end
+        self.size = 0.0 if kernel.is_half_space else end
+        self.root = float(np.sqrt(self.size * (kernel.longest - 1)))
+        radii, places = (
+            end * _nodes(int(max(least + rate * self.size, _PER_ROOT * self.root)) + extra)
+            for least, rate in (_PUNCHES, _PLACES)
+        )
+        punches = [Adhered(kernel, a, extra, end / a) for a in radii.tolist()]
+        self._stiffness = self._fitted(radii, np.array([punch.stiffness / punch.a for punch in punches]))
+        beside = np.array([punch.beside(places / punch.a) for punch in punches])
+        self._table = self._fitted(radii, self._fitted(places, beside.T).T)  # coefficients in a, x
+        self.largest = punches[-1]
+
+    def _fitted(self, x: FloatArray, values: NDArray[np.inexact]) -> NDArray[np.inexact]:
+        return np.asarray(chebyshev.chebfit(2 * x / self.end - 1, values, x.size - 1))
+
+    def at(self, a: FloatArray) -> NDArray[np.complex128]:
+        """Coefficients in x of G(x; a), first axis."""
+        return np.asarray(chebyshev.chebval(2 * a / self.end - 1, self._table))
+
+    def stiffness(self, a: FloatArray) -> FloatArray:
+        """k_stick/E*."""
+        return np.asarray(2 * a * chebyshev.chebval(2 * a / self.end - 1, self._stiffness))
+
+
+@lru_cache(maxsize=32)
+def punches_of(kernel: StackKernel, end: float, extra: int) -> Punches:
+    """The punches of one layer, remembered."""
+    return Punches(kernel, end, extra)
 
 
 @dataclass(frozen=True)
-class GrowthStretch:
-    """delta on one stretch of the profile: ``a = start + length u^power``, ``d delta/du = u^(lead - 1) poly(u)``.
-
-    Attributes:
-        start: First radius.
-        length: Of the stretch.
-        power: 2 beyond an edge, where delta begins like a root; 1 elsewhere.
-        lead: delta begins like u^lead.
-    """
+class Stretch:
+    """Radii start + (end - start) u^power, on which d delta/du is u^(lead - 1) times `count` polynomials of u."""
 
     start: float
-    length: float
+    end: float
     power: int
     lead: float
+    count: int
 
-    def radius(self, u: FloatArray) -> FloatArray:
-        """a at u."""
-        return self.start + self.length * u**self.power
-
-    def place(self, a: FloatArray) -> FloatArray:
-        """u at a."""
-        return np.asarray(np.clip((a - self.start) / self.length, 0.0, 1.0) ** (1.0 / self.power))
-
-    @property
-    def end(self) -> float:
-        """Last radius."""
-        return self.start + self.length
-
-    def increments(
-        self, low: float, high: float, v: FloatArray, weights: FloatArray, unknowns: FloatArray
-    ) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Radii, their distance from `low`, and depths of the part between `low` and `high`."""
-        first, last = self.place(np.array([low, high]))
-        u = first + (last - first) * v
-        grown = self.length * (last - first) * v * (1.0 if self.power == 1 else u + first)
-        depth = (last - first) * weights * (self.slopes(u, unknowns.size) @ unknowns)
-        return self.radius(u), max(0.0, self.start - low) + grown, depth
-
-    def slopes(self, u: FloatArray, count: int) -> FloatArray:
-        """d delta/du of each unknown at u, shape (*u.shape, count)."""
-        return np.asarray(u[..., None] ** (self.lead - 1.0) * chebyshev.chebvander(2.0 * u - 1.0, count - 1))
+    def steps(self, low: float, high: float, rule: Rule, *, to_high: bool) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Of radii between low and high: a, its distance from high (or low) with all digits, d delta by coefficient."""
+        length, (v, rest, w) = self.end - self.start, rule
+        first, last = (np.clip((x - self.start) / length, 0, 1) ** (1 / self.power) for x in (low, high))
+        u = first + (last - first) * (v if to_high else rest)
+        way = length * (last - first) * rest * (1.0 if self.power == 1 else u + (last if to_high else first))
+        way = way + (max(0.0, high - self.end) if to_high else max(0.0, self.start - low))
+        rows = ((last - first) * w * u ** (self.lead - 1))[:, None] * chebyshev.chebvander(2 * u - 1, self.count - 1)
+        return self.start + length * u**self.power, np.maximum(way, 1e-300), rows
 
 
-@dataclass(frozen=True)
-class Increments:
-    """Quadrature over adhered punches.
-
-    Attributes:
-        radius: a, shape (n,).
-        gap: a - low with all its digits, shape (n,).
-        depth: delta'(a) da times the weight, shape (n,).
-    """
-
-    radius: FloatArray
-    gap: FloatArray
-    depth: FloatArray
-
-
-@dataclass(frozen=True)
 class Growth:
-    """Depth and force as the contact grows; lengths in the layer's thickness.
-
-    Attributes:
-        table: Adhered punches.
-        stretches: Of the profile, in order.
-        unknowns: Coefficients of each stretch, shape (stretches, count).
-    """
-
-    table: GrowthTable
-    stretches: tuple[GrowthStretch, ...]
-    unknowns: FloatArray
-
-    def increments(self, low: float, high: float) -> Increments:
-        """The punches added while the contact grows from one radius to another, 0 <= low <= high."""
-        v, _, weights = tanh_sinh()
-        parts = [
-            stretch.increments(low, high, v, weights, unknowns)
-            for stretch, unknowns in zip(self.stretches, self.unknowns, strict=True)
-            if stretch.start < high and low < stretch.end
-        ]
-        if not parts or low >= high:
-            return Increments(np.array([high]), np.zeros(1), np.zeros(1))
-        radius, gap, depth = (np.concatenate(column) for column in zip(*parts, strict=True))
-        return Increments(radius, gap, depth)
-
-    def depth_and_force(self, radius: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """delta/h and F/(E* h^2) at a/h, each of shape (n,)."""
-        grown = [self.increments(0.0, float(a)) for a in radius]
-        depth = [g.depth.sum() for g in grown]
-        force = [g.depth @ self.table.contact_stiffness(g.radius) for g in grown]
-        return np.array(depth), np.array(force)
-
-
-def growth(indenter: Profile, thickness: float, reach: float, table: GrowthTable, count: int) -> Growth:
-    """Solve for delta(a) up to a = reach.
+    """The contact of one tip up to the radius `end`.
 
     Args:
-        indenter: Profile of revolution, no flat punch.
-        thickness: h [m].
-        reach: Largest a/h.
-        table: Adhered punches that reach as far.
-        count: Unknowns of a stretch.
+        kernel: Of the layer.
+        tip: The profile, in metres.
+        unit: Length of the kernel [m].
+        end: Largest radius in units.
+        extra: Added to the sizes of the discretisation.
     """
-    stretches = _stretches(indenter, thickness, reach)
-    u = (1.0 + chebyshev.chebpts1(math.ceil(_PLACES * count))) / 2.0
-    unknowns = np.empty((len(stretches), count))
-    for p, stretch in enumerate(stretches):
-        x = stretch.radius(u)
-        excess = stretch.length * u**stretch.power + (stretch.start - indenter.flat_radius / thickness)
-        right = half_space_profile(indenter, thickness * excess) / thickness
-        for earlier, known in zip(stretches[:p], unknowns, strict=False):
-            right = right - _followed(earlier, x, np.ones_like(x), table, count) @ known
-        matrix = _followed(stretch, x, u, table, count)
-        # Both sides begin like u^lead.
-        row = u**-stretch.lead
-        unknowns[p] = np.linalg.lstsq(row[:, None] * matrix, row * right, rcond=None)[0]
-    return Growth(table, stretches, unknowns)
+
+    def __init__(self, kernel: StackKernel, tip: Tip, unit: float, end: float, extra: int) -> None:
+        self.kernel, self.tip, self.unit, self.end = kernel, tip, unit, end
+        # Rounded up by a fifth at most, so that scenes share tables.
+        above = end if kernel.is_half_space else float(1.2 ** np.ceil(np.log(end) / np.log(1.2) - 1e-9))
+        self.punches = punches_of(kernel, above, extra)
+        e = 1e-5 * end
+        lead = 1.0 if tip.flat else float(np.round(np.log2(self._height(2 * e) / self._height(e))))
+        lead = getattr(tip, "exponent", lead)
+        self.rule = towards_one(16 + extra, 0 if lead % 1 == 0 else 6)
+        usual = _UNKNOWNS[0] + _UNKNOWNS[1] * self.punches.size
+        count = int(max(usual, min(usual + _UNKNOWNS_PER_ROOT * self.punches.root, _MOST)))
+        self._follow(lead, count + extra)
+
+    def _height(self, x: FloatArray | float) -> FloatArray:
+        return self.tip.transform(np.asarray(x, dtype=np.float64) * self.unit) / self.unit
+
+    def _follow(self, lead: float, count: int) -> None:
+        """d delta, stretch after stretch, by least squares at more places than unknowns."""
+        flat, unit = self.tip.flat / self.unit, self.unit
+        ends = [flat, *(b / unit for b in self.tip.breaks if flat < b / unit < self.end), self.end]
+        self.parts: list[tuple[Stretch, FloatArray]] = []
+        for low, high in pairwise(ends):
+            new = Stretch(low, high, 2 if low else 1, 1.0 if low else lead, count)
+            u = _nodes(int(1.25 * count))
+            x = low + (high - low) * u**new.power
+            known = np.array([sum(self._followed(s, y) @ c for s, c in self.parts) for y in x.tolist()])
+            scale = u**-new.lead
+            rows = scale[:, None] * np.array([self._followed(new, y) for y in x.tolist()])
+            self.parts.append((new, np.linalg.lstsq(rows, scale * (self._height(x) - known), rcond=None)[0]))
+
+    def _followed(self, stretch: Stretch, x: float) -> FloatArray:
+        """int M(x; a) d delta over the radii of one stretch up to x, by coefficient."""
+        a, gap, rows = stretch.steps(0.0, x, self.rule, to_high=True)
+        G = chebyshev.chebval(2 * x / self.punches.end - 1, self.punches.at(a))
+        turned = np.exp(1j * self.punches.largest.eps * np.log((x + a) / gap)) * G
+        return np.asarray(turned.real @ rows)
+
+    def states(self, radii: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Depth, F/E* and k_stick/E* at contact radii."""
+        depth, force = np.zeros(radii.size), np.zeros(radii.size)
+        for i, x in enumerate(radii.tolist()):
+            for stretch, c in self.parts:
+                a, _, rows = stretch.steps(0.0, x, self.rule, to_high=True)
+                step = rows @ c
+                depth[i] += step.sum()
+                force[i] += self.punches.stiffness(a) @ step
+        return depth, force, self.punches.stiffness(radii)
+
+    def _beyond(self, x: float, a: float, rule: Rule) -> list[tuple[FloatArray, FloatArray, FloatArray]]:
+        """Radii from x to a: themselves, their distances from x, and d delta, of each stretch."""
+        reached = [(s, c) for s, c in self.parts if s.end > x and s.start < a]
+        found = [(s.steps(x, a, rule, to_high=False), c) for s, c in reached]
+        return [(size, gap, rows @ c) for (size, gap, rows), c in found]
+
+    def tractions(self, r: FloatArray, a: float) -> FloatArray:
+        """p and q over E* at radii r < a of the contact of radius a, shape (2, n): of all punches larger than r."""
+        found, of, (_, rest, w) = np.zeros((2, r.size)), self.punches.largest, self.rule
+        squared = 1 - rest**2, rest**2, 2 * rest * w  # tractions of a punch are 1/sqrt(gap)
+        for i, x in enumerate(r.tolist()):
+            for size, gap, step in self._beyond(x, a, squared):
+                density = _Densities(self.punches, size)
+                found[:, i] += abel(x / size, gap * (size + x) / size**2, self.rule, density) @ (step / size)
+        return 2 * of.beta / np.pi * found
+
+    def displacement(self, r: FloatArray, a: float) -> FloatArray:
+        """u_z at radii r > a beside the contact of radius a: of the density of all punches together."""
+        of, (v, rest, w) = self.punches.largest, self.rule
+        t = a * v
+        phi = a * w * np.array([self._density(x, a) for x in t.tolist()])
+        near = 1 / np.sqrt(((r - a)[:, None] + a * rest) * (r[:, None] + t)) @ phi.real
+        added: FloatArray | float = 0.0
+        if not self.kernel.is_half_space:
+            k, weight = wave_rule(21.5, a + float(r.max()), self.kernel.longest, of.nodes)
+            _, uw, ww = self.kernel.beyond_half_space(k)
+            angle = np.multiply.outer(k, t)
+            load = ww * (np.cos(angle) @ phi.real) + uw * (np.sin(angle) @ phi.imag)
+            added = j0(np.multiply.outer(r, k)) @ (weight * load)
+        return np.asarray(2 / np.pi * (2 * of.beta * near + added))
+
+    def _density(self, x: float, a: float) -> complex:
+        """Phi at x: of all punches larger than x."""
+        of, total = self.punches.largest, 0j
+        for size, gap, step in self._beyond(x, a, self.rule):
+            G = chebyshev.chebval(2 * x / self.punches.end - 1, self.punches.at(size))
+            total += (np.exp(1j * of.eps * np.log((size + x) / gap)) * G) @ step
+        return complex(total / np.sqrt(of.kap))
 
 
-def _stretches(indenter: Profile, thickness: float, reach: float) -> tuple[GrowthStretch, ...]:
-    flat = indenter.flat_radius / thickness
-    inner = [k / thickness for k in indenter.breakpoints if flat < k / thickness < reach]
-    ends = [flat, *inner, reach]
-    lead = float(indenter.exponent) if isinstance(indenter, PowerLaw) else 1.0
-    first = GrowthStretch(ends[0], ends[1] - ends[0], 2 if flat else 1, 1.0 if flat else lead)
-    rest = (GrowthStretch(start, end - start, 2, 1.0) for start, end in pairwise(ends[1:]))
-    return (first, *rest)
+class _Densities:
+    """Phi and (1 - t^2) Phi' of unit punches of some sizes, each at its own t: from the table."""
 
+    def __init__(self, punches: Punches, size: FloatArray) -> None:
+        self.of, self.end, self.size = punches.largest, punches.end, size[:, None]
+        self.columns = punches.at(size)[..., None]
+        self.slopes = chebyshev.chebder(self.columns) * 2 / punches.end
 
-def _followed(stretch: GrowthStretch, x: FloatArray, end: FloatArray, table: GrowthTable, count: int) -> FloatArray:
-    """int M(x; a) d delta/du du of each unknown over u < end, shape (x, count)."""
-    v, rest, weights = tanh_sinh()
-    rows = np.empty((x.size, count))
-    for i, (place, to) in enumerate(zip(x, end, strict=True)):
-        u = to * v
-        a = stretch.radius(u)
-        # x - a as a product, whose digits the end of the rule asks for; x may lie beyond the stretch.
-        beyond = max(0.0, place - stretch.start - stretch.length)
-        gap = beyond + stretch.length * to**stretch.power * rest * (1.0 if stretch.power == 1 else 1.0 + v)
-        turned = np.exp(1j * table.material.charge * np.log((place + a) / gap))
-        rows[i] = (to * weights * (turned * table.beside(float(place), a)).real) @ stretch.slopes(u, count)
-    return rows
+    def __call__(self, t: FloatArray, short: FloatArray) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
+        y = 2 * t * self.size / self.end - 1
+        g, change = (chebyshev.chebval(y, f, tensor=False) for f in (self.columns, self.slopes))
+        rho = np.exp(1j * self.of.eps * np.log((1 + t) / short)) / np.sqrt(self.of.kap)
+        return rho * g, rho * (2j * self.of.eps * g + short * (1 + t) * self.size * change)

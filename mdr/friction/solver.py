@@ -1,21 +1,21 @@
-"""Contact under full stick: equilibria under prescribed radii, depths or forces, reached by loading alone."""
+"""Contact under full stick: equilibria under prescribed radii, depths or forces, reached by loading alone.
+
+Errors: what a coarser discretisation changes (`contact.stated`), and rounding times the condition of the equation.
+"""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from scipy.optimize import brentq
 
+from bem.flat_punch import FlatPunchSource, IntegralEquation
 from bem.kernels.moduli import contact_modulus
 from bem.kernels.of_layer import stack_kernel
-from bem.layer_equation.flat_punch_source import IntegralEquation
-from bem.layer_equation.protocol import FlatPunchSource
-from bem.layer_equation.stick.adhered_punch import adhered_punch
-from bem.layer_equation.stick.growth import growth_table
+from bem.numerics import EPS
 from contact import (
     ContactPath,
     ContactRadii,
@@ -29,65 +29,21 @@ from contact import (
 )
 from contact.answer.solution import Setting
 from contact.records.validation import FloatArray
-from mdr.friction.fields import PunchFields, StickFields
-from mdr.friction.growth import Growth, growth
-from mdr.springs.half_space_profile import half_space_profile
+from contact.stated import stated_error
+from mdr.equilibria import sizes_of
+from mdr.friction.adhered_punch import Adhered
+from mdr.friction.growth import Growth
+from mdr.profiles import Tip, tip_of
+from mdr.spring_bed import State
 
-EPS = float(np.finfo(float).eps)
-# Unknowns of a stretch, at X = 0 and per thickness that the contact spans: errors then are below 1e-10 (paraboloids,
-# cones, spheres and power laws, a/h 0.1 to 10, seeds 5 and 90, 2026-11-22).
-_UNKNOWNS = (20.0, 5.0)
-# More of them for the root of that span times how much longer than the film the longest length of its kernel is: 30
-# left 2e-7 at a/h = 1.9 over a base a hundred times as soft, 38 left 8e-10 at 3.7, ten times (seed 3, 2026-11-22).
-_UNKNOWNS_OF_LENGTH = 2.5
-# But no more than so many for that reason, since rounding grows with them: six more moved 9e-11 at 46, 5e-10 at 58 and
-# 5e-8 at 70 (cone, a/h = 1.6, nu = 0, over a base a hundred times as soft, 2026-11-22).
-_MOST_OF_LENGTH = 60.0
-# More unknowns, whose answer the one with fewer is compared with.
+# Unknowns that the companion has less: with half as many two resolutions agree by accident.
 _MORE = 6
 # Where the first trial radius does not reach the wanted depth or force, the next is this much larger.
 _FURTHER = 1.3
-# Times what others move: one is the difference itself, which is up to a quarter less than the error where six unknowns
-# more leave a fifth of it (24 contacts of seed 3: 0.80 to 1.5 of the error, 2026-11-22).
-_SAFETY = 2.0
-# Roundings of depth and force (a/h 0.1 to 6, 2026-11-22).
-_ROUNDINGS = 50.0
-# Roundings of an adhered punch's stiffness over the condition number of its matrix: at most 8.1, against other nodes
-# and functions (nu = 0, 0.3, 0.45 and 1/2, a/h = 0.02 to 50, 2026-11-22).
-_PER_CONDITION = 10.0
+# Roundings of growth, of a punch, and of both per condition of the punch's matrix; half of them are exceeded at times.
+_OF_GROWTH, _OF_PUNCH, _PER_CONDITION = 50.0, 20.0, 10.0
 # Largest relative error of depth and force that is answered; beyond, the growth is refused.
 _LARGEST_ERROR = 1e-3
-
-
-@dataclass(frozen=True)
-class StickSystem:
-    """Growing contact of one scene; lengths in `unit`, forces in E* unit^2.
-
-    Attributes:
-        unit: Thickness of the surface material, or the largest radius on a half-space [m].
-        growths: The answer, that with more unknowns, and that from a table without its last coefficients.
-    """
-
-    unit: float
-    growths: tuple[Growth, ...]
-
-    def depth(self, radius: FloatArray) -> FloatArray:
-        """delta at a."""
-        return self.growths[0].depth_and_force(radius)[0]
-
-    def errors(self, radius: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Relative errors of depth and force: what more unknowns, and the table's last coefficients, move."""
-        answer, *others = (np.array(g.depth_and_force(radius)) for g in self.growths)
-        errors = sum(
-            (_SAFETY * np.abs(other / answer - 1.0) for other in others), np.full_like(answer, _ROUNDINGS * EPS)
-        )
-        return errors[0], errors[1]
-
-
-def prescribed(scene: Scene) -> FloatArray:
-    """The radii, depths or forces asked for, shape (n,)."""
-    values: FloatArray = scene.loading.values  # type: ignore[attr-defined]  # the dispatch sends equilibria only
-    return values
 
 
 def solve_stick(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[str, Setting]) -> ContactPath:
@@ -99,166 +55,232 @@ def solve_stick(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[str
         NotConvergedError: If the growth is not resolved.
     """
     log = StageLog()
+    extra = sizes_of(flat_punch).extra if isinstance(flat_punch, IntegralEquation) else 0
+    kind = _Punch if isinstance(scene.indenter, FlatPunch) else _Grown
     with log.stage("stick"):
-        answer = (
-            _flat_punch(scene) if isinstance(scene.indenter, FlatPunch) else _growing(scene, _refinement(flat_punch))
-        )
-    unknowns = int(answer.pop("unknowns"))
+        own, coarser = kind.of(scene, extra + _MORE), kind.of(scene, extra)
     return ContactPath(
-        scene=scene, method="mdr", settings=settings, cost=log.cost(unknowns=unknowns), stages=log.records, **answer
+        scene=scene,
+        method="mdr",
+        settings=settings,
+        cost=log.cost(unknowns=own.unknowns),
+        stages=log.records,
+        contact_radius=own.state.radius,
+        indentation_depth=own.state.depth,
+        normal_force=own.state.force,
+        contact_stiffness=own.state.stiffness,
+        error_estimate=_errors(scene, own, coarser),
+        fields=own,
     )
 
 
-def _flat_punch(scene: Scene) -> dict[str, Any]:
-    """k_stick delta: nothing grows."""
-    radius, layer = scene.indenter.flat_radius, scene.layer
-    ratio = 0.0 if layer.is_half_space else radius / layer.surface.thickness
-    punch = adhered_punch(ratio, stack_kernel(layer))
-    stiffness = 2.0 * contact_modulus(layer) * radius * punch.stiffness
-    values = prescribed(scene)
-    by_depth = isinstance(scene.loading, IndentationDepths)
-    depth = values if by_depth else values / stiffness
-    exact, error = np.zeros_like(values), np.full_like(values, EPS * (20.0 + _PER_CONDITION * punch.condition))
+def _errors(scene: Scene, own: _Punch | _Grown, coarser: _Punch | _Grown) -> dict[str, FloatArray]:
+    """Of what was not prescribed."""
+    radius, depth, force, stiffness = (
+        stated_error(one, other, scale=one, floor=own.floor)
+        for one, other in zip(own.state, coarser.state, strict=True)
+    )
+    if not max(depth.max(), force.max()) <= _LARGEST_ERROR:
+        raise NotConvergedError(f"growth under full stick is resolved to {max(depth.max(), force.max()):.1g} only")
+    zero, loading = np.zeros_like(depth), scene.loading
+    is_given = isinstance(loading, ContactRadii) or isinstance(scene.indenter, FlatPunch)
+    by_depth, by_radius = isinstance(loading, IndentationDepths), isinstance(loading, ContactRadii)
     return {
-        "unknowns": punch.coefficients.size,
-        "contact_radius": np.full_like(values, radius),
-        "indentation_depth": depth,
-        "normal_force": stiffness * depth,
-        "contact_stiffness": np.full_like(values, stiffness),
-        "error_estimate": {
-            "contact_radius": exact,
-            "indentation_depth": exact if by_depth else error,
-            "normal_force": error if by_depth else exact,
-            "contact_stiffness": error,
-        },
-        "fields": PunchFields(punch, radius, contact_modulus(layer), depth),
+        "contact_radius": zero if is_given else radius,
+        "indentation_depth": zero if by_depth else depth,
+        "normal_force": force if by_depth or by_radius else zero,
+        "contact_stiffness": stiffness,
     }
 
 
-def _refinement(flat_punch: FlatPunchSource) -> float:
-    """Nodes of the integral equation over the usual ones, and the root of usual panel widths over its own.
+def _values(scene: Scene) -> FloatArray:
+    """The radii, depths or forces asked for, shape (n,)."""
+    values: FloatArray = scene.loading.values  # type: ignore[attr-defined]  # the dispatch sends equilibria only
+    return values
 
-    Growth takes that many unknowns more.
+
+@dataclass(frozen=True)
+class _Punch:
+    """An adhered flat punch: its states and its surface fields at every step.
+
+    Attributes:
+        punch: Under a depth of one, lengths in units of the kernel.
+        radius: a [m].
+        modulus: E* [Pa].
+        state: Equilibria.
     """
-    if not isinstance(flat_punch, IntegralEquation):
-        return 1.0
-    usual = IntegralEquation()
-    return flat_punch.nodes / usual.nodes * math.sqrt(usual.panel_width / flat_punch.panel_width)
+
+    punch: Adhered
+    radius: float
+    modulus: float
+    state: State
+
+    @classmethod
+    def of(cls, scene: Scene, extra: int) -> _Punch:
+        """Of a scene."""
+        layer, a, modulus = scene.layer, scene.indenter.flat_radius, contact_modulus(scene.layer)
+        unit = a if layer.is_half_space else layer.surface.thickness
+        punch = Adhered(stack_kernel(layer), a / unit, extra)
+        stiffness, values = 2 * modulus * unit * punch.stiffness, _values(scene)
+        by_depth, same = isinstance(scene.loading, IndentationDepths), np.ones_like(values)
+        depth = values if by_depth else values / stiffness
+        force = stiffness * values if by_depth else values
+        return cls(punch, a, modulus, State(a * same, depth, force, stiffness * same))
+
+    @property
+    def floor(self) -> float:
+        """Relative rounding error."""
+        return EPS * (_OF_PUNCH + _PER_CONDITION * self.punch.condition)
+
+    @property
+    def unknowns(self) -> int:
+        """Of the system."""
+        return self.punch.count
+
+    def pressure(self, radius: FloatArray, step: int) -> FloatArray:
+        """p(r) [Pa], zero outside."""
+        return np.asarray(self._tractions(radius, step)[0])
+
+    def tangential_traction(self, radius: FloatArray, step: int) -> FloatArray:
+        """q(r) [Pa], positive where the layer is pushed outward, zero outside."""
+        return np.asarray(self._tractions(radius, step)[1])
+
+    def _tractions(self, radius: FloatArray, step: int) -> FloatArray:
+        s, found = radius / self.radius, np.zeros((2, radius.size))
+        size = self.modulus * self.state.depth[step] * self.punch.a / self.radius
+        found[:, s < 1] = size * self.punch.tractions(s[s < 1])
+        return found
+
+    def surface_displacement(self, radius: FloatArray, step: int) -> FloatArray:
+        """w(r) [m]."""
+        found, beside = np.ones_like(radius), radius > self.radius
+        if beside.any():
+            found[beside] = self.punch.displacement(radius[beside] / self.radius)
+        return np.asarray(self.state.depth[step] * found)
 
 
-def _growing(scene: Scene, refinement: float) -> dict[str, Any]:
-    nu = scene.layer.surface.poissons_ratio
-    if scene.indenter.flat_radius and nu < 0.5:
-        raise UnsupportedSceneError(
-            f"a flat end of radius {scene.indenter.flat_radius:g} m that grows under full stick on a layer with "
-            f"poissons_ratio = {nu:g}: its edge field oscillates, and growth from it has no "
-            "stable answer; give Poisson's ratio 0.5, or a rounded edge"
-        )
-    system, radius = _covering(scene, refinement)
-    depth, force = system.growths[0].depth_and_force(radius)
-    table, modulus = system.growths[0].table, contact_modulus(scene.layer)
-    stiffness = table.contact_stiffness(radius)
-    of_table = np.abs(table.shortened().contact_stiffness(radius) / stiffness - 1.0)
-    of_depth, of_force = system.errors(radius)
-    if not max(of_depth.max(), of_force.max()) <= _LARGEST_ERROR:
-        raise NotConvergedError(
-            f"growth under full stick is resolved to {max(of_depth.max(), of_force.max()):.1g} only"
-        )
-    slope = radius * _slope(system, radius)
-    exact = np.zeros_like(radius)
-    given = type(scene.loading)
-    moved = exact
-    if given is not ContactRadii:
-        moved = of_depth * depth / slope if given is IndentationDepths else of_force * force / (stiffness * slope)
-        moved = moved + 4.0 * EPS
-    return {
-        "unknowns": system.growths[0].unknowns.size,
-        "contact_radius": radius * system.unit,
-        "indentation_depth": depth * system.unit,
-        "normal_force": force * modulus * system.unit**2,
-        "contact_stiffness": stiffness * modulus * system.unit,
-        "error_estimate": {
-            "contact_radius": moved,
-            "indentation_depth": exact if given is IndentationDepths else of_depth + of_force,
-            "normal_force": exact if given not in (ContactRadii, IndentationDepths) else of_depth + of_force,
-            # k_stick grows with the third power of the radius at most.
-            "contact_stiffness": 3.0 * moved + _SAFETY * of_table + _ROUNDINGS * EPS,
-        },
-        "fields": StickFields(scene, system.growths[0], system.unit, modulus, radius, depth * system.unit),
-    }
+@dataclass(frozen=True)
+class _Grown:
+    """Contact that has grown under full stick: its states and its surface fields at every step.
 
+    Attributes:
+        growth: Lengths in units of the kernel.
+        tip: The profile.
+        modulus: E* [Pa].
+        state: Equilibria.
+    """
 
-def _slope(system: StickSystem, radius: FloatArray) -> FloatArray:
-    """d delta/da by a difference: it scales errors only."""
-    step = 1e-4 * radius
-    return (system.depth(radius) - system.depth(radius - step)) / step
+    growth: Growth
+    tip: Tip
+    modulus: float
+    state: State
 
-
-def _covering(scene: Scene, refinement: float) -> tuple[StickSystem, FloatArray]:
-    """The growth up to the largest radius of the loading, and all its radii."""
-    layer, values = scene.layer, prescribed(scene)
-    unit = layer.surface.thickness if not layer.is_half_space else _first_reach(scene)
-    if isinstance(scene.loading, ContactRadii):
-        return _system(scene, unit, float(values.max()), refinement), values / unit
-    by_depth = isinstance(scene.loading, IndentationDepths)
-    wanted = values / unit if by_depth else values / (contact_modulus(layer) * unit**2)
-    reach, end = min(_first_reach(scene), scene.indenter.max_radius), scene.indenter.max_radius
-    while True:
-        system = _system(scene, unit, reach, refinement)
-        reached = system.growths[0].depth_and_force(np.array([reach / unit]))[0 if by_depth else 1][0]
-        if reached >= wanted.max():
-            return system, _radii(system.growths[0], wanted, reach / unit, 0 if by_depth else 1)
-        if reach >= end:
-            raise InvalidInput(
-                f"loading.values = {values.max():g}: the indenter ends at a radius of {end:g} m, before it is reached; "
-                "ask for less or describe the indenter further out"
+    @classmethod
+    def of(cls, scene: Scene, extra: int) -> _Grown:
+        """Of a scene."""
+        nu, flat = scene.layer.surface.poissons_ratio, scene.indenter.flat_radius
+        if flat and nu < 0.5:
+            raise UnsupportedSceneError(
+                f"a flat end of radius {flat:g} m that grows under full stick on a layer with poissons_ratio = {nu:g}: "
+                "its edge field oscillates, and growth from it has no stable answer; give Poisson's ratio 0.5, or a "
+                "rounded edge"
             )
-        reach = min(_FURTHER * reach, end)
+        growth, radii = _covering(scene, extra)
+        modulus, unit, values = contact_modulus(scene.layer), growth.unit, _values(scene)
+        depth, force, stiffness = growth.states(radii)
+        state = State(radii * unit, depth * unit, force * modulus * unit**2, stiffness * modulus * unit)
+        if isinstance(scene.loading, ContactRadii):
+            state = state._replace(radius=values)
+        elif isinstance(scene.loading, IndentationDepths):
+            state = state._replace(depth=values)
+        else:
+            state = state._replace(force=values)
+        return cls(growth, tip_of(scene.indenter), modulus, state)
+
+    @property
+    def floor(self) -> float:
+        """Relative rounding error."""
+        return EPS * (_OF_GROWTH + _PER_CONDITION * self.growth.punches.largest.condition)
+
+    @property
+    def unknowns(self) -> int:
+        """Of all stretches."""
+        return sum(c.size for _, c in self.growth.parts)
+
+    def _radius(self, step: int) -> float:
+        return float(self.state.radius[step]) / self.growth.unit
+
+    def pressure(self, radius: FloatArray, step: int) -> FloatArray:
+        """p(r) [Pa], zero outside."""
+        return np.asarray(self._tractions(radius, step)[0])
+
+    def tangential_traction(self, radius: FloatArray, step: int) -> FloatArray:
+        """q(r) [Pa], positive where the layer is pushed outward, zero outside."""
+        return np.asarray(self._tractions(radius, step)[1])
+
+    def _tractions(self, radius: FloatArray, step: int) -> FloatArray:
+        r, a, found = radius / self.growth.unit, self._radius(step), np.zeros((2, radius.size))
+        found[:, r < a] = self.modulus * self.growth.tractions(r[r < a], a)
+        return found
+
+    def surface_displacement(self, radius: FloatArray, step: int) -> FloatArray:
+        """w(r) [m]: the indenter's shape inside, Eq. (1)."""
+        r, a = radius / self.growth.unit, self._radius(step)
+        inside = r <= a
+        found = self.state.depth[step] - self.tip.height(np.where(inside, radius, 0.0))
+        if not inside.all():
+            found[~inside] = self.growth.unit * self.growth.displacement(r[~inside], a)
+        return np.asarray(found)
 
 
-def _first_reach(scene: Scene) -> float:
-    """Radius [m] at which the half-space's profile passes the wanted depth, or a Hertzian guess of it."""
-    layer, indenter = scene.layer, scene.indenter
-    largest = float(prescribed(scene).max())
+def _covering(scene: Scene, extra: int) -> tuple[Growth, FloatArray]:
+    """The growth up to the largest radius of the loading, and all its radii in units."""
+    layer, values, tip, kernel = scene.layer, _values(scene), tip_of(scene.indenter), stack_kernel(scene.layer)
+    reach = _first_reach(scene, tip)
+    unit = reach if layer.is_half_space else layer.surface.thickness
+    if isinstance(scene.loading, ContactRadii):
+        return Growth(kernel, tip, unit, reach / unit, extra), values / unit
+    which = 0 if isinstance(scene.loading, IndentationDepths) else 1
+    wanted = values / unit if which == 0 else values / (contact_modulus(layer) * unit**2)
+    while True:
+        growth = Growth(kernel, tip, unit, reach / unit, extra)
+        if growth.states(np.array([growth.end]))[which][0] >= wanted.max():
+            return growth, _radii(growth, which, wanted)
+        if reach >= tip.end:
+            raise InvalidInput(
+                f"loading.values = {values.max():g}: the indenter ends at a radius of {tip.end:g} m, before it is "
+                "reached; ask for less or describe the indenter further out"
+            )
+        reach = min(_FURTHER * reach, tip.end)
+        unit = reach if layer.is_half_space else unit
+        wanted = values / unit if which == 0 else values / (contact_modulus(layer) * unit**2)
+
+
+def _radii(growth: Growth, which: int, wanted: FloatArray) -> FloatArray:
+    """Radii at which the depth (0) or the force (1) is reached."""
+
+    def missing(a: float, value: float) -> float:
+        return float(growth.states(np.array([a]))[which][0]) - value
+
+    start = growth.parts[0][0].start
+    return np.array(
+        [brentq(missing, start, growth.end, (value,), xtol=1e-300, rtol=4 * EPS) for value in wanted.tolist()]
+    )
+
+
+def _first_reach(scene: Scene, tip: Tip) -> float:
+    """Radius [m] at which g_hs passes the largest depth, or 2 E* a g_hs/2 the largest force."""
+    largest = float(_values(scene).max())
     if isinstance(scene.loading, ContactRadii):
         return largest
-    modulus = contact_modulus(layer)
-    room = min(indenter.max_radius, 1e12) - indenter.flat_radius
+    room, modulus = min(tip.end, 1e12) - tip.flat, contact_modulus(scene.layer)
 
     def missing(log_excess: float) -> float:
-        """What the frictionless half-space lacks of the largest depth or force."""
-        excess = math.exp(log_excess)
-        depth = float(half_space_profile(indenter, np.array([excess]))[0])
-        if isinstance(scene.loading, IndentationDepths):
-            return depth - largest
-        return modulus * (indenter.flat_radius + excess) * depth - largest
+        a = tip.flat + math.exp(log_excess)
+        depth = float(tip.transform(np.array([a]))[0])
+        return depth - largest if isinstance(scene.loading, IndentationDepths) else modulus * a * depth - largest
 
-    # A trillionth less than the room there is: beyond a sphere's equator the profile is no number.
+    # A trillionth less than the room there is: at a sphere's equator the profile is no number.
     low, high = math.log(1e-15 * min(room, 1.0)), math.log(room) - 1e-12
     found = brentq(missing, low, high, xtol=1e-3) if missing(high) > 0.0 > missing(low) else high
-    return indenter.flat_radius + math.exp(found)
-
-
-def _system(scene: Scene, unit: float, reach: float, refinement: float) -> StickSystem:
-    ratio = reach / unit
-    table = growth_table(_rounded_up(ratio), stack_kernel(scene.layer))
-    span = 0.0 if table.is_half_space else ratio
-    usual = _UNKNOWNS[0] + _UNKNOWNS[1] * span
-    more = _UNKNOWNS_OF_LENGTH * math.sqrt((table.kernel.longest - 1.0) * span)
-    count = math.ceil(refinement * max(usual, min(usual + more, _MOST_OF_LENGTH)))
-    solves = ((table, count), (table, count + _MORE), (table.shortened(), count))
-    return StickSystem(unit, tuple(growth(scene.indenter, unit, ratio, one, n) for one, n in solves))
-
-
-def _rounded_up(ratio: float) -> float:
-    """Up to a fifth more, so that scenes share tables."""
-    return float(1.2 ** math.ceil(math.log(ratio) / math.log(1.2)))
-
-
-def _radii(found: Growth, wanted: FloatArray, reach: float, which: int) -> FloatArray:
-    def missing(radius: float, value: float) -> float:
-        return float(found.depth_and_force(np.array([radius]))[which][0]) - value
-
-    start = found.stretches[0].start
-    radii = [brentq(missing, start, reach, args=(value,), xtol=1e-300, rtol=4.0 * EPS) for value in wanted]
-    return np.array(radii)
+    return min(tip.flat + math.exp(found), tip.end)

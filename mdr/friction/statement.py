@@ -1,28 +1,37 @@
 """What friction would change of a frictionless answer: a bound, and the first order in its coefficient.
 
-Reciprocity with the frictionless punch of the same radius a gives ``F = F_0(delta, a) - int q u_r1 dA`` exactly, with
-|q| <= mu p. Hence ``|F - F_0(delta, a)| <= mu U(a) F`` with U = max |u_r1|, at the true contact radius. F_0(delta, .)
-is largest at the frictionless radius a_0, so the upper bound needs no other. The lower one takes the least of it at
-radii around a_0 that full stick does not leave: measured there, not proved.
+Reciprocity with the frictionless punch of the same radius a gives F = F_0(delta, a) - int q u_1 dA exactly, u_1 being
+the radial displacement of the surface under that punch for a depth of one, and |q| <= mu p. Hence
+|F - F_0(delta, a)| <= mu U(a) F with U = max |u_1|, at the true contact radius. F_0(delta, .) is largest at the
+frictionless radius a_0, so the upper bound needs no other. The lower one takes the least of it at radii around a_0 that
+full stick does not leave: measured there, not proved. u_1 is what `mdr.inside` finds at the surface, a polynomial of
+arcsin(r/a); its maximum is looked for at the roots of its derivative, since samples miss it.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
+from numpy.polynomial import Chebyshev
 
+from bem.equation import USUAL
 from bem.kernels.of_layer import stack_kernel
-from bem.layer_equation.stick.frictionless_slip import FrictionlessPunch, frictionless_punch
-from contact import ContactPath, InvalidInput, Scene
+from bem.numerics import graded
+from contact import ContactPath, FlatPunch, InvalidInput, Scene
 from contact.records.validation import FloatArray
-from mdr.springs.half_space_profile import half_space_profile
+from contact.scene.elastic_layer import ElasticLayer
+from mdr.contact_surface import surface_of
+from mdr.equilibria import is_singular
+from mdr.inside import Body, field_sizes
+from mdr.spring_bed import Springs
 
 # Share of min(1, mu U) by which friction moves the radius at most. Full stick moved it by up to 0.14 of min(1, U), most
 # under a cone on a thick layer of nu = 0 (252 scenes: nu 0 to 1/2, a/h 0.1 to 10, both supports, 2026-11-22).
 _RADIUS_SHARE = 0.2
-# Slip of less than this share of the largest has no direction.
+# Slip of less than this share of the largest has no direction; ten times as much would call small reversals one way.
 _NO_DIRECTION = 1e-3
 
 
@@ -61,73 +70,46 @@ def friction_effect(path: ContactPath, coefficient: float) -> FrictionEffect:
             f"friction of {coefficient:g} beside {len(path.scene.effects)} effects: the bound holds for frictionless "
             "elastic contact and finite coefficients; solve Friction(coefficient=inf) for full stick"
         )
-    contacts = [_contact(path.scene, *state) for state in zip(path.contact_radius, path.indentation_depth, strict=True)]
-    slip = coefficient * np.array([contact.punch.largest() for contact in contacts])
-    room = np.divide(1.0, 1.0 - slip, out=np.full_like(slip, math.inf), where=slip < 1.0)
-    share = _RADIUS_SHARE * np.minimum(slip, 1.0)
-    lost = np.array([_lost(contact, change) for contact, change in zip(contacts, share, strict=True)])
-    one_way = np.array([_has_one_direction(contact.punch.slip) for contact in contacts])
-    first = [coefficient * abs(one.mean_slip) if known else 0.0 for one, known in zip(contacts, one_way, strict=True)]
-    return FrictionEffect(coefficient, (1.0 - lost) / (1.0 + slip) - 1.0, room - 1.0, np.array(first), one_way)
+    stack_kernel(path.scene.layer)
+    states = zip(path.contact_radius.tolist(), path.indentation_depth.tolist(), strict=True)
+    steps = [_changes(path.scene, a, depth, coefficient) for a, depth in states]
+    lower, upper, first, one_way = (np.array(one) for one in zip(*steps, strict=True))
+    return FrictionEffect(coefficient, lower, upper, first, one_way)
 
 
-@dataclass(frozen=True)
-class _Contact:
-    """The frictionless layer under an indenter at a depth, where the contact has any radius.
-
-    Attributes:
-        scene: Layer and indenter.
-        radius: a [m].
-        depth: delta [m].
-        punch: The unit punch of this radius.
-        load: What the indenter presses in, in the punch's basis [m].
-        edges: Flat radius and breakpoints within the contact, over its radius.
-    """
-
-    scene: Scene
-    radius: float
-    depth: float
-    punch: FrictionlessPunch
-    load: FloatArray
-    edges: tuple[float, ...]
-
-    @property
-    def force(self) -> float:
-        """F_0(delta, a) over 8 G [m^2]."""
-        return self.radius * self.punch.force(self.load)
-
-    @property
-    def mean_slip(self) -> float:
-        """int p_0 u_r1 dA/F_0."""
-        return self.punch.mean_slip(lambda t: _pressed(self.scene, self.radius, self.depth, t), self.load, self.edges)
-
-
-def _contact(scene: Scene, radius: float, depth: float) -> _Contact:
+def _changes(scene: Scene, a: float, depth: float, coefficient: float) -> tuple[float, float, float, bool]:
+    """The fields of `FrictionEffect` at one state."""
     layer = scene.layer
-    punch = frictionless_punch(
-        0.0 if layer.is_half_space else float(radius) / layer.surface.thickness, stack_kernel(layer)
-    )
-    breaks = (scene.indenter.flat_radius, *scene.indenter.breakpoints)
-    edges = tuple(sorted({float(b / radius) for b in breaks if 0.0 < b < radius}))
-    x, load = punch.projection(edges)
-    return _Contact(scene, radius, depth, punch, load @ _pressed(scene, radius, depth, x), edges)
+    slip, largest, is_one_way = _slip(layer.in_own_units(), 1.0 if layer.is_half_space else a / layer.thickness)
+    springs, moved = Springs.of(layer, scene.indenter), coefficient * largest
+    share = _RADIUS_SHARE * min(1.0, moved)
+    near = np.clip(a * (1 + share * np.array([0.0, -1.0, 1.0])), springs.tip.flat, springs.tip.end)
+    forces = springs.state(near, springs.at(near), np.full(3, depth)).force
+    lower = min(1.0, float(forces.min() / forces[0])) / (1 + moved) - 1
+    first = coefficient * abs(_mean(scene, springs, a, depth, slip)) if is_one_way else 0.0
+    return lower, 1 / (1 - moved) - 1 if moved < 1 else math.inf, first, is_one_way
 
 
-def _pressed(scene: Scene, radius: float, depth: float, x: FloatArray) -> FloatArray:
-    """delta - g_hs(a x) [m], the transform of the surface under the indenter."""
-    excess = np.maximum(radius * x - scene.indenter.flat_radius, 0.0)
-    return np.asarray(depth - half_space_profile(scene.indenter, excess))
+@lru_cache(maxsize=256)
+def _slip(layer: ElasticLayer, a: float) -> tuple[Chebyshev, float, bool]:
+    """u_1 as a function of arcsin(r/a), its largest magnitude, and whether the surface slides one way everywhere."""
+    springs = Springs.of(layer, FlatPunch(radius=a), field_sizes(USUAL.finer))
+    punch = surface_of(springs, a, 1.0, is_singular=True)
+    u = lambda angle: Body(layer, punch).at(a * np.sin(angle), 0 * angle)[0][0]  # noqa: E731
+    slip = Chebyshev.interpolate(u, punch.degree + 10, [0, np.pi / 2])
+    turns = slip.deriv().roots()
+    inner = turns.real[(np.abs(turns.imag) < 1e-6) & (turns.real > 0) & (turns.real < np.pi / 2)]
+    values = slip(np.append(inner, np.pi / 2))
+    least, most = min(0.0, float(values.min())), max(0.0, float(values.max()))
+    return slip, max(most, -least), min(most, -least) < _NO_DIRECTION * max(most, -least)
 
 
-def _has_one_direction(slip: FloatArray) -> bool:
-    least = _NO_DIRECTION * np.abs(slip).max()
-    return bool(np.all(slip > -least) or np.all(slip < least))
-
-
-def _lost(contact: _Contact, share: float) -> float:
-    """1 - F_0(delta, a)/F_0 at radii that differ by a share, at most."""
-    scene, a = contact.scene, contact.radius
-    flat, end = scene.indenter.flat_radius, scene.indenter.max_radius
-    near = [max(a * (1.0 - share), flat), min(a * (1.0 + share), end)]
-    forces = [_contact(scene, r, contact.depth).force for r in near if r != a]
-    return max(0.0, 1.0 - min(forces, default=contact.force) / contact.force)
+def _mean(scene: Scene, springs: Springs, a: float, depth: float, slip: Chebyshev) -> float:
+    """int p_0 u_1 dA/F_0 over r = a sin(angle), cut where the profile is not analytic."""
+    surface = surface_of(springs, a, depth, is_singular=is_singular(scene, a))
+    ends = np.arcsin(np.array([0.0, *(b for b in springs.tip.breaks if b < a), a]) / a)
+    v, w = graded(12, 8)
+    angle = (ends[:-1, None] + np.diff(ends)[:, None] * v).ravel()
+    r = a * np.minimum(np.sin(angle), 1 - 1e-14)
+    load = (np.diff(ends)[:, None] * w).ravel() * r * np.cos(angle) * surface.pressure(r)
+    return float(load @ slip(angle) / load.sum())

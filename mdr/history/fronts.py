@@ -35,7 +35,7 @@ _GROWTH, _MOST_PANELS = 4.0, 12
 _APART = 1e-9
 # Power of the distance from a kink, or from the axis, in which springs are smooth: g goes with roots of the former, and
 # tips like r^1.7 are not analytic at the latter.
-_KINK_POWER, _AXIS_POWER = 2.0, 4.0
+_KINK_POWER, _AXIS_POWER = 2.0, 6.0
 
 
 def fronts(law: SpringLaw, path: Path) -> FloatArray:

@@ -13,9 +13,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from bem.flat_punch import FlatPunchSource
 from bem.kernels.moduli import relaxation_of
-from bem.layer_equation.flat_punch_source import IntegralEquation
-from bem.layer_equation.protocol import FlatPunchSource
 from bem.numerics import EPS
 from contact import (
     DepthHistory,
@@ -32,18 +31,18 @@ from contact.records.validation import FloatArray
 from contact.stated import stated_error
 from mdr.admissible import refuse_pulling, refuse_touching_outside
 from mdr.contact_surface import surface_of
-from mdr.equilibria import is_simple, is_singular, sizes_of
-from mdr.history.fronts import Layout, fronts, layout, panel_ends, refuse_open_inside
+from mdr.dispatch import DEFAULT_ACCURACY
+from mdr.equilibria import is_simple, is_singular, springs_on
 from mdr.history.force_control import March, Steps, never_larger, steps_of
+from mdr.history.fronts import Layout, fronts, layout, panel_ends, refuse_open_inside
 from mdr.history.spring_bed import Path, SpringBed, followed
 from mdr.history.spring_law import SpringLaw
 from mdr.radius_search import RadiusSearch, refuse_too_wide
 from mdr.spring_bed import Springs
-from mdr.springs.error_model import DEFAULT_ACCURACY
 
 # Nodes per panel under a depth, and under a force, where panels are as many as instants. With half as many errors of
 # 1e-6 are stated.
-_NODES_OF_DEPTHS, _NODES = 12, 6
+_NODES_OF_DEPTHS, _NODES = 14, 6
 # Substeps of a whole force history at the default accuracy, at least two in each interval, and multiples of them whose
 # limits are compared. Twice as many err a thirtieth. One digit more of accuracy doubles them, between the bounds below.
 _SUBSTEPS, _LEVELS = 32, (2, 1)
@@ -101,9 +100,8 @@ def solve_history(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
     if not isinstance(loading, DepthHistory | ForceHistory):
         raise UnsupportedSceneError(f"loading = {type(loading).__name__}: a history needs DepthHistory or ForceHistory")
     _refuse_idle(loading)
-    assert isinstance(flat_punch, IntegralEquation)
     with log.stage("equivalent_system"):
-        springs = Springs.of(scene.layer, scene.indenter, sizes_of(flat_punch))
+        springs = springs_on(scene.layer, scene.indenter, flat_punch)
     with log.stage("history"):
         answer, other = (
             _by_depth(scene, springs, law, loading)

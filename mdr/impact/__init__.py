@@ -1,6 +1,5 @@
 """Impacts on elastic and relaxing layers, Eqs. (47)-(54).
 
 Enters: springs of a scene, mass, velocity, relaxation law. Leaves: the motion until release, restitution, peaks and
-an energy audit, with stated errors. Read `solver` first, then `equations`, `motion` and
-`collocation`.
+energies, with stated errors. Read `motion` first (the equations), then `rules`, `track`, `course`, `results`, `solver`.
 """

@@ -1,177 +1,395 @@
-"""Many impacts from first touch to the loss of contact."""
+"""Motion of rigid bodies that hit a layer, many at once, each phase one polynomial in a power of time.
+
+Stress of a spring that was touched at t_c, over 2 E* y_1^2 dx, with w_j = G_j/G_0 and rates r_j = 1/tau_j
+(w_0 = G_inf/G_0, r_0 = 0), eta the dashpot over G_0:
+
+    sum_j [s_j(t) - exp(-r_j (t - t_c)) s_j(t_c)] + eta v,     s_j' = w_j v - r_j s_j             Eqs. (51), (52)
+
+Growth: only K = K(depth) of layer and profile matters,
+
+    M v' = -2 E* [sum_j L_j + eta K v],    L_j' = w_j K v - r_j L_j.
+
+Shrinkage: the edge is where it was at an instant theta of the growth, and its spring is free of stress,
+
+    sum_j [s_j(t) - exp(-r_j (t - theta)) s_j(theta)] + eta v = 0,
+    M v' = -2 E* [K (sum_j s_j + eta v) - sum_j exp(-r_j (t - theta)) (s_j K - L_j)],   K and L_j at theta.
+
+The force is stationary in theta, so that theta of the last sweep leaves Newton's method quadratic. Unknown are the
+speeds at the nodes and the duration. A growth ends at the turn, or where the edge passes a break of the profile; a
+shrinkage ends where the edge is back at the start of the growth's piece.
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import NamedTuple, Self
 
 import numpy as np
+from numpy.typing import NDArray
 
-from contact import NotConvergedError
 from contact.records.validation import FloatArray, IntArray
-from mdr.impact.collocation import EndCondition, Integrate, Problem, Trajectory
-from mdr.impact.collocation_step import STAGES, Course
-from mdr.impact.equations import ImpactBatch, Pressing, Receding, drift, outline
-from mdr.impact.memory import Memory, memory_of
+from mdr.impact.rules import Rule, interpolated
+from mdr.impact.track import Track
 
-# Events that end a section of the way in.
-TURN, SECTION_END = 0, 1
-
-
-# First step for a tolerance of one, in units of the way that an elastic impact of the same energy goes. At a tip whose
-# power is no integer both runs err alike on it: with 1.5, 96 to 99 % of each of the five outcomes were covered at 1e-9,
-# with this 99 to 100 %, for as many sweeps (120 random impacts, seed 7301, 2026-11-23).
-_FIRST_STEP = 0.75
-
-# First step of the way out over the last one of the way in: the front leaves its turn faster than it came. Chosen.
-_AFTER_TURN = 0.4
-# Each impact is integrated a second time with this multiple of its tolerance; the difference tells the error. Two steps
-# as alike as these agree by accident no more often than with 5, which told 4 to 6 times the error in the median, this 2
-# (300 random impacts, seeds 9 and 31, 2026-11-23).
-COARSER = 2.0
+# Sweeps of Newton's method; five are usual.
+_SWEEPS = 60
+# Relative size of a correction that ends them, and one below which they end when corrections stop falling.
+_EXACT, _STALLED = 1e-13, 1e-9
+# The same of speeds alone: what a dashpot has nearly stopped has an uncertain duration.
+_STALLED_SPEED = 1e-11
+# Largest change of ln T in a sweep, halved while corrections stay above a share of the last. With twice as much steps
+# overshoot, with half they are slower.
+_LONGEST_STEP, _SHORTEST_STEP, _FALLS = 0.5, 0.05, 0.8
+# Share of a phase before which it may not end; nodes beyond are within a Newton step of the end.
+_ENDED = 0.7
+# Most steps of the search for theta, and the size of the last, in shares of the growth: its square is rounding.
+_EDGE_STEPS, _EDGE_STEP = 40, 1e-9
 
 
-class TableTooShort(NotConvergedError):
-    """The front ran beyond the largest radius of the spring table."""
-
-
-@dataclass(frozen=True)
-class Leg:
-    """One section of the way in, or the way back through one step of it, of the lanes that went there."""
-
-    lanes: IntArray
-    section: int
-    trajectory: Trajectory
-    memory: Memory | None
-    step: int = 0
-
-    def of(self, lane: int) -> Leg | None:
-        """The part of one lane, if it went there."""
-        here = np.flatnonzero(self.lanes == lane)
-        if not here.size:
-            return None
-        at = int(here[0])
-        memory = self.memory.of(slice(at, at + 1)) if self.memory else None
-        return Leg(np.zeros(1, dtype=np.intp), self.section, self.trajectory.of(at), memory, self.step)
-
-
-@dataclass(frozen=True)
-class Impacts:
-    """Dimensionless impacts, each of them twice: n lanes as asked, and n with a coarser tolerance.
+@dataclass(frozen=True, eq=False)
+class Bodies:
+    """Impacts that are solved together, in the units of their tracks; n of them, each with m branches.
 
     Attributes:
-        lanes: All 2 n.
-        way_in: Sections of the way in, in order.
-        way_out: Sections of the way out, in order.
-        turn: State at the turn, shape (m, 2 n).
-        end: State at the loss of contact, shape (m', 2 n).
-        within: Sum of the local errors within steps, shape (2 n,).
-        drift: Time from there to where the last spring's force is zero, shape (2 n,).
+        tracks: K and a of each.
+        velocity: v_0, shape (n,).
+        pull: 2 E*/M [1/s^2] in these units, shape (n,).
+        weights: w_j, shape (n, m).
+        rates: r_j [1/s], shape (n, m).
+        viscosity: eta [s], shape (n,).
+        power: p of the first phase.
     """
 
-    lanes: ImpactBatch
-    way_in: tuple[Leg, ...]
-    way_out: tuple[Leg, ...]
-    turn: FloatArray
-    end: FloatArray
-    within: FloatArray
-    drift: FloatArray
+    tracks: Sequence[Track]
+    velocity: FloatArray
+    pull: FloatArray
+    weights: FloatArray
+    rates: FloatArray
+    viscosity: FloatArray
+    power: int
+
+    def take(self, some: IntArray) -> Bodies:
+        """Some of the impacts."""
+        own = [self.tracks[i] for i in some.tolist()]
+        velocity, pull, viscosity = self.velocity[some], self.pull[some], self.viscosity[some]
+        return Bodies(own, velocity, pull, self.weights[some], self.rates[some], viscosity, self.power)
+
+    def springs(self, depth: FloatArray, piece: int) -> FloatArray:
+        """K, dK/d(depth) and a at depths of shape (n, k) on one piece, shape (3, n, k)."""
+        found = np.empty((3, *depth.shape))
+        for track in {id(one): one for one in self.tracks}.values():
+            own = [i for i, one in enumerate(self.tracks) if one is track]
+            found[:, own] = track.at(depth[own], piece)
+        return found
 
 
-def impacts(lanes: ImpactBatch, integrate: Integrate, *, tolerance: float) -> Impacts:
-    """Integrate all lanes.
+class State(NamedTuple):
+    """Between two phases: time, speed, depth, s_j and L_j, shapes (n,) and (n, m)."""
 
-    Args:
-        lanes: The impacts.
-        integrate: By what.
-        tolerance: Local error per step, in the impact's units.
+    time: FloatArray
+    speed: FloatArray
+    depth: FloatArray
+    stress: FloatArray
+    load: FloatArray
 
-    Raises:
-        TableTooShort: If a front runs beyond the spring table.
-        NotConvergedError: If an impact does not end.
+    def take(self, some: IntArray) -> State:
+        """Of some of the impacts."""
+        return State(*(one[some] for one in self))
+
+    def put(self, some: IntArray, other: State) -> None:
+        """Replace that of some of the impacts."""
+        for own, new in zip(self, other, strict=True):
+            own[some] = new
+
+
+@dataclass(eq=False)
+class Phase:
+    """One phase of some impacts; rows at nodes and end have shape (n, k + 1).
+
+    Attributes:
+        bodies: The impacts.
+        piece: Of their tracks.
+        rule: Nodes.
+        start: State at its start.
+        duration: T [s], shape (n,).
+        speed: At the nodes, shape (n, k).
+        unsure: Last corrections of the speeds over the largest, and of ln T, shape (2, n).
+        sweeps: Of Newton's method.
+        force: Over 2 E* at the nodes, shape (n, k).
+        radius: a at the nodes and maybe the end.
     """
-    twice = lanes.take(np.tile(np.arange(lanes.count), 2))
-    run = _Motion(twice, integrate, np.repeat([tolerance, COARSER * tolerance], lanes.count))
-    way_in, turn, turned_in = run.press()
-    way_out, end = run.recede(way_in, turn, turned_in)
-    within = np.zeros(twice.count)
-    for leg in way_in + way_out:
-        within[leg.lanes] += leg.trajectory.error
-    return Impacts(twice, way_in, way_out, turn, end, within, drift(twice, way_in[0].memory, end))
+
+    bodies: Bodies
+    piece: int
+    rule: Rule
+    start: State
+    duration: FloatArray
+    speed: FloatArray
+    unsure: FloatArray = field(default_factory=lambda: np.zeros((2, 0)))
+    sweeps: int = 0
+    force: FloatArray = field(default_factory=lambda: np.zeros(0))
+    radius: FloatArray = field(default_factory=lambda: np.zeros(0))
+
+    def lengthen(self) -> None:
+        """Operators that depend on the duration."""
+        b, T = self.bodies, self.duration
+        n, m = b.rates.shape
+        self._memory = np.empty((n, m, *self.rule.integrals.shape))
+        self._memory[:, 0] = T[:, None, None] * self.rule.integrals
+        self._memory[:, 1:] = T[:, None, None, None] * self.rule.memory(b.rates[:, 1:] * T[:, None])
+        self._fade = np.exp(-(b.rates * T[:, None])[..., None] * self.rule.share)
+        whole = (b.weights[..., None, None] * self._memory).sum(axis=1)
+        self._relax, self._relax_end = whole[:, :-1], whole[:, -1]
+        self._answer = self._relax + b.viscosity[:, None, None] * np.eye(self.rule.nodes.size)
+
+    def remembered(self, source: FloatArray, start: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Solution of u' = w source - r u at nodes and end, and its change with T; shapes (n, m, k + 1)."""
+        b, T = self.bodies, self.duration[:, None, None]
+        driven = b.weights[..., None] * source[:, None]
+        grown = _times(self._memory, driven)
+        faded = start[..., None] * self._fade
+        rates = b.rates[..., None]
+        change = _times(self._memory, driven - rates * grown[..., :-1]) / T - rates * self.rule.share * faded
+        return grown + faded, change
+
+    def part(self, some: IntArray) -> Self:
+        """The same of some of its impacts."""
+        own = self.bodies.take(some), self.piece, self.rule, self.start.take(some)
+        return type(self)(*own, self.duration[some], self.speed[some])
+
+    @property
+    def depth(self) -> FloatArray:
+        """At nodes and end."""
+        rise = _times(self.rule.integrals, self.speed)
+        return np.asarray(self.start.depth[:, None] + self.duration[:, None] * rise)
+
+    def cut(self, ended: NDArray[np.bool_]) -> bool:
+        """Cut durations to the first node that is beyond the end of the phase; whether there are some.
+
+        The equations of the end have later solutions, at which a body turns or a force vanishes again.
+        """
+        r = self.rule
+        ended = ended & (r.share[:-1] < _ENDED)
+        share = np.where(ended.any(axis=1), r.share[ended.argmax(axis=1)], 1.0)
+        if (share == 1).all():
+            return False
+        places = share[:, None] * r.share[:-1]
+        s = 1 - (1 - places) ** (1 / r.power) if isinstance(self, Shrinkage) else places ** (1 / r.power)
+        self.speed = np.where((share < 1)[:, None], r.at(self.speed, s), self.speed)
+        self.duration = self.duration * share
+        return True
+
+    def series(self) -> FloatArray:
+        """Depth, speed, force over 2 E* and radius at the nodes, shape (4, n, k)."""
+        k = self.speed.shape[1]
+        return np.stack([self.depth[:, :k], self.speed, self.force, self.radius[:, :k]])
+
+    def newton(self, force: FloatArray, by_speed: FloatArray, by_time: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Residual of the motion and its derivatives by speeds and ln T, the end's speed in the last row.
+
+        Args:
+            force: Over 2 E*, shape (n, k).
+            by_speed: Its derivatives, shape (n, k, k).
+            by_time: Its derivative by T, shape (n, k).
+        """
+        n, k = self.speed.shape
+        T, pull = self.duration[:, None], self.bodies.pull[:, None]
+        integrals = self.rule.integrals
+        lost = pull * T * _times(integrals, force)
+        system = np.empty((n, k + 1, k + 1))
+        system[:, :, :k] = (pull * T)[..., None] * (integrals @ by_speed)
+        system[:, :, k] = pull * T * _times(integrals, force + T * by_time)
+        system[:, np.arange(k), np.arange(k)] += 1
+        missed = np.concatenate([self.speed, np.zeros((n, 1))], axis=1) - self.start.speed[:, None] + lost
+        return missed, system
+
+    def iterate(self, system: Callable[[NDArray[np.bool_] | None], tuple[FloatArray, FloatArray]]) -> None:
+        """Newton's method on a residual and its derivatives; `system` is told which impacts are done."""
+        n = self.duration.size
+        done, last, longest = np.zeros(n, dtype=bool), np.full(n, np.inf), np.full(n, _LONGEST_STEP)
+        self.unsure = np.full((2, n), np.inf)
+        for sweep in range(_SWEEPS):
+            missed, matrix = system(done if sweep else None)
+            step = _solved(matrix, missed)
+            scale = np.maximum(np.abs(self.speed).max(axis=1), np.abs(self.start.speed))
+            # Nodes move with the duration: the change of a speed at its instant counts.
+            drift = self.bodies.pull[:, None] * self.force * self.duration[:, None] * self.rule.share[:-1]
+            both = np.abs(np.stack([np.zeros_like(scale), step[:, -1]]))
+            both[0] = np.abs(step[:, :-1] + drift * step[:, -1:]).max(axis=1) / scale
+            both = np.where(np.isfinite(both), both, np.inf)
+            size = both.sum(axis=0)
+            stalled = (size < _STALLED) | ((both[0] < _STALLED_SPEED) & (size < _LONGEST_STEP))
+            now = ~done & ~((size < _EXACT) | (stalled & (size > last / 2)))
+            self.unsure = np.where(done, self.unsure, both)
+            done, self.sweeps = ~now, sweep + 1
+            if done.all():
+                return
+            longest = np.clip(np.where(size > _FALLS * last, longest / 2, longest * 1.5), _SHORTEST_STEP, _LONGEST_STEP)
+            share = np.minimum(1.0, longest / np.maximum(both[1], 1e-300))
+            move = np.where((now & np.isfinite(size))[:, None], share[:, None] * step, 0.0)
+            self.speed = self.speed - move[:, :-1]
+            self.duration = self.duration * np.exp(-move[:, -1])
+            last = size
 
 
-class _Motion:
-    """IntArray under way; `size` is each lane's next trial step."""
+class Growth(Phase):
+    """From the touch, or a break, to the turn or the next break at the depth `until`."""
 
-    def __init__(self, lanes: ImpactBatch, integrate: Integrate, tolerance: FloatArray) -> None:
-        self.lanes, self.integrate, self.tolerance = lanes, integrate, tolerance
-        self.size = _FIRST_STEP * tolerance ** (1.0 / STAGES)
-        self.course = Course.unknown(0, self.size)
+    def solve(self, until: FloatArray | None) -> None:
+        """Newton's method."""
 
-    def press(self) -> tuple[tuple[Leg, ...], FloatArray, IntArray]:
-        """The way in, section by section; the state at the turn and the section where each lane turned."""
-        lanes, ends = self.lanes, self.lanes.table.section_ends
-        state = np.zeros((3 + 2 * lanes.branches, lanes.count))
-        state[2] = 1.0
-        self.course = Course.unknown(state.shape[0], self.size)
-        turned_in, going, legs = np.full(lanes.count, ends.size - 1), np.arange(lanes.count), []
-        for section in range(ends.size - 1):
-            own = lanes.take(going)
-            events = EndCondition(2, np.zeros(going.size), -1), EndCondition(0, ends[section + 1] / own.units[6], +1)
-            trajectory = self._integrate(Pressing(own, section), state, going, events)
-            legs.append(Leg(going, section, trajectory, self._memory(trajectory)))
-            turned_in[going[trajectory.ended_by == TURN]] = section
-            going = going[trajectory.ended_by != TURN]
-            if not going.size:
-                return tuple(legs), state, turned_in
-        raise TableTooShort("an impact presses beyond the radius up to which springs were tabulated")
+        def system(done: NDArray[np.bool_] | None) -> tuple[FloatArray, FloatArray]:
+            if done is not None:
+                self.cut((self.speed < 0) & ~done[:, None])
+            return self._system(until)
 
-    def recede(
-        self, way_in: tuple[Leg, ...], turn: FloatArray, turned_in: IntArray
-    ) -> tuple[tuple[Leg, ...], FloatArray]:
-        """The way out, back through the same sections, and the state at its end."""
-        lanes, legs = self.lanes, []
-        state = np.zeros((4 + lanes.branches, lanes.count))
-        state[:2], state[4:] = turn[:2], turn[outline(lanes.branches)[0]]
-        self.size *= _AFTER_TURN
-        self.course = Course.unknown(state.shape[0], self.size)
-        for leg in reversed(way_in):
-            starting = np.flatnonzero(turned_in == leg.section)
-            state[2, starting] = lanes.take(starting).springs(turn[:1, starting], leg.section, 1)[0, 0]
-            # On the way in it is the time without g.
-            state[1, starting] += state[2, starting]
-            steps = leg.memory.low.shape[0] if leg.memory else 1
-            legs += [self._back(leg, step, state) for step in reversed(range(steps))]
-        return tuple(legs), state
+        self.iterate(system)
 
-    def _back(self, leg: Leg, step: int, state: FloatArray) -> Leg:
-        """Back through one step of the way in, where memory is one polynomial, or through a whole section without."""
-        there = np.flatnonzero(leg.trajectory.counts > step)
-        going = leg.lanes[there]
-        own = self.lanes.take(going)
-        memory = leg.memory.take(there) if leg.memory else None
-        target = memory.low[step] if memory else self.lanes.table.section_ends[leg.section] / own.units[6]
-        problem = Receding(own, leg.section, memory, step)
-        trajectory = self._integrate(problem, state, going, (EndCondition(0, target, -1),))
-        return Leg(going, leg.section, trajectory, memory, step)
+    def _system(self, until: FloatArray | None) -> tuple[FloatArray, FloatArray]:
+        self.lengthen()
+        b, v, k = self.bodies, self.speed, self.speed.shape[1]
+        T, inner = self.duration[:, None], self.rule.integrals[:-1]
+        self.stiffness, rise, self.radius = b.springs(self.depth, self.piece)
+        K, rise = self.stiffness[:, :-1], rise[:, :-1]
+        self.load, change = self.remembered(K * v, self.start.load)
+        force = self.load[..., :-1].sum(axis=1) + b.viscosity[:, None] * K * v
+        deeper = _times(inner, v)
+        by_speed = self._answer * K[:, None] + (self._answer * (v * rise * T)[:, None]) @ inner
+        by_time = change[..., :-1].sum(axis=1) + _times(self._answer, rise * v * deeper)
+        missed, system = self.newton(force, by_speed, by_time)
+        self.force, self.end_speed = force, -missed[:, -1]
+        if until is not None:
+            last = self.rule.integrals[-1]
+            missed[:, -1] = self.depth[:, -1] - until
+            system[:, -1, :k] = T * last
+            system[:, -1, k] = (self.duration[:, None] * v * last).sum(axis=1)
+        return missed, system
 
-    def _integrate(
-        self, problem: Problem, state: FloatArray, going: IntArray, events: tuple[EndCondition, ...]
-    ) -> Trajectory:
-        """Advance some lanes to their events, in place."""
-        trajectory = self.integrate(
-            problem,
-            state[:, going],
-            events,
-            tolerance=self.tolerance[going],
-            first_step=self.size[going],
-            course=self.course.take(going),
-        )
-        state[:, going], self.size[going] = trajectory.final, trajectory.next_step
-        self.course.put(going, trajectory.course)
-        return trajectory
+    def finish(self, *, turned: bool) -> State:
+        """Rows that a shrinkage looks up, and the state at the end."""
+        self.turned = turned
+        stress, _ = self.remembered(self.speed, self.start.stress)
+        self.stress = stress
+        speed = np.zeros_like(self.end_speed) if turned else self.end_speed
+        ends = np.concatenate([self.speed, speed[:, None]], axis=1)
+        self.past = np.concatenate([stress, self.load, self.depth[:, None], ends[:, None]], axis=1)
+        return State(self.start.time + self.duration, speed, self.depth[:, -1], stress[..., -1], self.load[..., -1])
 
-    def _memory(self, trajectory: Trajectory) -> Memory | None:
-        """The time and what had relaxed: nothing to remember without branches."""
-        if not self.lanes.branches:
-            return None
-        return memory_of(trajectory, [1, *range(3, trajectory.final.shape[0])], turning_event=TURN)
+
+class Shrinkage(Phase):
+    """From the turn, or a break, until the edge is back where a growth started."""
+
+    growth: Growth
+    share: FloatArray
+    stress: FloatArray
+    forgotten: FloatArray
+
+    def solve(self, growth: Growth, *, searched: bool) -> None:
+        """Newton's method; from theta at `share` of the growth, which is searched for at once or after one sweep."""
+        self.growth = growth
+        none = np.zeros(self.duration.size, dtype=bool) if searched else None
+        self.iterate(lambda done: self._system(none if done is None else done))
+
+    def _system(self, found: NDArray[np.bool_] | None, *, whole: bool = True) -> tuple[FloatArray, FloatArray]:
+        self.lengthen()
+        b, g, v, k = self.bodies, self.growth, self.speed, self.speed.shape[1]
+        rates, eta = b.rates, b.viscosity[:, None]
+        self.stress, change = self.remembered(v, self.start.stress)
+        total = self.stress[..., :-1].sum(axis=1) + eta * v
+        self.total = total
+        if g.bodies.tracks[0].pieces:
+            if found is not None:
+                if whole and self._shortened(total, found):
+                    return self._system(found, whole=False)
+                self._find_edge(total, found)
+            K, lost, later = self._at_edge()
+        else:
+            K, lost, later = g.stiffness[:, :-1], np.zeros_like(v), np.zeros_like(v)
+            self.radius = g.radius[:, :-1]
+        self.stiffness = K
+        force = K * total - lost
+        by_speed = K[..., None] * self._answer
+        by_time = K * change[..., :-1].sum(axis=1) - later
+        missed, system = self.newton(force, by_speed, by_time)
+        self.force, self.end_speed = force, -missed[:, -1]
+        end = self.start.time + self.duration - g.start.time
+        held = np.exp(-rates * end[:, None]) * g.start.stress
+        released = self.stress[..., -1].sum(axis=1) + b.viscosity * self.end_speed - held.sum(axis=1)
+        system[:, -1] *= -eta
+        system[:, -1, :k] += self._relax_end
+        system[:, -1, k] += self.duration * (change[..., -1].sum(axis=1) + (rates * held).sum(axis=1))
+        missed[:, -1] = released
+        return missed, system
+
+    def _shortened(self, total: FloatArray, found: NDArray[np.bool_]) -> bool:
+        """Cut durations to the first node at which no spring is pressed any more; whether there are some.
+
+        A layer that relaxed nearly whole lets go early, and its force would come back later.
+        """
+        first = self.growth.start.stress[..., None]
+        held = (first * np.exp(-self.bodies.rates[..., None] * self.ago(np.zeros_like(total))[:, None])).sum(axis=1)
+        relaxes = (self.bodies.viscosity == 0) & ~found
+        return self.cut((total < held) & relaxes[:, None])
+
+    def ago(self, share: FloatArray) -> FloatArray:
+        """t - theta at the nodes."""
+        g = self.growth
+        now = self.start.time[:, None] + self.duration[:, None] * self.rule.share[:-1]
+        return np.asarray(now - g.start.time[:, None] - g.duration[:, None] * share)
+
+    def _find_edge(self, total: FloatArray, found: NDArray[np.bool_]) -> None:
+        """theta, as a share of the growth, by safeguarded Newton steps for y = (1 - share)^q, nearly linear in time.
+
+        q = 2 from a turn on, where both speeds vanish. Impacts that are `found` keep theirs.
+        """
+        g, b = self.growth, self.bodies
+        q = 2.0 if g.turned else 1.0
+        y = (1 - self.share) ** q
+        low, high, done = np.zeros_like(y), np.ones_like(y), np.repeat(found[:, None], y.shape[1], axis=1)
+        m = b.rates.shape[1]
+        for _ in range(_EDGE_STEPS):
+            share = 1 - y ** (1 / q)
+            old = interpolated(g.past, share ** (1 / g.rule.power))
+            fade = np.exp(-b.rates[..., None] * self.ago(share)[:, None])
+            excess = total - (fade * old[:, :m]).sum(axis=1)
+            low, high = np.where(excess < 0, y, low), np.where(excess < 0, high, y)
+            slope = (fade * b.weights[..., None]).sum(axis=1) * old[:, -1] * g.duration[:, None]
+            with np.errstate(all="ignore"):
+                new = y - excess * q * y ** (1 - 1 / q) / slope
+            new = np.where((new >= low) & (new <= high), new, (low + high) / 2)
+            y, done = np.where(done, y, new), done | (np.abs(new - y) < _EDGE_STEP)
+            if done.all():
+                break
+        self.share = np.where(found[:, None], self.share, 1 - y ** (1 / q))
+
+    def _at_edge(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """K, what the springs in contact have forgotten since, and its change with T; shape (n, k) each."""
+        g, b = self.growth, self.bodies
+        m = b.rates.shape[1]
+        old = interpolated(g.past, self.share ** (1 / g.rule.power))
+        K, _, self.radius = b.springs(old[:, -2], self.piece)
+        fade = np.exp(-b.rates[..., None] * self.ago(self.share)[:, None])
+        self.forgotten = fade * (old[:, :m] * K[:, None] - old[:, m : 2 * m])
+        later = (-b.rates[..., None] * self.rule.share[:-1] * self.forgotten).sum(axis=1)
+        return K, self.forgotten.sum(axis=1), later
+
+    def finish(self) -> State:
+        """The state at the end."""
+        end, start = self.growth.start, self.start
+        return State(start.time + self.duration, self.end_speed, self.depth[:, -1], self.stress[..., -1], end.load)
+
+
+def _solved(matrix: FloatArray, right: FloatArray) -> FloatArray:
+    """Solutions of linear systems, nan where one is singular: a body that never turns."""
+    try:
+        return np.asarray(np.linalg.solve(matrix, right[..., None])[..., 0])
+    except np.linalg.LinAlgError:
+        if len(matrix) == 1:
+            return np.full_like(right, np.nan)
+        return np.concatenate([_solved(matrix[[i]], right[[i]]) for i in range(len(matrix))])
+
+
+def _times(matrix: FloatArray, vector: FloatArray) -> FloatArray:
+    """Products of matrices and vectors, each by itself, so that they do not depend on the number of them."""
+    return np.asarray((matrix @ vector[..., None])[..., 0])

@@ -1,37 +1,46 @@
-"""What many impacts lead to: restitution, contact time and peaks, as arrays."""
+"""What many impacts lead to, with stated errors: two courses at different resolutions, until they agree."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from bem.polynomials import chebyshev
-from contact import NotConvergedError
+from bem.equation import Sizes
+from bem.flat_punch import FlatPunchSource
+from bem.kernels.moduli import relaxation_of
+from bem.numerics import EPS
+from contact import Impact, InvalidInput, NotConvergedError, Scene, UnsupportedSceneError
 from contact.records.validation import FloatArray
-from mdr.impact.collocation import states
-from mdr.impact.equations import ImpactBatch, force, outline
-from mdr.impact.motion import Impacts, Leg
-from mdr.impact.units import ScaledImpacts
-from mdr.springs.error_model import (
-    AGREEMENT_SHARES,
-    COARSER_POWER,
-    DEFAULT_ACCURACY,
-    IMPACT_ROUNDING,
-    LEAVING_SHARE,
-    PROFILE_ROUNDING,
-    SPRINGS_TO_MOTION,
-)
-from mdr.springs.table import MOMENT, PROFILE, STIFFNESS
+from contact.stated import stated_error
+from mdr.impact.beds import Bed, Units, bed_of, ladder_of, track_of
+from mdr.impact.course import Course, course
+from mdr.impact.motion import Bodies
+from mdr.impact.track import exponent_of
+from mdr.own_units import power_law
+from mdr.radius_search import SeveralContacts, refuse_too_wide
 
-# An indenter whose final speed is below this share of the approach speed has come to rest; chosen.
+# Share of the instantaneous modulus to which a layer is expected to relax on the way in. Softer ones may need a second
+# track.
+_SOFTEST = 0.02
+# Nodes per phase: so many, and so many per digit of the accuracy. With half of the latter, peak forces reach half the
+# digits at once.
+_NODES, _PER_DIGIT = 8, 1.8
+# Factor to the nodes of the companion that states errors, and of the next attempt; most nodes.
+_FINER, _NEXT, _MOST_NODES = 1.5, 1.6, 100
+# Time to the turn over the relaxation time from which nodes crowd at the touch.
+_FAST = 30.0
+# Roundings of a motion in units of EPS; half of it is exceeded by one impact in ten.
+_ROUNDINGS = 32.0
+# Largest correction that a course may end with.
+_CONVERGED = 1e-7
+# Share of corrections of durations that counts there: they are stated, and matter to the contact time only.
+_VAGUE = 1e-5
+# An indenter whose final speed is below this share of the approach speed has come to rest.
 _REST = 1e-10
-# Row of the contact time among the five outcomes.
-_TIME = 1
-# Chebyshev nodes of the force on each step: more than the state's degree of ten, since the force is a function of it.
-_NODES = 14
-_POWERS_FROM_VALUES = chebyshev.to_powers(_NODES) @ chebyshev.analysis(_NODES)
+OUTCOMES = ("coefficient_of_restitution", "contact_time", "peak_force", "peak_depth", "peak_contact_radius")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -55,111 +64,247 @@ class ImpactResults:
     relative_error: FloatArray
 
 
-def results(scaled: ScaledImpacts, impacts: Impacts, accuracy: float) -> ImpactResults:
-    """Back to SI units.
+class Blow(NamedTuple):
+    """One impact in the units of its bed.
 
-    Args:
-        scaled: The impacts and their units.
-        impacts: Their motions.
-        accuracy: That was asked for, shape (n,) or one.
+    Attributes:
+        scene: The impact.
+        bed: Layer and profile.
+        units: Of the bed.
+        speed: v_0 [m/s].
+        velocity: v_0 over the unit of depth [1/s].
+        pull: 2 E*/M [1/s^2].
+        weights: w_j, G_inf/G_0 first, shape (m,).
+        rates: 1/tau_j [1/s], 0 first, shape (m,).
+        viscosity: eta/G_0 [s].
+    """
+
+    scene: Scene
+    bed: Bed
+    units: Units
+    speed: float
+    velocity: float
+    pull: float
+    weights: FloatArray
+    rates: FloatArray
+    viscosity: float
+
+    @property
+    def energy(self) -> float:
+        """M v_0^2/2 over 2 E*."""
+        return self.velocity**2 / (2 * self.pull)
+
+    @property
+    def impulse(self) -> float:
+        """Force over 2 E* of an elastic layer where the dashpot has taken M v_0: its impulse is eta int K d(depth)."""
+        return self.velocity / (self.pull * self.viscosity) if self.viscosity > 0 else np.inf
+
+
+def blow_of(scene: Scene, flat_punch: FlatPunchSource) -> Blow:
+    """An impact.
 
     Raises:
-        NotConvergedError: If an indenter comes to rest in the layer.
+        UnsupportedSceneError: If the loading is no impact.
     """
-    lanes = impacts.lanes
-    refuse_rest(impacts.end[3, : scaled.lanes.count], scaled.lanes.long_term)
-    depth = np.empty(lanes.count)
-    peak = np.zeros(lanes.count)
-    for leg in impacts.way_in:
-        own = lanes.take(leg.lanes)
-        depth[leg.lanes] = own.springs(impacts.turn[:1, leg.lanes], leg.section, 1)[0, 0]
-        peak[leg.lanes] = np.maximum(peak[leg.lanes], _peak_force(lanes, leg))
-    radius = lanes.table.radius(impacts.turn[0] * lanes.units[6])
-    both = np.stack([-impacts.end[3], impacts.end[1] + impacts.drift, peak, depth, radius])
-    values, change = fine_and_change(both, accuracy, IMPACT_ROUNDING + _depth_rounding(scaled.lanes, depth))
-    change += SPRINGS_TO_MOTION * lanes.table.error
-    change[_TIME] += SPRINGS_TO_MOTION * lanes.table.error * leaving(values)
-    return ImpactResults(
-        # Rounded as the quotient of two speeds [m/s], which it is in a history.
-        coefficient_of_restitution=values[0] * scaled.velocity / scaled.velocity,
-        contact_time=values[1] * scaled.time,
-        peak_force=values[2] * scaled.stiffness * scaled.depth,
-        peak_depth=values[3] * scaled.depth,
-        peak_contact_radius=values[4] * scaled.length,
-        relative_error=change,
+    if not isinstance(scene.loading, Impact):
+        raise UnsupportedSceneError(f"loading = {type(scene.loading).__name__}: an impact batch needs Impact")
+    law, (bed, units) = relaxation_of(scene), bed_of(scene, flat_punch)
+    modulus = law.instantaneous_modulus
+    weights, rates = np.append(law.long_term_modulus, law.moduli) / modulus, np.append(0.0, 1 / law.times)
+    loading = scene.loading
+    velocity, pull = loading.velocity / units.depth, units.stiffness / loading.mass
+    return Blow(scene, bed, units, loading.velocity, velocity, pull, weights, rates, law.viscosity / modulus)
+
+
+class Attempt(NamedTuple):
+    """Impacts at two resolutions.
+
+    Attributes:
+        course: The answer.
+        finer: Its companion.
+        values: Five outcomes in the units of the beds, shape (5, n).
+        error: Their relative errors.
+    """
+
+    course: Course
+    finer: Course
+    values: FloatArray
+    error: FloatArray
+
+
+def attempted(blows: Sequence[Blow], sizes: Sizes, nodes: int, excess: FloatArray, *, again: bool = False) -> Attempt:
+    """Solve impacts on tracks up to radii b + excess with so many nodes per phase.
+
+    Companions begin with better guesses. `again` solves those of which only the companion converged from there.
+    """
+    bodies = _bodies(blows, sizes, excess)
+    answer = course(bodies, nodes, np.array([_guess(blow, sizes) for blow in blows]).T)
+    fine_bodies = _bodies(blows, sizes.finer, excess)
+    finer = course(fine_bodies, round(_FINER * nodes), answer)
+    if again:
+        answer = course(bodies, nodes, finer)
+        finer = course(fine_bodies, round(_FINER * nodes), answer)
+    values, other = answer.outcomes(), finer.outcomes()
+    rounding = _ROUNDINGS * EPS + np.array([track.floor for track in bodies.tracks])
+    floor = np.tile(rounding, (5, 1))
+    with np.errstate(all="ignore"):
+        floor[0] /= values[0]
+        floor[1] *= 1 + values[3] / (values[0] * bodies.velocity * values[1])
+        error = [
+            stated_error(v, o, scale=v, floor=f, sequence=False) for v, o, f in zip(values, other, floor, strict=True)
+        ]
+    if answer.is_elastic:
+        error[0] = np.zeros_like(error[0])
+    unsure = answer.unsure + finer.unsure
+    errors = np.array(error) + unsure[0]
+    errors[1] += unsure[1]
+    errors[0] += unsure[2]
+    return Attempt(answer, finer, values, errors)
+
+
+def _bodies(blows: Sequence[Blow], sizes: Sizes, excess: FloatArray) -> Bodies:
+    tracks = [track_of(blow.bed, sizes, reach) for blow, reach in zip(blows, excess.tolist(), strict=True)]
+    velocity, pull, viscosity = (
+        np.array(row) for row in zip(*[(b.velocity, b.pull, b.viscosity) for b in blows], strict=True)
     )
+    weights, rates = np.array([b.weights for b in blows]), np.array([b.rates for b in blows])
+    return Bodies(tracks, velocity, pull, weights, rates, viscosity, time_power(blows[0], sizes))
 
 
-def _depth_rounding(lanes: ImpactBatch, depth: FloatArray) -> FloatArray:
-    """Rounding of g on the first panel of the table over the peak depth: a stiff dashpot stops a body far below it."""
-    first = lanes.table.evaluate(lanes.table.functions.edges[1:2], 1)[PROFILE]
-    return np.asarray(PROFILE_ROUNDING * first / (lanes.units[0] * depth[: lanes.count]))
+def time_power(blow: Blow, sizes: Sizes) -> int:
+    """p of the first phase.
 
-
-def fine_and_change(
-    both: FloatArray, accuracy: FloatArray | float, rounding: FloatArray | float = IMPACT_ROUNDING
-) -> tuple[FloatArray, FloatArray]:
-    """Outcomes of the first half of the lanes, and their errors as the second half, integrated more coarsely, tells.
-
-    Two numbers may agree by chance, so an error is never stated far below what their steps were chosen for.
-
-    Args:
-        both: Restitution, contact time, peaks of force, depth and radius, shape (5, 2 n).
-        accuracy: That was asked for, shape (n,) or one.
-        rounding: Relative, shape (n,).
+    With p a multiple of the tip's exponent the radius is a power of s; 5 is smooth enough for any other exponent. Where
+    p = 1 would do, 2 resolves branches that relax at once, and tips whose shape changes near their end.
     """
-    fine, coarse = np.split(both, 2, axis=1)
-    chance = AGREEMENT_SHARES * accuracy * np.maximum(accuracy / DEFAULT_ACCURACY, 1.0) ** COARSER_POWER
-    change = np.abs(fine - coarse) / np.abs(fine) + chance + rounding
-    of_peaks = change[_TIME + 1 :].max(axis=0)
-    change[_TIME] += LEAVING_SHARE * of_peaks * leaving(fine)
-    return fine, change
+    n, law = exponent_of(blow.bed.indenter), power_law(blow.bed.indenter)
+    is_fast = bool((blow.rates * _guess(blow, sizes)[0] > _FAST).any())
+    if n == 1 and law and not is_fast:
+        return 1
+    return {1.0: 2, 1.5: 3, 2.0: 2, 3.0: 3, 4.0: 4}.get(n, 5)
 
 
-def leaving(outcomes: FloatArray) -> FloatArray:
-    """How much relative errors of the depth count in the contact time: the peak depth over the way at leaving speed."""
-    restitution, time, _, depth, _ = outcomes
-    return np.asarray(depth / (restitution * time))
+def _guess(blow: Blow, sizes: Sizes) -> tuple[float, float]:
+    """Guesses of the time to the turn [s], and of the rate [1/s] at which a dashpot takes the speed."""
+    ladder = ladder_of(blow.bed, sizes)
+    if not ladder.excess.size:
+        still = track_of(blow.bed, sizes, 0.0).still
+        elastic, damped = blow.velocity / np.sqrt(blow.pull * still), blow.impulse / still
+    else:
+        elastic, damped = ladder.depth_of(blow.energy, blow.impulse)
+    duration = min(elastic, damped) / blow.velocity * (1.5 + 2 * np.log1p(elastic / damped))
+    return float(duration), float(blow.velocity / damped if damped < elastic else 0.0)
 
 
-def refuse_rest(final_velocity: FloatArray, long_term: FloatArray) -> None:
-    """A layer without long-term stiffness may hold the indenter: what is left then is rounding, no rebound.
+def in_si(blow: Blow, attempt: Attempt, place: int) -> FloatArray:
+    """Five outcomes of an impact of an attempt in SI units."""
+    length, depth, stiffness = blow.units
+    found = attempt.values[:, place] * [1.0, 1.0, stiffness * depth, depth, length]
+    # Rounded as the quotient of two speeds [m/s], which it is in a history.
+    found[0] = found[0] * blow.speed / blow.speed
+    return np.asarray(found)
 
-    Args:
-        final_velocity: Over the approach speed, negative for a rebound, shape (lanes,).
-        long_term: G_inf / G_0, shape (lanes,).
+
+def solved(
+    blows: Sequence[Blow], sizes: Sizes, accuracy: float, numbers: Sequence[int] = (0,)
+) -> list[tuple[Attempt, int]]:
+    """Solve impacts of one kind (`kind_of`), each until its stated errors are below an accuracy or stop falling.
+
+    Raises:
+        NotConvergedError: If some do not converge, or come to rest; with their numbers.
+        InvalidInput: If an indenter is pressed in beyond its end.
+        SeveralContacts: If a contact would be no circle.
     """
-    resting = np.flatnonzero((final_velocity >= 0.0) | ((long_term == 0.0) & (final_velocity > -_REST)))
-    if resting.size:
-        first = resting[0]
-        why = (
-            "it comes to rest in a layer that relaxes completely; give that a long-term shear modulus above zero"
-            if long_term[first] == 0.0
-            else "what viscosity leaves of its speed is lost in rounding; lower the viscosity or take a heavier body"
+    levels = [_first_level(blow, sizes) for blow in blows]
+    nodes = [round(_NODES - _PER_DIGIT * np.log10(accuracy))] * len(blows)
+    found: list[tuple[Attempt, int] | None] = [None] * len(blows)
+    going = list(range(len(blows)))
+    while going:
+        number = min(nodes[i] for i in going)
+        own = [i for i in going if nodes[i] == number]
+        excess = np.array([_excess(blows[i], sizes, levels[i]) for i in own])
+        attempt = attempted([blows[i] for i in own], sizes, number, excess)
+        for place, i in enumerate(own):
+            if attempt.course.short[place]:
+                levels[i] = _next_level(blows[i], sizes, levels[i])
+                continue
+            one = attempt, place
+            if not _unsure(*one) < _CONVERGED:
+                one = attempted([blows[i]], sizes, number, excess[[place]], again=True), 0
+            old, error = found[i], np.nan_to_num(one[0].error[:, one[1]].max(), nan=np.inf)
+            before = np.inf if old is None else old[0].error[:, old[1]].max()
+            if old is None or (not _unsure(*old) < _CONVERGED) or (_unsure(*one) < _CONVERGED and error < before):
+                found[i] = one
+            nodes[i] = round(_NEXT * number)
+            if error < accuracy or nodes[i] > _MOST_NODES or (before < _CONVERGED and error > before / 2):
+                going.remove(i)
+    answers = [one for one in found if one is not None]
+    _refuse_unsolved(blows, answers, numbers)
+    return answers
+
+
+def _refuse_unsolved(blows: Sequence[Blow], found: Sequence[tuple[Attempt, int]], numbers: Sequence[int]) -> None:
+    """Refuse impacts without an answer.
+
+    Raises:
+        NotConvergedError: With the numbers of those that did not converge, or of the first that comes to rest.
+    """
+    unsure = np.array([_unsure(attempt, at) for attempt, at in found])
+    restitution = np.array([attempt.values[0, at] for attempt, at in found])
+    for i, blow in enumerate(blows):
+        relaxes, speed = blow.weights[0] == 0, restitution[i]
+        if not speed > (_REST if relaxes else 0.0) or (relaxes and not unsure[i] < _CONVERGED):
+            why = (
+                "it comes to rest in a layer that relaxes completely; give that a long-term shear modulus above zero"
+                if relaxes
+                else "rounding hides what viscosity leaves of its speed; lower the viscosity or take a heavier body"
+            )
+            raise NotConvergedError(f"impact {numbers[i]} does not rebound: {why}")
+    lost = np.flatnonzero(~(unsure < _CONVERGED))
+    if lost.size:
+        named = ", ".join(str(numbers[i]) for i in lost[:8]) + (", .." if lost.size > 8 else "")
+        raise NotConvergedError(
+            f"impacts {named}: {lost.size} of {len(blows)} did not converge, the last corrections were "
+            f"{unsure[lost].max():.1g} of speed and duration; merge relaxation times far below the contact time"
         )
-        raise NotConvergedError(f"impact {first} does not rebound: {why}")
 
 
-def force_on_way_in(lanes: ImpactBatch, leg: Leg, z: FloatArray) -> FloatArray:
-    """Dimensionless force at z in [-1, 1] on every step, shape (len(z), steps, lanes)."""
-    own = lanes.take(leg.lanes)
-    state = states(leg.trajectory, z)
-    shared, memory = outline(own.branches)
-    flat = state.reshape(state.shape[0], -1, state.shape[-1])
-    springs = own.springs(flat[0], leg.section, 5)
-    taken = springs[MOMENT] + np.add.reduce(springs[STIFFNESS] * flat[shared] - flat[memory])
-    return force(own, springs, springs[PROFILE], flat[2], taken).reshape(state.shape[1:])
+def _unsure(attempt: Attempt, place: int) -> float:
+    """Largest last correction of speeds, or of a duration; where the speed is lost in rounding the latter is vague."""
+    speed, duration, _ = attempt.course.unsure[:, place] + attempt.finer.unsure[:, place]
+    return float(max(speed, _VAGUE * duration))
 
 
-def _peak_force(lanes: ImpactBatch, leg: Leg) -> FloatArray:
-    """Largest force of each lane. A viscous layer relaxes at the turn, so it never comes after it."""
-    values = force_on_way_in(lanes, leg, chebyshev.nodes(_NODES))
-    present = np.arange(values.shape[1])[:, None] < leg.trajectory.counts
-    return chebyshev.largest(np.einsum("ij,jsl->isl", _POWERS_FROM_VALUES, values), present)
+def _first_level(blow: Blow, sizes: Sizes) -> int:
+    soft = max(blow.weights[0], _SOFTEST)
+    return ladder_of(blow.bed, sizes).level(blow.energy / soft, blow.impulse)
 
 
-def joined(parts: list[ImpactResults], order: NDArray[np.intp]) -> ImpactResults:
-    """Several results as one, rearranged."""
-    names = [field.name for field in fields(ImpactResults)]
-    columns = {name: np.concatenate([getattr(part, name) for part in parts], axis=-1) for name in names}
-    return ImpactResults(**{name: column[..., order] for name, column in columns.items()})
+def _excess(blow: Blow, sizes: Sizes, level: int) -> float:
+    ladder = ladder_of(blow.bed, sizes)
+    return float(ladder.excess[level]) if ladder.excess.size else 0.0
+
+
+def _next_level(blow: Blow, sizes: Sizes, level: int) -> int:
+    """The next level of the ladder, for a layer that relaxes more than expected.
+
+    Raises:
+        InvalidInput: If the indenter ends, or the contact becomes too wide.
+        SeveralContacts: If g falls.
+    """
+    ladder = ladder_of(blow.bed, sizes)
+    fall = track_of(blow.bed, sizes, _excess(blow, sizes, level)).fall
+    if fall is not None:
+        raise SeveralContacts(fall * blow.units.length)
+    if level + 1 < ladder.excess.size or not ladder.is_whole:
+        ladder.extend(level + 1)
+    if level + 1 < ladder.excess.size:
+        return level + 1
+    indenter = blow.scene.indenter
+    radius = (ladder.tip.flat + ladder.excess[-1]) * (1 + 1e-6)
+    if radius < ladder.tip.end:
+        refuse_too_wide(blow.bed.springs(sizes), radius)
+    raise InvalidInput(
+        f"indenter: the impact presses it in beyond its rim at {indenter.max_radius:g} m; "
+        "reduce mass or velocity, or extend the profile"
+    )

@@ -1,7 +1,6 @@
 """Normal impact of a rigid indenter on an elastic or incompressible viscoelastic layer, Eqs. (47)-(52).
 
-Quasi-static: waves in the layer are neglected. The way in and the way out are integrated by high-order collocation
-from event to event, in the impact's own units.
+Quasi-static: waves in the layer are neglected.
 """
 
 from __future__ import annotations
@@ -12,45 +11,26 @@ from typing import TypeAlias
 
 import numpy as np
 
-from bem.kernels.moduli import relaxation_of
-from bem.layer_equation.protocol import FlatPunchSource
-from contact import ImpactHistory, InvalidInput, NotConvergedError, Scene, StageLog
+from bem.equation import USUAL, Sizes
+from bem.flat_punch import FlatPunchSource, IntegralEquation
+from contact import FlatPunch, ImpactHistory, InvalidInput, Scene, StageLog
 from contact.answer.small_strains import refuse_deep
 from contact.answer.solution import Setting
-from mdr.impact.collocation import Integrate
-from mdr.impact.compiled.choice import integrator
-from mdr.impact.flat_punch import flat_punch_history, flat_punch_results
+from mdr.admissible import refuse_pulling, refuse_touching_outside
+from mdr.contact_surface import surface_of
+from mdr.equilibria import is_simple, is_singular, sizes_of, springs_on
 from mdr.impact.history import history
-from mdr.impact.merged_branches import with_merged_branches
-from mdr.impact.motion import Impacts, TableTooShort, impacts
-from mdr.impact.results import ImpactResults, joined, results
-from mdr.impact.units import SOFTEST, ScaledImpacts, is_flat, scaled, table_of
-from mdr.springs.beside_contact import refuse_touching_at
-from mdr.springs.error_model import DEFAULT_ACCURACY
-from mdr.springs.pulling import refuse_pulling_at
+from mdr.impact.results import OUTCOMES, Blow, ImpactResults, blow_of, in_si, solved, time_power
+from mdr.radius_search import RadiusSearch
 
-# Accuracies that may be asked for: a coarser one is no impact any more, a finer one is below rounding; chosen.
-_LEAST_ACCURACY, _BEST_ACCURACY = 1e-4, 1e-13
-# Impacts integrated together: enough to hide the interpreter, few enough to stay in the cache; chosen.
-_CHUNK = 256
+# Accuracies that may be asked for: a coarser one is no impact any more, a finer one is below rounding.
+_LEAST_ACCURACY, _BEST_ACCURACY, _DEFAULT_ACCURACY = 1e-4, 1e-13, 1e-9
+# Impacts solved together: enough to hide the interpreter, few enough for the cache.
+CHUNK = 64
+# Contacts of a motion at which pressures are looked at, up to its largest.
+_CONTACTS = 6
 
 Progress: TypeAlias = Callable[[int, int], None]
-_Solver: TypeAlias = Callable[[list[int]], ImpactResults]
-
-
-def step_tolerance(accuracy: float) -> float:
-    """Tolerance inside a collocation step for a wanted relative accuracy of its end, which is of higher order.
-
-    The power is fitted to random impacts on a/h from 1e-3 to 20. With 1e4 in front, 96 to 99 % of each of the five
-    outcomes were covered at 1e-9, with this 97 to 100 % for 1.01 times the sweeps (398 random impacts, seeds 7302 and
-    7405, 2026-11-23).
-
-    Raises:
-        InvalidInput: If the accuracy is out of reach or worthless.
-    """
-    if not _BEST_ACCURACY <= accuracy <= _LEAST_ACCURACY:
-        raise InvalidInput(f"accuracy = {accuracy:g}: choose between {_BEST_ACCURACY:g} and {_LEAST_ACCURACY:g}")
-    return float(max(6e3 * accuracy ** (4.0 / 3.0), 1e-12))
 
 
 def solve_impact(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[str, Setting]) -> ImpactHistory:
@@ -59,119 +39,100 @@ def solve_impact(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[st
     Args:
         scene: A scene whose loading is an impact.
         flat_punch: Where the flat-punch data come from.
-        settings: Of the method; "accuracy" is the wanted relative accuracy of restitution and peaks, "compiled"
-            whether numba's loops are to be used.
+        settings: Of the method; "accuracy" is the wanted relative accuracy of restitution and peaks.
 
     Raises:
         NotConvergedError: If the indenter never rebounds.
-        InvalidInput: If it is pressed in beyond its rim, or compiled loops are asked for without numba.
-        UnsupportedSceneError: If it would touch beside its largest circle of contact.
+        InvalidInput: If it is pressed in beyond its rim.
+        UnsupportedSceneError: If it would touch outside its largest circle of contact, or pull inside.
     """
-    return with_merged_branches(scene, lambda one: _solved(one, flat_punch, settings))
-
-
-def _solved(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[str, Setting]) -> ImpactHistory:
-    known = {"accuracy": DEFAULT_ACCURACY, **settings}
-    log, accuracy = StageLog(), float(known["accuracy"] or DEFAULT_ACCURACY)
-    tolerance, integrate = step_tolerance(accuracy), integrator(compiled=bool(known.get("compiled")))
-    if is_flat(scene):
-        refuse_pulling_at(scene, flat_punch, scene.indenter.max_radius)
-        return flat_punch_history(
-            scene, flat_punch, log, accuracy, integrate=integrate, tolerance=step_tolerance, settings=known
-        )
-    problem, motion = _pressed(scene, flat_punch, log, integrate, tolerance)
-    legs = motion.way_in + motion.way_out
-    log.count("steps", sum(int(leg.trajectory.counts.sum()) for leg in legs))
-    log.count("sweeps", sum(leg.trajectory.sweeps for leg in legs))
-    found = history(scene, problem, motion, log, accuracy, settings=known)
-    refuse_touching_at(scene, flat_punch, found.peak_contact_radius)
-    refuse_pulling_at(scene, flat_punch, found.peak_contact_radius)
-    return found
-
-
-def _pressed(
-    scene: Scene, flat_punch: FlatPunchSource, log: StageLog, integrate: Integrate, tolerance: float
-) -> tuple[ScaledImpacts, Impacts]:
-    """One impact on springs that reach far enough, also in a layer that gets softer than expected on the way in."""
-    for softest in SOFTEST:
-        with log.stage("equivalent_system"):
-            shared, table = table_of(scene, flat_punch, softest)
-        with log.stage("impact"):
-            problem = scaled([scene], [shared], table)
-            try:
-                return problem, impacts(problem.lanes, integrate, tolerance=tolerance)
-            except TableTooShort:
-                continue
-    raise NotConvergedError(
-        f"the layer relaxes to below {SOFTEST[-1]:g} of its instantaneous modulus while it is pressed, and its springs "
-        "are tabulated no farther; give it a larger long-term modulus or longer relaxation times"
-    )
+    log, known = StageLog(), {"accuracy": _DEFAULT_ACCURACY, **settings}
+    accuracy = _checked(float(known["accuracy"] or _DEFAULT_ACCURACY))
+    with log.stage("equivalent_system"):
+        blow, sizes = blow_of(scene, flat_punch), _sizes(flat_punch)
+    with log.stage("impact"):
+        attempt, _ = solved([blow], sizes, accuracy)[0]
+    _refuse_inadmissible(scene, flat_punch, in_si(blow, attempt, 0)[4])
+    return history(blow, attempt, log, known)
 
 
 def impact_batch(
     scenes: Sequence[Scene],
     flat_punch: FlatPunchSource,
     *,
-    accuracy: float = DEFAULT_ACCURACY,
-    compiled: bool = False,
+    accuracy: float = _DEFAULT_ACCURACY,
     progress: Progress | None = None,
 ) -> ImpactResults:
-    """Many impacts, those that share springs and the number of relaxation times together.
+    """Many impacts, those with one kind of tip and the same number of relaxation times together.
 
     Args:
         scenes: Scenes whose loading is an impact, in any order.
         flat_punch: Where the flat-punch data come from.
         accuracy: Wanted relative accuracy of restitution and peaks.
-        compiled: Whether numba's loops are to be used.
         progress: Told how many of how many impacts are done.
 
     Returns:
-        Arrays in the order of the scenes. Each entry is what the scene alone would give: lanes do not feel each other.
+        Arrays in the order of the scenes. Each entry is what the scene alone would give, to the last digit.
     """
-    found, order = [], []
-    for members, solve in _groups(scenes, flat_punch, integrator(compiled=compiled), accuracy):
-        for start in range(0, len(members), _CHUNK):
-            chunk = members[start : start + _CHUNK]
-            found.append(solve(chunk))
-            order += chunk
+    sizes, accuracy = _sizes(flat_punch), _checked(accuracy)
+    blows = [blow_of(scene, flat_punch) for scene in scenes]
+    values, errors, done = np.empty((5, len(blows))), np.empty((5, len(blows))), 0
+    kinds = [_kind(blow, sizes) for blow in blows]
+    for _, group in groupby(sorted(range(len(blows)), key=kinds.__getitem__), key=kinds.__getitem__):
+        members = list(group)
+        for start in range(0, len(members), CHUNK):
+            chunk = members[start : start + CHUNK]
+            found = solved([blows[i] for i in chunk], sizes, accuracy, chunk)
+            for i, (attempt, place) in zip(chunk, found, strict=True):
+                values[:, i], errors[:, i] = in_si(blows[i], attempt, place), attempt.error[:, place]
+                refuse_deep(scenes[i], values[3, i])
+                _refuse_inadmissible(scenes[i], flat_punch, values[4, i])
+            done += len(chunk)
             if progress is not None:
-                progress(len(order), len(scenes))
-    answer = joined(found, np.argsort(order))
-    peaks = zip(answer.peak_contact_radius.tolist(), answer.peak_depth.tolist(), strict=True)
-    for scene, (radius, depth) in zip(scenes, peaks, strict=True):
-        refuse_deep(scene, depth)
-        refuse_touching_at(scene, flat_punch, radius)
-        refuse_pulling_at(scene, flat_punch, radius)
-    return answer
+                progress(done, len(blows))
+    return ImpactResults(**dict(zip(OUTCOMES, values, strict=True)), relative_error=errors)
 
 
-def _groups(
-    scenes: Sequence[Scene], flat_punch: FlatPunchSource, integrate: Integrate, accuracy: float
-) -> list[tuple[list[int], _Solver]]:
-    """Scenes that can be advanced together, with the function that does it."""
-    tolerance = step_tolerance(accuracy)
-    flat = [i for i, scene in enumerate(scenes) if is_flat(scene)]
-    shaped = {i: table_of(scene, flat_punch) for i, scene in enumerate(scenes) if not is_flat(scene)}
+def _checked(accuracy: float) -> float:
+    """The accuracy.
 
-    kinds = [
-        (id(shaped[i][1]) if i in shaped else 0, relaxation_of(scene).moduli.size) for i, scene in enumerate(scenes)
-    ]
-    kind = kinds.__getitem__
+    Raises:
+        InvalidInput: If it is out of reach or worthless.
+    """
+    if not _BEST_ACCURACY <= accuracy <= _LEAST_ACCURACY:
+        raise InvalidInput(f"accuracy = {accuracy:g}: choose between {_BEST_ACCURACY:g} and {_LEAST_ACCURACY:g}")
+    return accuracy
 
-    def shaped_results(chunk: list[int]) -> ImpactResults:
-        """Results of scenes on one table, advanced together; one by one where the table proves too short."""
-        problem = scaled([scenes[i] for i in chunk], [shaped[i][0] for i in chunk], shaped[chunk[0]][1])
-        try:
-            return results(problem, impacts(problem.lanes, integrate, tolerance=tolerance), accuracy)
-        # One of the layers softens more than expected.
-        except TableTooShort:
-            alone = [_pressed(scenes[i], flat_punch, StageLog(), integrate, tolerance) for i in chunk]
-            return joined([results(*found, accuracy) for found in alone], np.arange(len(chunk)))
 
-    def flat_results(chunk: list[int]) -> ImpactResults:
-        return flat_punch_results([scenes[i] for i in chunk], flat_punch, integrate, accuracy, tolerance=step_tolerance)
+def _sizes(flat_punch: FlatPunchSource) -> Sizes:
+    return sizes_of(flat_punch) if isinstance(flat_punch, IntegralEquation) else USUAL
 
-    found: list[tuple[list[int], _Solver]] = []
-    for members, solve in ((list(shaped), shaped_results), (flat, flat_results)):
-        found += [(list(group), solve) for _, group in groupby(sorted(members, key=kind), key=kind)]
-    return found
+
+def _kind(blow: Blow, sizes: Sizes) -> tuple[bool, int, int, bool]:
+    """What impacts that are solved together have in common."""
+    return isinstance(blow.bed.indenter, FlatPunch), time_power(blow, sizes), blow.rates.size, blow.viscosity == 0
+
+
+def _refuse_inadmissible(scene: Scene, flat_punch: FlatPunchSource, radius: float) -> None:
+    """Refuse motions up to a radius [m] during which a contact pulls inside, or the widest one is touched outside.
+
+    Raises:
+        UnsupportedSceneError: With the contact radius.
+    """
+    indenter, flat = scene.indenter, scene.indenter.flat_radius
+    is_punch = isinstance(indenter, FlatPunch)
+    if is_simple(scene) or (radius <= flat and not is_punch):
+        return
+    springs = springs_on(scene.layer, indenter, flat_punch)
+    if not is_punch:
+        RadiusSearch(springs, may_fall=True).refuse_falls(radius)
+    shares = np.arange(_CONTACTS, 0, -1) / _CONTACTS
+    for share in shares[:1] if is_punch or scene.layer.is_uniform else shares:
+        a = radius if is_punch else flat + share * (radius - flat)
+        depth, K, M = (float(one[0]) for one in springs.at([a])[1:])
+        depth = radius if is_punch else depth
+        surface = surface_of(springs, a, depth, is_singular=is_singular(scene, a))
+        if share == 1:
+            refuse_touching_outside(scene, surface)
+        if not scene.layer.is_uniform:
+            refuse_pulling(surface, 2 * springs.modulus * (depth * K - M))

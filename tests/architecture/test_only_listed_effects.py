@@ -56,7 +56,7 @@ def solved(method, scene, settings="{}"):
 
 IN_TIME = ("mdr.history", "mdr.impact", "fem_reference.in_time")
 ADHESION = ("bem.adhesion", "mdr.adhesive", "mdr.detachment", "fem_reference.adhesion")
-FRICTION = ("bem.layer_equation.stick", "mdr.friction", "fem_reference.elastic.stick", "fem_reference.elastic.friction")
+FRICTION = ("mdr.friction", "fem_reference.elastic.stick", "fem_reference.elastic.friction")
 EFFECT_ROOMS = (*IN_TIME, *ADHESION, *FRICTION)
 
 

@@ -44,9 +44,7 @@ def test_there_are_three():
 
 
 @pytest.mark.parametrize("what", paths())
-def test_a_way_is_short(what, request):
-    if what.startswith("MDR"):
-        request.applymarker(pytest.mark.xfail(reason="until MDR answers with the equation in Legendre polynomials"))
+def test_a_way_is_short(what):
     files = paths()[what]
     lines = sum(lines_of_code((ROOT / file).read_text(encoding="utf-8")) for file in files)
     assert 0 < len(files) <= MOST_FILES

@@ -18,8 +18,10 @@ from contact import (
     Scene,
     Tabulated,
     TruncatedCone,
+    UnsupportedSceneError,
 )
 from mdr import Mdr
+from tests.drawn_scenes import random_scenes
 
 WORK = 0.1
 HALF_SPACE = Layer.half_space(youngs_modulus=0.75e6, poissons_ratio=0.5)  # E* = 1 MPa
@@ -309,3 +311,19 @@ def test_pull_offs_of_thin_layers_are_within_their_stated_errors(layer, indenter
         error = abs(getattr(path, name) / getattr(exact, name) - 1.0)
         assert error < 2e-3, name
         assert error <= path.error_estimate[name][0], name
+
+
+@pytest.mark.slow
+def test_random_detachments_agree_with_mdr_and_state_errors_that_cover_them():
+    errors, covered = [], []
+    for scene in random_scenes(20261128, 30, "adhesive", (1e-2, 10.0)):
+        try:
+            exact, path = Mdr().solve(scene), Bem(points=256).solve(scene)
+        except UnsupportedSceneError:
+            continue
+        for name in path.SCALARS:
+            errors.append(abs(getattr(path, name) / (getattr(exact, name) or 1.0) - 1.0))
+            covered.append(errors[-1] <= path.error_estimate[name][0] + 1e-11)
+    assert len(errors) > 100
+    assert np.median(errors) < 1e-3
+    assert np.mean(covered) >= 0.95

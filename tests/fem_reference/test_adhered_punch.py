@@ -74,7 +74,7 @@ def test_two_methods_agree_within_stated_errors(nu, support, ratio):
         assert 1e-9 < stated < 5e-5
         assert getattr(elements, name) == pytest.approx(getattr(exact, name), rel=stated + ROUNDING, abs=0.0)
     of_pressure, of_shear = weighted_distance(elements, exact.fields)
-    assert of_pressure < elements.error_estimate["pressure"][0] < 2e-3
+    assert of_pressure < elements.error_estimate["pressure"][0] < 5e-3
     assert of_shear < elements.error_estimate["tangential_traction"][0] < 2e-3
 
 

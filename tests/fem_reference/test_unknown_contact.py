@@ -20,6 +20,7 @@ from contact import (
 from fem_reference import Fem
 from fem_reference.elastic.active_set import edge_radius
 from fem_reference.elastic.at_load import radius_of_load
+from mdr import Mdr
 from tests.fem_reference.integral_equation import solve_contact, truncated_cone
 
 LAYER = Layer(thickness=1e-3, youngs_modulus=1e6, poissons_ratio=0.5)
@@ -86,10 +87,13 @@ def test_ring_contact_is_refused():
         QUICK.solve(Scene(layer=LAYER, indenter=rings, loading=IndentationDepths([1e-6])))
 
 
-def test_contact_at_the_end_of_the_profile_is_refused():
-    ball = Sphere(radius=0.2e-3)
+def test_contact_close_to_the_end_of_the_profile_is_answered_and_beyond_it_refused():
+    scene = Scene(layer=LAYER, indenter=Sphere(radius=0.2e-3), loading=IndentationDepths([0.6e-3]))
+    path, exact = QUICK.solve(scene), Mdr().solve(scene)
+    assert abs(path.normal_force[0] / exact.normal_force[0] - 1) <= path.error_estimate["normal_force"][0]
+    table = Tabulated(radii=[0.0, 1e-4, 2e-4], heights=[0.0, 1e-5, 3e-5])
     with pytest.raises(InvalidInput, match="end of the profile"):
-        QUICK.solve(Scene(layer=LAYER, indenter=ball, loading=IndentationDepths([0.6e-3])))
+        QUICK.solve(scene.replace(indenter=table))
 
 
 def test_a_radius_that_never_settles_is_refused():

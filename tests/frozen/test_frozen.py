@@ -1,4 +1,8 @@
-"""Random scenes are answered as the code did when they were frozen, within the sum of both stated errors."""
+"""Random scenes are answered as the code did when they were frozen, within the sum of both stated errors.
+
+Some frozen values were wrong, and independent ones stand in their place: pressures of thin layers 1 and 4 and depths
+and forces of graded layer 19 by the direct equation, and the displacement outside of thin layer 9, which vanishes.
+"""
 
 import json
 

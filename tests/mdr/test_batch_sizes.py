@@ -73,7 +73,7 @@ def test_pull_offs_of_every_size(size):
     assert_repeated(pull_offs(scenes(Detachment(), effects, size), PUNCH), alone, size)
 
 
-@pytest.mark.parametrize("size", around(impact_solver._CHUNK)[:4])
+@pytest.mark.parametrize("size", around(impact_solver.CHUNK)[:4])
 def test_impacts_of_every_size(size):
     loading = Impact(mass=0.02, velocity=0.1)
     histories = [Mdr(flat_punch=PUNCH).solve(scene) for scene in scenes(loading, (VISCOUS,))]

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from mdr.history.springs_in_time import SpringLaw
 
 from bem.kernels.moduli import relaxation_of
 from contact import (
@@ -21,7 +22,6 @@ from contact import (
 from mdr import Mdr
 from mdr.history import growing
 from mdr.history.solver import followed_history
-from mdr.history.springs_in_time import SpringLaw
 
 LAYER = Layer.incompressible(thickness=1.0, shear_modulus=1.0)
 HALF_SPACE = Layer.half_space(youngs_modulus=3.0, poissons_ratio=0.5)

@@ -3,6 +3,8 @@
 import mpmath
 import numpy as np
 import pytest
+from mdr.history.growing import elastic_force
+from mdr.history.springs_in_time import SpringLaw
 
 from bem.kernels.moduli import relaxation_of
 from contact import (
@@ -21,9 +23,7 @@ from contact import (
 )
 from contact.scene.effects import Relaxation
 from mdr import Mdr
-from mdr.history.growing import elastic_force
 from mdr.history.solver import followed_history
-from mdr.history.springs_in_time import SpringLaw
 from tests.mdr.test_recovery import SPECTRA
 
 EPS = float(np.finfo(float).eps)

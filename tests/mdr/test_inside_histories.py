@@ -4,8 +4,9 @@ import math
 
 import numpy as np
 import pytest
-
 from bem.layer_equation.inside import superposed
+from mdr.history.followed import FollowedHistory
+
 from contact import (
     Cone,
     DepthHistory,
@@ -26,7 +27,6 @@ from contact import (
     TruncatedCone,
 )
 from mdr import Mdr
-from mdr.history.followed import FollowedHistory
 
 STRESSES = ("radial_stress", "hoop_stress", "axial_stress", "shear_stress", "hydrostatic_pressure")
 MOVED = ("radial_displacement", "axial_displacement")

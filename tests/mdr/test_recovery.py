@@ -5,10 +5,10 @@ from __future__ import annotations
 import mpmath
 import numpy as np
 import pytest
-
-from contact.scene.effects import Relaxation
 from mdr.history.recovery import modes
 from mdr.history.springs_in_time import SpringLaw, advance, undeformed
+
+from contact.scene.effects import Relaxation
 
 EPS = float(np.finfo(float).eps)
 # g_inf, eta, moduli, rates: liquids, twins of relaxation times, spectra over twelve decades, dashpots.

@@ -2,7 +2,6 @@ import numpy as np
 import pytest
 
 from bem.flat_punch import IntegralEquation
-from bem.kernels.moduli import contact_modulus
 from contact import (
     FlatPunch,
     Impact,
@@ -14,22 +13,8 @@ from contact import (
     StandardSolid,
     UnsupportedSceneError,
 )
-from contact.scene.extent import radius_of_energy
 from mdr import Mdr
 from mdr.batches import impacts
-from mdr.springs.error_model import EPS
-from mdr.springs.shared_tables import contact_scale
-
-
-@pytest.mark.parametrize("exponent", [1.0, 1.5, 2.0, 10.0])
-@pytest.mark.parametrize("ratio", [1e-6, 0.3, 1e4])
-def test_the_scale_of_a_power_law_is_where_its_energy_is_reached(exponent, ratio):
-    law = PowerLaw(exponent=exponent, reference_radius=1.0, reference_height=1.0)
-    layer = Layer(thickness=1 / ratio, youngs_modulus=1.0, poissons_ratio=0.3, support="bonded")
-    energy = contact_modulus(layer) * (1 + ratio)
-    assert contact_scale(layer, law, energy) == pytest.approx(1.0, rel=1e-14, abs=0.0)
-    by_bisection = radius_of_energy(law, 1 + ratio, 1 / ratio)
-    assert contact_scale(layer, law, energy) == pytest.approx(by_bisection, rel=1e-14, abs=0.0)
 
 
 def test_an_impact_of_too_flat_a_profile_is_refused_in_words():
@@ -68,7 +53,7 @@ def test_a_stopped_flat_punch_states_what_rounding_leaves_of_its_restitution(vis
     """Rebounds of 2e-4 to 2e-12 of the speed: a rounding of the mass moved the last by 2.4 times what was stated."""
     layer, punch = Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.5), FlatPunch(radius=1.3)
     model = KelvinVoigt(shear_modulus=1.0 / 3.0, viscosity=viscosity)
-    masses = 3.0 * (1.0 + EPS * np.arange(12))
+    masses = 3.0 * (1.0 + np.finfo(float).eps * np.arange(12))
     scenes = [
         Scene(layer=layer, indenter=punch, loading=Impact(mass=float(mass), velocity=0.1), effects=(model,))
         for mass in masses
@@ -76,4 +61,3 @@ def test_a_stopped_flat_punch_states_what_rounding_leaves_of_its_restitution(vis
     found = impacts(scenes, IntegralEquation())
     scattered = np.abs(np.subtract.outer(found.coefficient_of_restitution, found.coefficient_of_restitution)).max()
     assert np.all(scattered <= 2.0 * found.relative_error[0] * found.coefficient_of_restitution)
-    assert np.all(found.relative_error[0] <= 10.0 * scattered / found.coefficient_of_restitution + 1e-10)

@@ -6,7 +6,7 @@ import pytest
 from contact import Cone, ContactRadii, IndentationDepths, Layer, Scene, Sphere, Spheroconical, scene_from_mapping
 from fem_reference import Fem
 from mdr import Mdr
-from mdr.springs.half_space_profile import half_space_profile
+from mdr.profiles import tip_of
 
 TIP = Spheroconical(radius=1.0, slope=1.0)
 LAYER = Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.45)
@@ -21,7 +21,7 @@ def closed_form(x):
 
 def test_the_half_space_profile_is_the_closed_form():
     x = np.linspace(0.01, 5.0, 101)
-    np.testing.assert_allclose(half_space_profile(TIP, x), closed_form(x), rtol=1e-13)
+    np.testing.assert_allclose(tip_of(TIP).transform(x), closed_form(x), rtol=1e-13)
 
 
 def test_a_shallow_contact_is_the_spheres_and_a_deep_one_the_cones():

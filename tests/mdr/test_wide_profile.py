@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from bem.flat_punch import IntegralEquation
-from bem.polynomials.gauss_panels import gauss_nodes
+from bem.numerics import gauss
 from contact import (
     Cone,
     ContactRadii,
@@ -65,8 +65,8 @@ def test_pressure_in_the_middle_of_thin_layers(radius):
 def test_pressures_add_up_to_the_force(nu, radius):
     """The force comes from Ritz values, the pressure from one solution for this contact."""
     path = _pressed("bonded", nu, INDENTERS[0], ContactRadii([radius]))
-    s = np.concatenate([k * radius / 100 + gauss_nodes(8)[0] * radius / 100 for k in range(100)])
-    weights = np.tile(gauss_nodes(8)[1], 100) * radius / 100
+    s = np.concatenate([k * radius / 100 + gauss(8)[0] * radius / 100 for k in range(100)])
+    weights = np.tile(gauss(8)[1], 100) * radius / 100
     r = np.sqrt((radius - s) * (radius + s))
     force = 2 * np.pi * float(np.sum(path.pressure(r) * s * weights))  # r dr = -s ds
     assert force == pytest.approx(path.normal_force[0], rel=path.error_estimate["pressure"][0], abs=0.0)

@@ -105,11 +105,6 @@ def deeper(at):
     return wrong
 
 
-def all_larger(original):
-    """Every array of a mapping one per cent too large."""
-    return lambda *arguments: {name: WRONG * values for name, values in original(*arguments).items()}
-
-
 def too_large(*, of):
     """A field of a record, read one per cent too large."""
     module, _, name = of.rpartition(":")
@@ -243,7 +238,12 @@ HEIGHTS = both(
 )
 
 FAULTS = (
-    SharedFault("layer kernel", "1 - chi", swap("bem.kernels.layer:one_minus_kernel", times), ("cone", "paraboloid")),
+    SharedFault(
+        "layer kernel",
+        "1 - chi",
+        wrong_method("bem.kernels.stack:StackKernel", "one_minus_chi"),
+        ("cone", "paraboloid"),
+    ),
     SharedFault(
         "kernel of stacks", "1 - chi", wrong_method("bem.kernels.stack:StackKernel", "one_minus_chi"), ("stack",)
     ),
@@ -262,7 +262,7 @@ FAULTS = (
     SharedFault(
         "fields inside from the contact's density",
         "fields of the half-space's part",
-        swap("bem.layer_equation.inside.half_space_part:fields", all_larger),
+        wrong_method("mdr.inside:Body", "_half_space"),
         ("inside", "inside half-space"),
     ),
     SharedFault(

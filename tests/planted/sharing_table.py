@@ -107,7 +107,7 @@ only of a comparison that rests on no shared code; every other agreement names w
 MIDDLE = """
 Finite elements derive moduli, heights and slopes of profiles, the cubics between tabulated points, moduli over depth
 and relaxation functions from what the user gave, in lines of their own. Friction and stick share no code: the integral
-equations of `bem.layer_equation.stick` serve MDR alone. Not listed: numpy, scipy and LAPACK, which all methods call;
+equations of `mdr.friction` serve MDR alone. Not listed: numpy, scipy and LAPACK, which all methods call;
 the check that a contact is one circle (`contact.answer.one_circle`), which refuses scenes and computes no number; first
 guesses of how far a contact reaches (`contact.scene.extent`), on which no answer rests; E* at the surface of a graded
 layer, which finite elements take as a unit only.

@@ -1,7 +1,5 @@
 """The checks of the effects are seen to fail: each plants one error and must see it refused."""
 
-import dataclasses
-
 import numpy as np
 import pytest
 
@@ -10,8 +8,9 @@ from contact import Adhesion, Detachment, Layer, Paraboloid, Scene
 from mdr import Mdr
 from mdr.adhesive_branch import Adhesive
 from mdr.closed_forms import flat_punch_restitution
-from mdr.impact import energies as impact_energies
-from mdr.impact import equations as impact_lanes
+from mdr.impact import history as impact_history
+from mdr.impact import solver as impact_solver
+from mdr.impact.motion import Phase, Shrinkage
 from mdr.impact.solver import impact_batch
 from tests.mdr.viscoelastic_scenes import figure_12, kelvin_voigt_sphere
 from tests.planted.planting import swap
@@ -49,8 +48,8 @@ def test_stability_turned_upside_down(monkeypatch):
 
 
 def test_a_factor_two_in_the_force(monkeypatch):
-    right = impact_lanes.force
-    monkeypatch.setattr(impact_lanes, "force", lambda *args: 2.0 * right(*args))
+    right = Phase.newton
+    monkeypatch.setattr(Phase, "newton", lambda phase, *terms: right(phase, *(2.0 * one for one in terms)))
     with pytest.raises(AssertionError):
         impact.test_kelvin_voigt_sphere_on_the_half_space(0.1, impact.KELVIN_VOIGT_SPHERE[0.1])
     with pytest.raises(AssertionError):
@@ -58,20 +57,20 @@ def test_a_factor_two_in_the_force(monkeypatch):
 
 
 def test_springs_without_memory(monkeypatch):
-    """Forget when each spring was touched: the audit and the explicit scheme notice."""
-    right = impact_lanes.remembered
+    """Forget when each spring was touched: the explicit scheme notices."""
+    right = Shrinkage._at_edge
 
-    def forgetful(recall, own, state, springs):
-        history, front, memory, fading = right(recall, own, state, springs)
-        return history, front, 0.0 * memory, fading
+    def forgetful(phase):
+        stiffness, forgotten, later = right(phase)
+        return stiffness, 0.0 * forgotten, 0.0 * later
 
-    monkeypatch.setattr(impact_lanes, "remembered", forgetful)
+    monkeypatch.setattr(Shrinkage, "_at_edge", forgetful)
     with pytest.raises(AssertionError):
         impact.test_the_papers_explicit_springs_agree(2e-3)
 
 
 def test_dissipation_left_out_of_the_audit(monkeypatch):
-    monkeypatch.setattr(impact_energies, "dissipation", lambda lanes, k, v, squares: 0.0 * k)
+    monkeypatch.setattr(impact_history, "_inverse", np.zeros_like)
     with pytest.raises(AssertionError):
         impact.test_figure_12_restitution_peak_audit_and_self_convergence(1e-3)
 
@@ -85,16 +84,8 @@ def test_the_overdamped_branch_forgotten(monkeypatch):
 
 
 def test_a_batch_that_mixes_up_its_lanes(monkeypatch):
-    from mdr.impact import solver as module
-
-    right = module.joined
-
-    def mixed(parts, order):
-        answer = right(parts, order)
-        turned = {f.name: np.roll(getattr(answer, f.name), 1) for f in dataclasses.fields(answer)}
-        return type(answer)(**turned)
-
-    monkeypatch.setattr(module, "joined", mixed)
+    right = impact_solver.solved
+    monkeypatch.setattr(impact_solver, "solved", lambda *groups: right(*groups)[::-1])
     scenes = [figure_12(1e-3), figure_12(2e-3), kelvin_voigt_sphere(0.1)]
     found = impact_batch(scenes, impact.PUNCH).coefficient_of_restitution
     assert found[0] != pytest.approx(0.64341, abs=1e-3)

@@ -6,8 +6,6 @@ import numpy as np
 import pytest
 
 from bem.kernels import stack
-from bem.layer_equation.stick.frictionless_slip import frictionless_punch
-from bem.layer_equation.stick.growth import growth_table
 from cases.declare.registry import load_cases
 from cases.declare.selection import only_scenes
 from cases.declare.task import Answers
@@ -17,6 +15,8 @@ from cases.run.solve_task import solve
 from contact import NotConvergedError, UnsupportedSceneError
 from fem_reference import Fem
 from fem_reference.elastic.friction import step, walk
+from mdr.friction.growth import punches_of
+from mdr.friction.statement import _slip
 from tests.fem_reference import test_friction as friction
 from tests.mdr import test_stick_on_stacks as on_stacks
 from tests.planted.planting import swap
@@ -91,10 +91,10 @@ def test_the_layer_pulls_inward_where_it_pushes_outward(monkeypatch):
         return found._replace(uw=-0.9 * found.uw)
 
     monkeypatch.setattr(stack.StackKernel, "beyond_half_space", wrong)
-    frictionless_punch.cache_clear()
+    _slip.cache_clear()
     with pytest.raises(CAUGHT):
         friction.test_slope_at_vanishing_friction_is_that_of_reciprocity(0.5, "bonded", 0.12)
-    frictionless_punch.cache_clear()
+    _slip.cache_clear()
 
 
 def test_tractions_with_a_kink_inside_cells_of_the_mesh(monkeypatch):
@@ -114,10 +114,10 @@ def test_lower_layers_that_pull_where_they_push(monkeypatch):
         return found._replace(uw=2.0 * alone.uw - found.uw)
 
     monkeypatch.setattr(stack.StackKernel, "beyond_half_space", wrong)
-    growth_table.cache_clear()
+    punches_of.cache_clear()
     with pytest.raises(CAUGHT):
         on_stacks.test_finite_elements_agree_on_one_stack()
-    growth_table.cache_clear()
+    punches_of.cache_clear()
 
 
 @pytest.mark.slow

@@ -9,6 +9,7 @@ from mdr.contact_surface import Surface
 from mdr.spring_bed import Springs
 from tests.bem import test_integral_equation_method
 from tests.mdr import test_method
+from tests.planted.faults import _with_ratio
 from tests.planted.planting import forget_computed, override, swap
 from tests.verification import test_flat_punch_literature, test_mdr_against_published_values
 
@@ -23,8 +24,8 @@ def fresh_flat_punches():
 
 def plant_mistyped_kolosov_constant(monkeypatch):
     """kappa = 3 - 2 nu in place of 3 - 4 nu is the kernel of a layer with half the Poisson's ratio."""
-    wrong = lambda right: lambda q, support, nu: right(q, support, nu / 2)  # noqa: E731
-    swap("bem.kernels.layer:one_minus_kernel", wrong)(monkeypatch)
+    wrong = lambda right: lambda self, q: right(_with_ratio(self, lambda nu: nu / 2), q)  # noqa: E731
+    override("bem.kernels.stack:StackKernel", "one_minus_chi", wrong)(monkeypatch)
 
 
 def test_mistyped_kolosov_constant_is_seen_by_the_literature(monkeypatch):
@@ -45,7 +46,7 @@ def test_a_resolvent_counted_half_is_seen_by_the_direct_route(monkeypatch):
 
 def test_a_digit_wrong_in_the_eighth_place_is_seen(monkeypatch):
     slightly = lambda right: lambda *arguments: (1 + 1e-8) * right(*arguments)  # noqa: E731
-    swap("bem.kernels.layer:one_minus_kernel", slightly)(monkeypatch)
+    override("bem.kernels.stack:StackKernel", "one_minus_chi", slightly)(monkeypatch)
     with pytest.raises(AssertionError):
         test_flat_punch_literature.test_contact_stiffness_to_ten_digits(0.5)
 

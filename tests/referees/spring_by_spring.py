@@ -17,7 +17,7 @@ from bem.kernels.moduli import relaxation_of
 from contact import DepthHistory, FlatPunch, HistoryPath, InvalidInput, Profile, Scene
 from contact.records.validation import FloatArray
 from contact.scene.effects import Relaxation, Viscoelasticity
-from mdr.springs.error_model import DEFAULT_ACCURACY
+from mdr.dispatch import DEFAULT_ACCURACY
 from tests.bed import bed_of
 
 # Springs and steps per interval of two runs, whose difference tells the error. The numbers of springs are prime, so
@@ -84,8 +84,9 @@ def spring_by_spring(scene: Scene, radius: float) -> ForceOpinion:
 
 def stepped_in_time(scene: Scene) -> HistoryPath:
     """The fast method's answer to a force history, every interval in steps, one digit finer than usual."""
-    from mdr.history.solver import followed_history
     from mdr.history.springs_in_time import SpringLaw
+
+    from mdr.history.solver import followed_history
 
     law, settings = SpringLaw.of(relaxation_of(scene)), {"accuracy": 0.1 * DEFAULT_ACCURACY}
     return followed_history(scene, scene.loading, law, IntegralEquation(), settings)  # type: ignore[arg-type]

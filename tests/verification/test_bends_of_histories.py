@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from mdr.history.contact_edge import SpringBed, total_force
 
 from cases.measurements.ladders.units import Units, in_units
 from contact import Cone, DepthHistory, Layer, PowerLaw, PronySeries, Scene
 from mdr import Mdr
-from mdr.history.contact_edge import SpringBed, total_force
 from mdr.history.solver import _turns
 from tests.drawn_scenes import scene_of
 

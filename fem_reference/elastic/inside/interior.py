@@ -22,7 +22,7 @@ _GROUPS = {
     "pressure_gradient": slice(7, 9),
 }
 # Where in a triangle two meshes are compared: its nodes, moved towards its centre by this share, off the faces where
-# fields jump. Half and twice of it change nothing.
+# fields jump. Not measured: half and twice.
 _INWARD = 0.1
 
 

@@ -14,6 +14,7 @@ FAMILIES = {
     "paraboloid",
     "flat_punch_adhesion",
     "paraboloid_adhesion",
+    "detaching_cells",
     "flat_punch_impact",
     "sphere_impact",
     "held_indentation",

@@ -1,15 +1,14 @@
 """A first solution is a first solution, whatever the process has solved before."""
 
-from bem.flat_punch import IntegralEquation
-from bem.layer_equation import flat_punch_source as integral_equation
+from bem import equation
 from cases.run.empty_caches import forget
-from contact import Layer
+from contact import ContactRadii, Layer, Paraboloid, Scene
+from mdr import Mdr
 
 
 def test_flat_punch_data_are_made_anew():
     layer = Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.3)
-    before = IntegralEquation().solution(layer, 1.0)
-    assert IntegralEquation().solution(layer, 1.0) is before
+    Mdr().solve(Scene(layer=layer, indenter=Paraboloid(radius_of_curvature=10.0), loading=ContactRadii([0.5])))
+    assert equation.flat_punches.cache_info().currsize > 0
     forget()
-    assert integral_equation._solution.cache_info().currsize == 0
-    assert IntegralEquation().solution(layer, 1.0) is not before
+    assert equation.flat_punches.cache_info().currsize == 0
