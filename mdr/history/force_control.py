@@ -142,9 +142,7 @@ class March:
             pace = np.array([v + a * whole, 0.0])
         return Path(time, depth, speed, acceleration, free)
 
-    def _displaced(
-        self, depth: float, pace: FloatArray, spans: tuple[float, float]
-    ) -> tuple[FloatArray, SpringBed]:
+    def _displaced(self, depth: float, pace: FloatArray, spans: tuple[float, float]) -> tuple[FloatArray, SpringBed]:
         """F_e [N] at the middle and the end of a substep and stiffness in contact [N/m], shape (2, 2), and the bed."""
         bed, (v, a), found, before = self.bed.copy(), pace.tolist(), np.empty((2, 2)), 0.0
         for i, span in enumerate(spans):

@@ -67,9 +67,7 @@ def _brackets(law: SpringLaw, path: Path) -> tuple[FloatArray, FloatArray]:
     return low, high
 
 
-def _refined(
-    law: SpringLaw, path: Path, instants: NDArray[np.intp], low: FloatArray, high: FloatArray
-) -> FloatArray:
+def _refined(law: SpringLaw, path: Path, instants: NDArray[np.intp], low: FloatArray, high: FloatArray) -> FloatArray:
     """Fronts at some instants by the Illinois rule, all at once."""
     (a, f_a), (b, f_b) = low.copy(), high.copy()
     top = path.peaks[-1]

@@ -136,9 +136,7 @@ def solve_history(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
     )
 
 
-def _stated(
-    answer: FloatArray, other: FloatArray, known: NDArray[np.bool_], doubt: float, floor: float
-) -> FloatArray:
+def _stated(answer: FloatArray, other: FloatArray, known: NDArray[np.bool_], doubt: float, floor: float) -> FloatArray:
     """Errors relative to the largest value: one for all instants known in closed form, one for all others."""
     scale = max(float(np.abs(answer).max()), np.finfo(float).tiny)
     change = stated_error(answer, other, scale=scale, floor=floor, sequence=False)
@@ -208,7 +206,13 @@ def _marched(scene: Scene, springs: Springs, law: SpringLaw, loading: ForceHisto
     for _ in range(0 if known[steps.given].all() else _MOST_MARCHES):
         bed = layout_of(scene, springs, ends, _NODES)
         march = March(
-            law, SpringBed.undeformed(law, bed.g, closed[0]), 2 * springs.modulus * bed.weight, steps, load, closed, known
+            law,
+            SpringBed.undeformed(law, bed.g, closed[0]),
+            2 * springs.modulus * bed.weight,
+            steps,
+            load,
+            closed,
+            known,
         )
         before, path, size = path.depth, march.path(), bed.g.size
         doubt = float(np.abs(path.depth - before).max())
@@ -231,7 +235,9 @@ def _elastic_depths(scene: Scene, springs: Springs, load: FloatArray) -> FloatAr
         radius = np.full(np.count_nonzero(some), scene.indenter.radius)
     else:
         try:
-            radius = _search(scene, springs).radii("force", load[some], lambda a: _refuse_circle(scene, springs, a, 0.0))
+            radius = _search(scene, springs).radii(
+                "force", load[some], lambda a: _refuse_circle(scene, springs, a, 0.0)
+            )
         except InvalidInput as error:
             message = f"loading.force, as an elastic layer must bear it to be as deep: {error}"
             raise InvalidInput(message) from None

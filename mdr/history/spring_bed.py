@@ -193,18 +193,14 @@ class SpringBed:
 
     def copy(self) -> SpringBed:
         """The same springs, to be advanced on their own."""
-        return replace(
-            self, touching=self.touching.copy(), surface=self.surface.copy(), strains=self.strains.copy()
-        )
+        return replace(self, touching=self.touching.copy(), surface=self.surface.copy(), strains=self.strains.copy())
 
     def beyond(self, number: int) -> SpringBed:
         """The springs from a number on."""
         own = slice(number, None)
         parts = (self.touching, self.surface)
         touching, surface = (part[own] for part in parts)
-        return SpringBed(
-            self.law, self.g[own], touching, surface, self.strains[:, own], self.late[own], self.pace[own]
-        )
+        return SpringBed(self.law, self.g[own], touching, surface, self.strains[:, own], self.late[own], self.pace[own])
 
     def along(self, path: Path, k: int) -> None:
         """Advance through interval k of a path."""
