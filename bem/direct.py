@@ -63,7 +63,7 @@ class Sizes(NamedTuple):
     width: float = 0.75
     waves: int = 40
     reach: float = 21.0
-    slopes: int = 14
+    slopes: int = 20
     terms: int = 8
     corner: float = 2e-4
     search: float = 1e-13
