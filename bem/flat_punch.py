@@ -9,7 +9,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Annotated, Any, Final, Protocol, Self, TypeAlias, runtime_checkable
+from typing import Annotated, Any, Final, Protocol, Self, runtime_checkable
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -59,18 +59,19 @@ class IntegralEquation(Record):
 
 
 @runtime_checkable
-class TableSource(Protocol):
-    """Settings that make a table of flat punches (`bem.tables`)."""
-
-    def solution(self, layer: ElasticLayer, largest_ratio: float, /) -> Any:
-        """The table of a layer up to at least a/h = largest_ratio."""
+class FlatPunchSource(Protocol):
+    """Settings of where the flat punches of MDR come from: `IntegralEquation`, or a table (`bem.tables`)."""
 
     def refined(self) -> Self:
         """A copy with half the discretisation length."""
 
 
-FlatPunchSource: TypeAlias = IntegralEquation | TableSource
-"""Where the flat punches of MDR come from."""
+@runtime_checkable
+class TableSource(FlatPunchSource, Protocol):
+    """Settings that make a table of flat punches."""
+
+    def solution(self, layer: ElasticLayer, largest_ratio: float, /) -> Any:
+        """The table of a layer up to at least a/h = largest_ratio."""
 
 
 class FlatPunchValues:

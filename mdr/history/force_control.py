@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 from bem.numerics import EPS
 from contact import ForceHistory, NotConvergedError
 from contact.records.validation import FloatArray
-from mdr.history.spring_bed import Path, SpringBed
+from mdr.history.spring_bed import Path, SpringBed, followed
 from mdr.history.spring_law import SpringLaw
 
 # Times as many substeps where the depth is known: they cost little, and what springs keep of them is as accurate.
@@ -35,7 +35,9 @@ _MORE = 3
 # Newton steps of a substep; five are usual.
 _MOST_STEPS = 60
 # Share of the largest F_e to which it is met, and that may be missed.
-_TOLERANCE, _ACCEPTABLE = 1e-14, 1e-9
+_TOLERANCE, _ACCEPTABLE = 1e-13, 1e-9
+# Springs among which the lowest is sought, and how often: each round comes twenty times closer.
+_AMONG, _ROUNDS = 41, 4
 # Share of all springs whose stiffness starts a substep in which hardly any touch.
 _LEAST = 1e-3
 
@@ -69,10 +71,10 @@ def steps_of(law: SpringLaw, loading: ForceHistory, substeps: int, times: int) -
     closed = never_larger(law, load)
     counts = times * np.maximum(np.ceil(substeps * share), 2).astype(int)
     instants = [loading.time[:1]]
-    for k, count in enumerate(counts.tolist()):
-        count *= _MORE if closed[k] and closed[k + 1] else 1
+    for k, fewest in enumerate(counts.tolist()):
+        count = fewest * (_MORE if closed[k] and closed[k + 1] else 1)
         s = np.arange(count + 1) / count
-        fades = loading.force[k + 1] <= 0 < loading.force[k] and not law.viscosity
+        fades = loading.force[k + 1] <= 0 < loading.force[k]
         way = s * s * (6 - 8 * s + 3 * s * s) if fades else s**1.5 if load[k] > 0 else s**4
         ends = loading.time[k] + durations[k] * way
         ends[-1] = loading.time[k + 1]
@@ -101,6 +103,7 @@ class March:
         load: F_e [N] at the instants.
         closed: Depths [m] of the elastic layer under it.
         known: Where these are the depths, of the same shape.
+        before: The path of an earlier march, from which each substep starts.
     """
 
     law: SpringLaw
@@ -110,6 +113,7 @@ class March:
     load: FloatArray
     closed: FloatArray
     known: NDArray[np.bool_]
+    before: Path | None = None
 
     def path(self) -> Path:
         """Depths at all instants.
@@ -135,6 +139,8 @@ class March:
                 pace = np.array([risen[1] - whole * a / 2, a])
                 _, self.bed = self._displaced(float(depth[k]), pace, (first, whole))
             else:
+                if self.before is not None and not self.before.free[k]:
+                    pace = np.array([self.before.speed[k], self.before.acceleration[k]])
                 pace, self.bed = self._met(float(depth[k]), pace, self.load[k + 1 : k + 3], (first, whole))
             v, a = pace
             speed[k : k + 2], acceleration[k : k + 2] = (v, v + a * first), a
@@ -159,6 +165,7 @@ class March:
         scale = np.array([1 / t[1], 2 / t[1] ** 2])  # unknowns are parts of the way [m]
         ways = np.column_stack([t * scale[0], t * t / 2 * scale[1]])
         x, slopes, before, best = pace / scale, np.empty((2, 2)), np.zeros(2), (np.inf, pace, self.bed)
+        move = np.zeros(2)
         for number in range(_MOST_STEPS):
             (reached, stiffness), bed = self._displaced(depth, x * scale, spans)
             missed = reached - target
@@ -179,3 +186,21 @@ class March:
         if best[0] > _ACCEPTABLE:
             raise NotConvergedError("no depth carries the prescribed force", {"force": best[0]})
         return best[1], best[2]
+
+
+def resting_depth(law: SpringLaw, g: FloatArray, path: Path, k: int) -> float:
+    """Depth [m] of an indenter that rests on the surface at a free instant k: the least u + g.
+
+    Args:
+        law: Of the springs.
+        g: Springs to begin with [m], increasing.
+        path: Depths.
+        k: Number of the instant.
+    """
+    until = Path(path.time[: k + 1], path.depth[: k + 1], path.speed[:k], path.acceleration[:k], path.free[:k])
+    for _ in range(_ROUNDS):
+        *_, bed = followed(law, g, until)
+        height = bed.surface + g
+        lowest = int(height.argmin())
+        g = np.linspace(g[max(lowest - 1, 0)], g[min(lowest + 1, g.size - 1)], _AMONG)
+    return float(height.min())

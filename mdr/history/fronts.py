@@ -35,7 +35,7 @@ _GROWTH, _MOST_PANELS = 4.0, 12
 _APART = 1e-9
 # Power of the distance from a kink, or from the axis, in which springs are smooth: g goes with roots of the former, and
 # tips like r^1.7 are not analytic at the latter.
-_KINK_POWER, _AXIS_POWER = 2.0, 6.0
+KINK_POWER, _AXIS_POWER = 2.0, 4.0
 
 
 def fronts(law: SpringLaw, path: Path) -> FloatArray:
@@ -48,7 +48,8 @@ def fronts(law: SpringLaw, path: Path) -> FloatArray:
         return gamma
     low, high = _brackets(law, path)
     unknown = unknown[low[0, unknown] >= 0]
-    gamma[unknown] = _refined(law, path, unknown, low[:, unknown], high[:, unknown])
+    if unknown.size:
+        gamma[unknown] = _refined(law, path, unknown, low[:, unknown], high[:, unknown])
     return gamma
 
 
@@ -90,7 +91,7 @@ def _refined(law: SpringLaw, path: Path, instants: NDArray[np.intp], low: FloatA
         open_ = o[b[o] - a[o] > 4 * EPS * b[o]]
         if not open_.size:
             break
-    return (a + b) / 2
+    return np.asarray((a + b) / 2)
 
 
 def _edges(law: SpringLaw, path: Path, instants: NDArray[np.intp], g: FloatArray) -> FloatArray:
@@ -137,7 +138,7 @@ class Layout(NamedTuple):
 
 
 def layout(springs: Springs, radii: FloatArray, nodes: int) -> Layout:
-    """Gauss rules of so many nodes between the flat end, radii [m], kinks of the profile and octaves of the thickness."""
+    """Gauss rules of so many nodes between flat end, radii [m], kinks of the profile and octaves of the thickness."""
     tip, flat = springs.tip, springs.tip.flat
     core = springs.at([flat]).K if flat else np.zeros(1)
     top = float(radii.max(initial=flat))
@@ -148,9 +149,9 @@ def layout(springs: Springs, radii: FloatArray, nodes: int) -> Layout:
     stretches = [flat, *(b for b in tip.breaks if flat < b < top), top]
     parts = []
     for low, high in pairwise(stretches):
-        power = _KINK_POWER if low else _AXIS_POWER
+        power = KINK_POWER if low else _AXIS_POWER
         share = ((inner[(inner > low) & (inner < high)] - low) / (high - low)) ** (1 / power)
-        ends = np.concatenate([[0.0], share, [1.0]])
+        ends = np.unique(np.concatenate([[0.0, 0.5], share, [1.0]]))
         ends = ends[np.append(True, np.diff(ends) > _APART)]
         v, w = panels(np.append(ends[ends < 1 - _APART], 1.0), nodes + springs.sizes.extra)
         parts.append(np.array([low - flat + (high - low) * v**power, w * (high - low) * power * v ** (power - 1)]))

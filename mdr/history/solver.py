@@ -33,8 +33,9 @@ from mdr.admissible import refuse_pulling, refuse_touching_outside
 from mdr.contact_surface import surface_of
 from mdr.dispatch import DEFAULT_ACCURACY
 from mdr.equilibria import is_simple, is_singular, springs_on
-from mdr.history.force_control import March, Steps, never_larger, steps_of
+from mdr.history.force_control import March, Steps, never_larger, resting_depth, steps_of
 from mdr.history.fronts import Layout, fronts, layout, panel_ends, refuse_open_inside
+from mdr.history.inside import HistoryFields
 from mdr.history.spring_bed import Path, SpringBed, followed
 from mdr.history.spring_law import SpringLaw
 from mdr.radius_search import RadiusSearch, refuse_too_wide
@@ -74,6 +75,7 @@ class Response(NamedTuple):
         known: Where the depth is known in closed form, shape (n,).
         bent: Whether spring forces ever rose outwards.
         springs: Number of them.
+        fronts: Radii at which spring forces bend [m].
         doubt: Last correction of the depth [m].
     """
 
@@ -85,6 +87,7 @@ class Response(NamedTuple):
     known: NDArray[np.bool_]
     bent: bool
     springs: int
+    fronts: FloatArray
     doubt: float = 0.0
 
 
@@ -133,6 +136,16 @@ def solve_history(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
         indentation_depth=answer.depth,
         normal_force=answer.force,
         contact_radius=answer.radius,
+        fields=HistoryFields(
+            scene=scene,
+            springs=springs,
+            law=law,
+            path=answer.path,
+            given=answer.given,
+            radius=answer.radius,
+            fronts=np.unique(answer.fronts[answer.fronts > 0]),
+            density_error=errors["normal_force"] + errors["indentation_depth"],
+        ),
     )
 
 
@@ -140,7 +153,7 @@ def _stated(answer: FloatArray, other: FloatArray, known: NDArray[np.bool_], dou
     """Errors relative to the largest value: one for all instants known in closed form, one for all others."""
     scale = max(float(np.abs(answer).max()), np.finfo(float).tiny)
     change = stated_error(answer, other, scale=scale, floor=floor, sequence=False)
-    return np.where(known, change[known].max(initial=0.0), change.max() + doubt)
+    return np.asarray(np.where(known, change[known].max(initial=0.0), change.max() + doubt))
 
 
 def _substeps(settings: Mapping[str, Setting]) -> int:
@@ -163,7 +176,7 @@ def _refuse_idle(loading: DepthHistory | ForceHistory) -> None:
 def _by_depth(scene: Scene, springs: Springs, law: SpringLaw, loading: DepthHistory) -> list[Response]:
     """The answer to depths, and the same on finer springs with fronts a rounding further out."""
     path = Path.linear(loading.time, loading.depth)
-    gamma = fronts(law, path)
+    gamma = np.zeros(path.time.size) if isinstance(scene.indenter, FlatPunch) else fronts(law, path)
     moved = np.where(gamma > 0, gamma + 8 * EPS * path.peaks[-1], gamma)
     found = []
     for one, front in ((springs, gamma), (springs.finer, moved)):
@@ -177,7 +190,7 @@ def _by_depth(scene: Scene, springs: Springs, law: SpringLaw, loading: DepthHist
         held = force > _HELD * force.max()
         radius, every = radii_of(scene, one, np.where(held, front, -1.0)), np.arange(path.time.size)
         force = np.where(held, force, 0.0)
-        found.append(Response(path, every, path.depth, force, radius, every < 0, bent, bed.g.size))
+        found.append(Response(path, every, path.depth, force, radius, every < 0, bent, bed.g.size, radius))
     return found
 
 
@@ -202,7 +215,7 @@ def _marched(scene: Scene, springs: Springs, law: SpringLaw, loading: ForceHisto
     known = never_larger(law, load) | law.is_elastic | isinstance(scene.indenter, FlatPunch)
     closed = _elastic_depths(scene, springs, load)
     path, ends = Path.linear(steps.time, closed), np.max(closed) * np.linspace(0, 1, _FIRST_PANELS + 1)[1:] ** 2
-    size, bent, doubt = 0, False, 0.0
+    size, doubt, last = 1, 0.0, None
     for _ in range(0 if known[steps.given].all() else _MOST_MARCHES):
         bed = layout_of(scene, springs, ends, _NODES)
         march = March(
@@ -213,18 +226,21 @@ def _marched(scene: Scene, springs: Springs, law: SpringLaw, loading: ForceHisto
             load,
             closed,
             known,
+            last,
         )
         before, path, size = path.depth, march.path(), bed.g.size
-        doubt = float(np.abs(path.depth - before).max())
+        doubt, last = float(np.abs(path.depth - before).max()), path
         gamma = fronts(law, path)
         if doubt < _STAYS * closed.max():
             break
         ends = panel_ends(law, path, gamma)
     own = known[steps.given]
     depth = np.where(own, closed[steps.given], path.depth[steps.given])
+    for i in np.flatnonzero(~own & (loading.force <= 0)):
+        depth[i] = resting_depth(law, bed.g, path, int(steps.given[i]))
     gamma = depth if own.all() else np.where(own, depth, gamma[steps.given])
     radius = radii_of(scene, springs, np.where(loading.force > 0, gamma, -1.0))
-    return Response(path, steps.given, depth, loading.force, radius, own, bent, size, doubt)
+    return Response(path, steps.given, depth, loading.force, radius, own, False, size, radius, doubt)
 
 
 def _elastic_depths(scene: Scene, springs: Springs, load: FloatArray) -> FloatArray:

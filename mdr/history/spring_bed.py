@@ -79,7 +79,7 @@ def _motion(t: FloatArray, _: bool) -> tuple[FloatArray, FloatArray, FloatArray]
 
 
 def first_fall(course: Course, span: FloatArray) -> FloatArray:
-    """First times in [0, span] [s] from which courses that begin at zero or above are negative, shape (n,); else inf."""
+    """First times in [0, span] [s] from which courses that begin at zero or above are negative, shape (n,), or inf."""
     event = np.full(span.size, np.inf)
     if not span.size:
         return event
@@ -103,7 +103,7 @@ def first_fall(course: Course, span: FloatArray) -> FloatArray:
         keep = ~root & ~(clear & (high >= span[i]))
         step = (high - low) * np.where(clear, 2.0, 0.25)
         low = np.where(clear, high, low)
-        at_low = tuple(np.where(clear, after, before) for before, after in zip(at_low, at_high, strict=True))
+        at_low = np.where(clear, at_high[0], at_low[0]), np.where(clear, at_high[1], at_low[1])
         high = np.minimum(low + step, span[i])
 
 
@@ -198,9 +198,8 @@ class SpringBed:
     def beyond(self, number: int) -> SpringBed:
         """The springs from a number on."""
         own = slice(number, None)
-        parts = (self.touching, self.surface)
-        touching, surface = (part[own] for part in parts)
-        return SpringBed(self.law, self.g[own], touching, surface, self.strains[:, own], self.late[own], self.pace[own])
+        rows = (self.g[own], self.touching[own], self.surface[own], self.strains[:, own])
+        return SpringBed(self.law, *rows, self.late[own], self.pace[own])
 
     def along(self, path: Path, k: int) -> None:
         """Advance through interval k of a path."""

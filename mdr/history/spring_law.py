@@ -44,7 +44,7 @@ def ramp_response(x: FloatArray) -> FloatArray:
     small = x < _SMALL
     if small.any():
         found[small] = np.polynomial.polynomial.polyval(x[small], _SERIES)
-    return found
+    return np.asarray(found)
 
 
 class Modes(NamedTuple):
@@ -112,7 +112,7 @@ class SpringLaw:
             return 0.0, speed, slope
         return self.viscosity * t + (self.long_term / 2 + self.weights @ ramp_response(x)) * t * t, speed, slope
 
-    def pressed(self, strains: FloatArray, motion: tuple[float, float], t: FloatArray) -> FloatArray:
+    def pressed(self, strains: FloatArray, motion: tuple[FloatArray | float, float], t: FloatArray) -> FloatArray:
         """e_j after times t [s] in contact, shape (m, n).
 
         Args:

@@ -14,9 +14,7 @@ SCENES = [("bonded", 0.4279325584398982, 5.74596268), ("bonded", 0.45, 2.3)]
 @pytest.mark.parametrize(("support", "nu", "ratio"), SCENES)
 def test_pressures_are_right_within_the_condition_of_the_equation(support, nu, ratio):
     """Seen to fail: 18 and 14 roundings times k_bar beside r = h, where slopes were taken at the end of a panel."""
-    solution = IntegralEquation().solution(
-        Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=nu, support=support), ratio
-    )
+    solution = IntegralEquation().punch(Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=nu, support=support))
     # On both sides of the ends of panels.
     rho = np.array([0.3, 0.93, 0.95, 0.966, 0.9734, 0.99, 1.01, 1.97, 2.02]) / ratio
     k = solution.normalized_contact_stiffness(ratio)
