@@ -63,7 +63,7 @@ class Sizes(NamedTuple):
     width: float = 0.75
     waves: int = 40
     reach: float = 21.0
-    slopes: int = 14
+    slopes: int = 20
     terms: int = 8
     corner: float = 2e-4
     search: float = 1e-13
@@ -211,7 +211,7 @@ def panels_of(profile: Profile, a: float, kernel: Kernel) -> Panels:
     ends = np.unique([0.0, *(b for b in (profile.flat_radius, *profile.breakpoints) if b < a), a]).tolist()
     found = []
     for i, (start, stop) in enumerate(pairwise(ends)):
-        gap = min(start - ends[i - 1], abs(pole - start)) if i else _TIP * a if isinstance(profile, PowerLaw) else inf
+        gap = min(start - ends[i - 1], abs(pole - start)) if i else _TIP * a if isinstance(profile, PowerLaw) else width
         corner = stop if kernel.is_graded and (stop == a or stop in profile.kinks) else inf
         upright, shortest = pole if pole > stop else inf, kernel.sizes.corner * min(width, stop - start)
         low, high = 0.0, sqrt(stop - start)

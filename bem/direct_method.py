@@ -267,12 +267,15 @@ def _errors(solver: DirectSolver, contacts: list[Contact], finer: DirectSolver) 
         for one, other in pairs
     ]
     floor = _ROUNDING * np.array([1 + contact.density.integrals[0] / contact.state[0] for contact in contacts])
-    radius, miss = np.zeros((2, floor.size))
+    radius, miss, rounded = np.zeros((3, floor.size))
     if solver.prescribed and not solver.is_punch:
         miss = stated_error([contact.reached for contact in others], values, scale=values)
         radius = miss / np.array([contact.slope for contact in contacts]) + floor
+        # A radius close to that of a flat end has few digits of a - b.
+        a = np.array([contact.state[0] for contact in contacts])
+        rounded = EPS * a / np.maximum(a - solver.scene.indenter.flat_radius, EPS * a)
     # Depth and force are stationary in the radius.
-    more = miss**2, miss**2, _STIFFENING * radius, radius + _FIELD_ROUNDING, np.full_like(radius, _FIELD_ROUNDING)
+    more = miss**2, miss**2, _STIFFENING * radius, radius + rounded + _FIELD_ROUNDING, rounded * 0 + _FIELD_ROUNDING
     errors = {"contact_radius": radius}
     for name, change, extra in zip(_COMPARED, np.transpose(changes), more, strict=True):
         errors[name] = stated_error(change, 0.0, floor=floor + extra)

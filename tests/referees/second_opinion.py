@@ -32,7 +32,7 @@ CHEAP_RATIO: Final = 25.0
 QUANTITIES: Final = ("contact_radius", "indentation_depth", "normal_force", "contact_stiffness")
 
 # More nodes and wave numbers than the method takes.
-_SIZES: Final = Sizes(nodes=24, waves=46, reach=24.0, slopes=18)
+_SIZES: Final = Sizes(nodes=24, waves=46, reach=24.0, slopes=24)
 # Share of a - b over which derivatives are taken; they only scale tiny corrections of the radius.
 _STEP: Final = 1e-4
 _EPS: Final = float(np.finfo(float).eps)
