@@ -88,7 +88,7 @@ def costs_beside_others(scene: str) -> tuple[WorkStudy, ...]:
 def inside_costs(scene: str) -> tuple[WorkStudy, ...]:
     """What stresses inside cost at the last of a scene's points, with the fields at all of them in the time."""
     quantities = ("von_mises_inside", "axial_stress_inside")
-    return _studies(scene, quantities, (*MDR, *EQUATION, *FEM, *BEM[:2]), FINEST_EQUATION, MDR[2:3])
+    return _studies(scene, quantities, (*MDR, *FEM), FINEST_MDR, MDR[2:3])
 
 
 def detachment_costs(scene: str) -> tuple[WorkStudy, ...]:
