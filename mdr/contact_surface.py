@@ -244,7 +244,8 @@ class Surface:
         """Wave numbers k a, and (1 - chi) phi^(k) [m] with the weights of their quadrature."""
         if farthest not in self._spectra:
             largest = self.sizes.reach * self.a / self.springs.unit
-            reach = float(np.clip(_SLOW_WAVES / largest, *_SLOW_DECAY)) if self.kernel.tail else 1.0
+            more = 1 + self.sizes.extra / 6  # a companion has twice the wave numbers
+            reach = more * float(np.clip(_SLOW_WAVES / largest, *_SLOW_DECAY)) if self.kernel.tail else 1.0
             kappa, w, table = self._radius.waves(farthest, reach)
             rest = self.kernel.one_minus_chi(kappa / self.a * self.springs.unit)
             self._spectra[farthest] = kappa, w * rest * self._spectrum(kappa, table)

@@ -46,7 +46,7 @@ StatedError: TypeAlias = FloatArray | Callable[[], FloatArray]
 # States of a path at which errors are computed and contacts are checked; the largest change counts for all of them.
 _COMPARED, _CHECKED = 8, 12
 # Radii inside, and radii outside over the contact radius, at which fields are compared.
-_INSIDE, _OUTSIDE = 8, np.array([1.02, 2.0, 4.0])
+_INSIDE, _OUTSIDE = 8, np.array([1.001, 1.02, 2.0, 4.0])
 # Relative rounding error of pressure and displacement by their quadratures.
 _FIELD_ROUNDING = 2e-13
 # Error of pressures that are infinite at the edge of a graded layer: their series converge slowly. With half of it one
