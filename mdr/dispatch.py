@@ -30,7 +30,6 @@ from contact.scene.effects import Viscoelasticity
 _EQUILIBRIA = (ContactRadii, IndentationDepths, NormalForces)
 # Relative accuracy of what is integrated in time, unless another is asked for.
 DEFAULT_ACCURACY = 1e-9
-_IN_TIME = (Impact, DepthHistory, ForceHistory)
 
 
 @dataclass(frozen=True)

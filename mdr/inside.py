@@ -357,18 +357,3 @@ def _surface(springs: Springs, sizes: Sizes, a: float, depth: float, is_singular
     """A contact whose density ends with zero, or with adhesion, in the same discretisation as the density itself."""
     own = springs.at_sizes(field_sizes(sizes))
     return surface_of(own, a, depth if is_singular else float(own.at([a]).g[0]), is_singular=is_singular)
-
-
-def superposed(
-    springs: Springs, layer: ElasticLayer, contacts: Sequence[tuple[float, float]], known: KnownContact, depth: float
-) -> Interior:
-    """The body under a sum of elastic contacts without adhesion, given by (radius [m], weight).
-
-    A history's pressure at an instant is such a sum: every contact that has grown to a radius counts as much as is left
-    of its stress.
-    """
-    pairs = []
-    for a, weight in contacts:
-        own = float(springs.at([a]).g[0])
-        pairs.append((weight, pair_of(springs, known._replace(radius=a), own, is_singular=False)))
-    return Interior(layer, pairs, known, depth)

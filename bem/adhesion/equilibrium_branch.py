@@ -113,16 +113,6 @@ class EquilibriumBranch:
         section = np.clip(np.searchsorted(self.section_radii, radius, side="right") - 1, 0, self.section_ends.size - 2)
         return np.asarray(self.section_ends[section] + np.sqrt(radius - self.section_radii[section]))
 
-    def section_start(self, y: FloatArray) -> FloatArray:
-        """Where in y the section begins that y lies on."""
-        return np.asarray(self.section_ends[self._section(y)])
-
-    def last_sample(self, y: FloatArray) -> FloatArray:
-        """Each y, or its panel's last sample if that comes before: values there continue what is sampled."""
-        panel = self.functions.panel(y)
-        last = self.functions.centres + np.max(chebyshev.nodes(NODES)) / self.functions.scales
-        return np.asarray(np.minimum(y, last[panel]))
-
     def truncation(self, y: FloatArray) -> FloatArray:
         """What the polynomials leave out of delta [m] and F [N] at y, and roundings of y, shape (2, n)."""
         return np.asarray((self.tails + self.rounding)[:, self.functions.panel(y)])

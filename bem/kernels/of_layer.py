@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
-from bem.kernels.layer import UniformKernel
 from bem.kernels.protocol import SurfaceKernel
 from bem.kernels.stack import Sheet, StackKernel
 from contact.records.errors import UnsupportedSceneError
@@ -26,8 +25,6 @@ _R = TypeVar("_R", bound=Record)
 # A kernel that was made for a layer serves the same layer in other units, whose numbers are a rounding or two off: so
 # many decimal digits are kept. What the others would change is a twentieth of the kernel's own tolerance.
 _DIGITS = 13
-
-__all__ = ["UniformKernel", "stack_kernel", "surface_kernel"]
 
 
 @singledispatch

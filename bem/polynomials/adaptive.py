@@ -95,13 +95,6 @@ def resolved_panels(
     return sorted(done, key=lambda panel: panel.low)
 
 
-def relative_tail(panels: list[SampledPanel]) -> float:
-    """The part of a function that its polynomials leave out, over its largest value: the worst function's."""
-    tails = np.max([panel.tails for panel in panels], axis=0)
-    sizes = np.max([np.abs(panel.values).max(axis=1) for panel in panels], axis=0)
-    return float(np.max(tails / np.where(sizes > 0.0, sizes, 1.0)))
-
-
 def _halves(panel: SampledPanel, seams: FloatArray) -> list[tuple[float, float]]:
     middle, nodes = 0.5 * (panel.low + panel.high), panel.nodes
     # Samples that all lie on one side of a seam do not see it.

@@ -15,8 +15,6 @@ FEW_POINTS = 400
 # Up to so many points powers are made in one call. It strides over columns: for 2560 points it took 36 times as long as
 # a call for each power, for 100 as long (17 powers, 2026-11-22).
 FEW_POWERS = 128
-# Points of a block: with 24 coefficients each they fill 1.6 MB.
-BLOCK = 8192
 # Points at which polynomials are sampled to find their largest values; no maximum is farther from the best of them than
 # the distance of two neighbours.
 _SAMPLE_POINTS = np.linspace(-1.0, 1.0, 33)
@@ -37,32 +35,6 @@ def chebyshev_sum(coefficients: FloatArray, s: FloatArray) -> FloatArray:
     for k in range(coefficients.shape[-1] - 1, 0, -1):
         older, newer = newer, 2 * s * newer - older + coefficients[..., k]
     return s * newer - older + coefficients[..., 0]
-
-
-def piecewise_sum(coefficients: FloatArray, piece: NDArray[np.intp], s: FloatArray) -> FloatArray:
-    """Chebyshev sums of the pieces, coefficients (q, m), at s in [-1, 1]; `piece` is of the shape of s.
-
-    Many points are summed in blocks whose coefficients stay in the cache: a million points take a third of the time.
-    """
-    if s.size <= FEW_POINTS:
-        return chebyshev_sum(coefficients[piece], s)
-    starts, numbers, flat = range(0, s.size, BLOCK), piece.ravel(), s.ravel()
-    columns = np.ascontiguousarray(coefficients.T)
-    blocks = [_clenshaw(columns, numbers[i : i + BLOCK], flat[i : i + BLOCK]) for i in starts]
-    return np.concatenate(blocks).reshape(s.shape)
-
-
-def _clenshaw(columns: FloatArray, piece: NDArray[np.intp], s: FloatArray) -> FloatArray:
-    """The sums from coefficients (m, q), each order looked up when it is added, or once if all are of one piece."""
-    twice, older, newer, term = 2 * s, np.zeros_like(s), np.zeros_like(s), np.empty_like(s)
-    alone = bool(piece.size) and piece[0] == piece[-1] and bool(np.all(piece == piece[0]))
-    added = columns[:, piece[0]] if alone else columns
-    for k in range(len(columns) - 1, 0, -1):
-        np.multiply(twice, newer, out=term)
-        term -= older
-        term += added[k] if alone else added[k].take(piece)
-        older, newer, term = newer, term, older
-    return np.asarray(s * newer - older + (added[0] if alone else added[0].take(piece)))
 
 
 @cache

@@ -4,16 +4,14 @@ import time
 import warnings
 from collections.abc import Callable, Iterable
 from dataclasses import replace
-from functools import partial
 from typing import TypeAlias, TypeVar
 
-import numpy as np
 from threadpoolctl import threadpool_limits  # type: ignore[import-untyped]  # ships no types
 
 from cases.measurements.measurement import Measurement
 from cases.results.status import Status
 from cases.run.empty_caches import forget
-from contact import ContactError, Method, Scene, Solution
+from contact import ContactError, Solution
 
 A = TypeVar("A")
 
@@ -53,33 +51,6 @@ def measured(
     cost = answer.cost
     whole = replace(of, seconds=seconds, unknowns=cost.unknowns, counters=dict(cost.counters))
     return [whole, *(_judged(row, whole) for row in rows)]
-
-
-def drawn_and_measured(
-    method: Method,
-    *,
-    draw: Callable[[np.random.Generator], tuple[Scene, Judge]],
-    family: str,
-    seed: int,
-    count: int,
-    numbers: Iterable[int] | None = None,
-) -> list[Measurement]:
-    """Draw scenes, let the method answer and judge each; every scene has its own generator and can be repeated alone.
-
-    Args:
-        method: Who answers.
-        draw: Gives a scene, and who judges its answer.
-        family: Kind of scenes.
-        seed: Of all scenes.
-        count: How many.
-        numbers: Only these of the scenes; all if None.
-    """
-    rows = []
-    for number in range(count) if numbers is None else numbers:
-        scene, judge = draw(np.random.default_rng([seed, number]))
-        of = Measurement(method=method.name, scene=f"{number}", parameters={"family": family}, seed=seed)
-        rows += measured(partial(method.solve, scene), judge, of=of)
-    return rows
 
 
 def _unanswered(of: Measurement, status: Status, error: Exception, start: float) -> Measurement:

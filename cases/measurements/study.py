@@ -1,6 +1,6 @@
 """A study as a case of a report: its text, its records, and claims that a measured number keeps within a limit."""
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator
 from typing import Any, TypeVar
 
 from cases.results.records.claim import Claim, Kind, Origin, Verdict
@@ -35,13 +35,6 @@ def told(records: Iterable[R], summary: Callable[[R], str], say: Say) -> Iterato
     for record in records:
         say(summary(record))
         yield record
-
-
-def announced(parts: Sequence[R], words: Callable[[R], str], say: Say) -> Iterator[R]:
-    """Each part of a work before it is done, with its number and what it is."""
-    for number, part in enumerate(parts, 1):
-        say(f"{number} of {len(parts)}: {words(part)}")
-        yield part
 
 
 def within_limit(

@@ -41,8 +41,3 @@ def radius_of_load(indenter: Profile, load: float) -> float:
 def radius_of_elongation(indenter: Profile, length: float) -> float:
     """Where f(r) is the half-space's critical elongation sqrt(2 pi length r); the length [m] is dgamma/E*."""
     return first_radius(indenter, lambda r: float(indenter.height(r)) ** 2 >= 2.0 * math.pi * length * r)
-
-
-def radius_of_energy(indenter: Profile, volume: float, thickness: float) -> float:
-    """Where r f(r)^2 (1 + r/thickness) is the volume [m^3], an energy over E*; on a half-space without the bracket."""
-    return first_radius(indenter, lambda r: r * float(indenter.height(r)) ** 2 * (1.0 + r / thickness) >= volume)

@@ -116,10 +116,11 @@ def panel_ends(law: SpringLaw, path: Path, gamma: FloatArray) -> FloatArray:
     for number in range(_MOST_PANELS):
         way = shortest / 2 * _GROWTH**number
         share = way / steps
-        some = (share < 0.5) & (gamma[1:] > 0) & (gamma[:-1] > 0)
+        # A contact that begins or ends comes from, or goes to, the axis.
+        some = (share < 0.5) & ((gamma[1:] > 0) | (gamma[:-1] > 0))
         if not some.any():
             break
-        before, after = gamma[:-1][some], gamma[1:][some]
+        before, after = np.maximum(gamma, 0)[:-1][some], np.maximum(gamma, 0)[1:][some]
         ways += [before + share[some] * (after - before), after - share[some] * (after - before)]
     ends = np.concatenate(ways)
     return np.unique(ends[ends > 0])

@@ -6,7 +6,7 @@ platform's extended precision is double precision, it is no better than the meth
 
 import numpy as np
 
-from bem.kernels.layer import one_minus_kernel
+from tests.layer_kernel import one_minus_kernel
 
 LD = np.longdouble
 PI = LD("3.14159265358979323846264338327950288")

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from bem.kernels.graded import GradedKernel
-from bem.kernels.layer import one_minus_kernel
 from bem.kernels.of_layer import surface_kernel
 from bem.kernels.stack import Sheet, StackKernel
 from contact import ElasticBase, ExponentialDepth, GradedLayer, LinearDepth, PowerLawDepth, TabulatedDepth
+from tests.layer_kernel import one_minus_kernel
 
 EXPONENTIAL = GradedLayer(thickness=1.0, youngs_modulus=ExponentialDepth(surface=1.0, base=4.0), poissons_ratio=0.3)
 BASE = ElasticBase(youngs_modulus=0.5, poissons_ratio=0.3)

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from contact import Cone, FlatPunch, Paraboloid, Sphere, Tabulated, TruncatedCone
-from contact.scene.extent import radius_of_depth, radius_of_elongation, radius_of_energy, radius_of_load
+from contact.scene.extent import radius_of_depth, radius_of_elongation, radius_of_load
 
 PROFILES = [
     Paraboloid(radius_of_curvature=2.0),
@@ -25,9 +25,6 @@ def test_each_guess_solves_its_equation(indenter):
     assert r * f(r) == pytest.approx(0.03, rel=1e-12, abs=0.0)
     r = radius_of_elongation(indenter, 1e-3)
     assert f(r) ** 2 == pytest.approx(2 * math.pi * 1e-3 * r, rel=1e-12, abs=0.0)
-    for thickness in (0.5, math.inf):
-        r = radius_of_energy(indenter, 1e-3, thickness)
-        assert r * f(r) ** 2 * (1 + r / thickness) == pytest.approx(1e-3, rel=1e-12, abs=0.0)
 
 
 def test_what_is_never_reached_ends_at_the_profiles_end():

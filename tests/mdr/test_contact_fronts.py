@@ -4,7 +4,6 @@ import math
 
 import numpy as np
 import pytest
-from mdr.history.springs_in_time import SpringLaw
 
 from bem.kernels.moduli import relaxation_of
 from contact import (
@@ -20,13 +19,12 @@ from contact import (
     TruncatedCone,
 )
 from mdr import Mdr
-from mdr.history import growing
-from mdr.history.solver import followed_history
+from mdr.history.force_control import never_larger
+from mdr.history.spring_law import SpringLaw
 
 LAYER = Layer.incompressible(thickness=1.0, shear_modulus=1.0)
 HALF_SPACE = Layer.half_space(youngs_modulus=3.0, poissons_ratio=0.5)
 SOLID = PronySeries(long_term_shear_modulus=0.3, shear_moduli=[0.2, 0.5], relaxation_times=[2.0, 0.05])
-COARSE = {"accuracy": 1e-7}
 TIMES = [0.0, 0.6, 1.0, 1.4]
 
 
@@ -85,8 +83,7 @@ def test_after_a_fall_steps_only_where_the_contact_has_been_larger():
         effects=(SOLID,),
     )
     answer, law = Mdr(accuracy=1e-7).solve(scene), SpringLaw.of(relaxation_of(scene))
-    stepped = followed_history(scene, scene.loading, law, Mdr().flat_punch, COARSE)
-    load = growing.elastic_force(law, scene.loading)
+    load = law.elastic_force(scene.loading.time, scene.loading.force)
     expected = (load * 0.75 / (4.0 * math.sqrt(10.0))) ** (2.0 / 3.0)
     known = np.array([True, True, False, True, False])
     np.testing.assert_allclose(answer.indentation_depth[known], expected[known], rtol=1e-12)
@@ -95,20 +92,13 @@ def test_after_a_fall_steps_only_where_the_contact_has_been_larger():
         error = answer.error_estimate[name]
         assert np.all(error[known] < 1e-12)
         assert np.all(error[~known] > 1e-12)
-        apart = np.abs(getattr(answer, name) - getattr(stepped, name))
-        assert np.all(apart <= answer.uncertainty(name) + stepped.uncertainty(name)), name
 
 
 def test_at_which_instants_no_step_is_needed():
     """Where F_e has never been larger, though it passed a peak between two instants."""
     law = SpringLaw.of(SOLID.relaxation)
-    scene = Scene(
-        layer=HALF_SPACE,
-        indenter=Paraboloid(radius_of_curvature=10.0),
-        loading=ForceHistory(time=[0.0, 0.5, 1.0, 1.1, 1.5, 2.0], force=[0.0, 0.02, 0.005, 0.0199, 0.03, 0.03]),
-        effects=(SOLID,),
-    )
-    assert growing.without_steps(law, scene).tolist() == [True, True, False, False, True, True]
+    time, force = np.array([0.0, 0.5, 1.0, 1.1, 1.5, 2.0]), np.array([0.0, 0.02, 0.005, 0.0199, 0.03, 0.03])
+    assert never_larger(law, law.elastic_force(time, force)).tolist() == [True, True, False, False, True, True]
 
 
 def test_a_flat_punch_needs_no_steps_whatever_the_force_does():
@@ -120,7 +110,9 @@ def test_a_flat_punch_needs_no_steps_whatever_the_force_does():
     )
     answer, law = Mdr().solve(scene), SpringLaw.of(relaxation_of(scene))
     # k = 2 E* a.
-    np.testing.assert_allclose(answer.indentation_depth, growing.elastic_force(law, scene.loading) / 4.0, rtol=1e-12)
+    np.testing.assert_allclose(
+        answer.indentation_depth, law.elastic_force(scene.loading.time, scene.loading.force) / 4.0, rtol=1e-12
+    )
     assert answer.contact_radius.tolist() == [0.0, 0.5, 0.5, 0.0]
 
 
@@ -142,25 +134,4 @@ def test_a_punch_that_a_dashpot_stops_leaves_when_two_exponentials_say(viscosity
     for accuracy in (1e-4, 1e-6):
         answer = Mdr(accuracy=accuracy).solve(scene)
         stated = answer.error_estimate["contact_time"].item()
-        assert abs(answer.contact_time / expected - 1.0) <= stated < 1e-7
-
-
-@pytest.mark.parametrize(("left", "tau", "gap"), [(0.1, 1e-4, 0.01), (0.3, 1e-3, 0.3), (0.1, 1e-3, 0.3)])
-def test_steps_that_relaxation_is_over_in_state_what_they_leave(left, tau, gap):
-    """Errors of first order, that Romberg's limit does not take out: 1.2e-5 off, 5e-7 stated in the first case."""
-    loading = ForceHistory(time=[0, 0.13, 6.9, 6.9 + gap, 7.0 + gap], force=[0, 0.5, 0.5, 0.8, 1.0])
-    law = PronySeries(long_term_shear_modulus=left, shear_moduli=[1.0 - left], relaxation_times=[tau])
-    scene = Scene(layer=HALF_SPACE, indenter=FlatPunch(radius=1.0), loading=loading, effects=(law,))
-    steps = followed_history(scene, loading, SpringLaw.of(relaxation_of(scene)), Mdr().flat_punch, COARSE)
-    exact = Mdr().solve(scene).indentation_depth
-    error = np.abs(steps.indentation_depth - exact).max() / exact.max()
-    assert 1e-9 < error <= steps.error_estimate["indentation_depth"].max() < 5e-5
-
-
-@pytest.mark.parametrize("rounding", [-1e-16, 1e-16])
-def test_a_surface_that_creeps_by_roundings_only_is_at_rest(rounding):
-    """A held front was sought on one side of it in one unit of time, on the other in another: 5e-10 of the force."""
-    law = SpringLaw(0.0, 0.0, np.array([0.0436, 0.0045, 0.9519]), np.array([7.6e8, 72.0, 14.8]))
-    surface = 2e-15
-    assert law.outruns(0.0, surface, rounding * surface * np.ones(3))
-    assert not law.outruns(0.0, surface, 1e-6 * surface * np.ones(3))
+        assert abs(answer.contact_time / expected - 1.0) <= stated <= accuracy

@@ -28,10 +28,8 @@ from contact import (
     Tabulated,
     TruncatedCone,
 )
-from contact.answer.inside import KnownContact
 from mdr import Mdr
-from mdr.inside import Body, Fields, superposed
-from mdr.spring_bed import Springs
+from mdr.inside import Body, Fields
 
 DATA = Path(__file__).parent / "layered_uniform_load.json"
 
@@ -354,15 +352,3 @@ def test_a_radius_that_was_found_moves_what_is_beside_the_edge(nodes):
     assert error <= beside.error_estimate["stress"] + exact.error_estimate["stress"]
     moved = 0.5 * abs(a - 1.3) / 1.3e-6 * abs(float(exact.axial_stress)) / largest
     assert 0.9 * moved < beside.error_estimate["stress"]
-
-
-def test_weighted_contacts_of_several_radii_add_up():
-    """What a history's pressure is made of."""
-    layer, tip, r, z = unit_layer(0.3), Paraboloid(radius_of_curvature=10.0), np.array([0.0, 0.4, 0.9]), np.full(3, 0.3)
-    known = KnownContact(0.8, 0.0, 0.0)
-    both = superposed(Springs.of(layer, tip), layer, [(0.8, 1.0), (0.5, -0.25)], known, 0.05).at(r, z)
-    wide, narrow = (pressed(layer, tip, radius).inside().at(r, z) for radius in (0.8, 0.5))
-    for name in ("radial_displacement", "axial_stress", "pressure_gradient_radial"):
-        exact = getattr(wide, name) - 0.25 * getattr(narrow, name)
-        assert getattr(both, name) == pytest.approx(exact, rel=1e-12, abs=1e-15)
-    assert both.error_estimate["stress"] < 1e-11

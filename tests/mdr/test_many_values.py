@@ -5,7 +5,6 @@ import tracemalloc
 import numpy as np
 import pytest
 
-from bem.polynomials.chebyshev import BLOCK
 from contact import (
     ContactRadii,
     IndentationDepths,
@@ -17,6 +16,8 @@ from contact import (
 )
 from mdr import Mdr
 
+# More values than any array of a solution is long.
+BLOCK = 8192
 LAYER = Layer(thickness=1e-3, youngs_modulus=1e6, poissons_ratio=0.45)
 VALUES = (ContactRadii, 6e-4, 3e-3), (IndentationDepths, 1e-7, 2e-4), (NormalForces, 1e-7, 1.0)
 

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import itertools
+
 import mpmath
 import numpy as np
 import pytest
-from mdr.history.recovery import modes
-from mdr.history.springs_in_time import SpringLaw, advance, undeformed
 
 from contact.scene.effects import Relaxation
+from mdr.history.spring_bed import Path, SpringBed
+from mdr.history.spring_law import SpringLaw
 
 EPS = float(np.finfo(float).eps)
 # g_inf, eta, moduli, rates: liquids, twins of relaxation times, spectra over twelve decades, dashpots.
@@ -21,6 +23,18 @@ SPECTRA = {
     "dashpot": (1.0, 0.3, [], []),
     "dashpot and branches": (0.1, 1e-3, [0.4, 0.5], [1.0, 50.0]),
 }
+
+
+def modes(long_term, viscosity, weights, rates):
+    """Of a spring; a law has its times in decreasing order."""
+    return SpringLaw(long_term, viscosity, weights, 1 / rates).modes
+
+
+def advance(bed, start, end, time):
+    """The bed after a linear way of the indenter."""
+    bed = bed.copy()
+    bed.along(Path.linear(np.array([0.0, time]), np.array([start, end])), 0)
+    return bed
 
 
 def exactly(spectrum, surface, strains, time):
@@ -74,11 +88,12 @@ def random_law(draw):
     )
 
 
-def in_short_steps(law, profile, state, depth, time):
-    start, count = state.depth, 100
-    for share in (1.0 + np.arange(count)) / count:
-        state = advance(law, profile, state, start + share * (depth - start), time / count)
-    return state
+def in_short_steps(bed, start, end, time):
+    count = 100
+    places = np.linspace(start, end, count + 1).tolist()
+    for before, after in itertools.pairwise(places):
+        bed = advance(bed, before, after, time / count)
+    return bed
 
 
 def assert_same_bed(one, other):
@@ -89,10 +104,10 @@ def assert_same_bed(one, other):
 def test_a_spring_that_is_touched_and_released_within_one_step():
     """It creeps back faster than the indenter rises, presses against it, and loses it. This went unseen at first."""
     law = SpringLaw.of(Relaxation(long_term_modulus=0.2, moduli=np.array([0.8]), times=np.array([0.1]), viscosity=0.0))
-    profile, depths, times = np.zeros(1), (1.0, 0.5, -0.1), (2.0, 1e-3, 2.5)
-    one = short = undeformed(law, profile, 0.0)
-    for depth, time in zip(depths, times, strict=True):
-        one, short = advance(law, profile, one, depth, time), in_short_steps(law, profile, short, depth, time)
+    depths, times = (0.0, 1.0, 0.5, -0.1), (2.0, 1e-3, 2.5)
+    one = short = SpringBed.undeformed(law, np.zeros(1), 0.0)
+    for start, end, time in zip(depths[:-1], depths[1:], times, strict=True):
+        one, short = advance(one, start, end, time), in_short_steps(short, start, end, time)
     assert not one.touching[0]
     assert one.surface[0] > 0.01
     assert_same_bed(one, short)
@@ -102,8 +117,9 @@ def test_a_spring_that_is_touched_and_released_within_one_step():
 def test_a_long_step_is_many_short_ones(seed):
     draw, profile = np.random.default_rng(seed), np.linspace(0.0, 1.0, 60) ** 2
     law = random_law(draw)
-    state = undeformed(law, profile, 0.0)
-    for stroke in (1.0, draw.uniform(-0.3, 0.9), draw.uniform(), *draw.uniform(-0.3, 1.0, 3)):
-        start, time = state, 10.0 ** draw.uniform(-2.0, 1.0)
-        state = advance(law, profile, start, stroke, time)
-        assert_same_bed(state, in_short_steps(law, profile, start, stroke, time))
+    bed, start = SpringBed.undeformed(law, profile, 0.0), 0.0
+    for end in (1.0, draw.uniform(-0.3, 0.9), draw.uniform(), *draw.uniform(-0.3, 1.0, 3)):
+        time = 10.0 ** draw.uniform(-2.0, 1.0)
+        later = advance(bed, start, end, time)
+        assert_same_bed(later, in_short_steps(bed, start, end, time))
+        bed, start = later, end

@@ -410,22 +410,23 @@ def half_the_loss(dissipation):
     return lambda *a: dissipation(*a) / 2
 
 
-def creeping_too_fast(modes):
+def creeping_too_fast(patch):
     """Free springs creep back one per cent too fast."""
+    from mdr.history.spring_law import SpringLaw
 
-    def wrong(*spectrum):
-        right = modes(*spectrum)
-        return dataclasses.replace(right, rates=1.01 * right.rates)
-
-    return wrong
+    right = SpringLaw.modes.func
+    patch.setattr(SpringLaw, "modes", property(lambda law: right(law)._replace(rates=1.01 * right(law).rates)))
 
 
 def seen_at_the_end(patch):
     """A touch or release that is over before the end of a step goes unseen."""
-    from mdr.history import springs_in_time
+    from mdr.history import spring_bed
 
-    patch.setattr(springs_in_time, "_SHARES", np.array([0.0, 1.0]))
-    patch.setattr(springs_in_time, "_MULTIPLES", np.array([]))
+    def wrong(course, span):
+        at_the_end = course.terms(np.arange(span.size), span)[0].sum(axis=0)
+        return np.where(at_the_end < 0, span, np.inf)
+
+    patch.setattr(spring_bed, "first_fall", wrong)
 
 
 def without_the_last_of_a_full_chunk(groups):
@@ -445,7 +446,7 @@ TIME_STEPPING = [
     Fault(
         "free springs recover one per cent too fast",
         "time stepping",
-        swap("mdr.history.recovery:modes", creeping_too_fast),
+        creeping_too_fast,
         Test(
             "verification.test_reloading_histories:test_reloading_on_a_recovering_surface_is_what_each_spring_says",
             ("touched again", 0.1),

@@ -13,7 +13,6 @@ import numpy as np
 
 from bem.direct import Density, Kernel, Sizes
 from bem.direct_method import LARGEST_RATIO
-from bem.kernels.layer import compliance_kernel
 from contact import (
     Adhesion,
     ContactPath,
@@ -26,6 +25,7 @@ from contact import (
     Scene,
 )
 from contact.records.validation import FloatArray
+from tests.layer_kernel import compliance_kernel
 
 # Ratio a/h up to which one radius takes a tenth of a second; for campaigns that have to be cheap.
 CHEAP_RATIO: Final = 25.0

@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from mdr.history.contact_edge import SpringBed, total_force
 
 from cases.measurements.ladders.units import Units, in_units
 from contact import Cone, DepthHistory, Layer, PowerLaw, PronySeries, Scene
 from mdr import Mdr
-from mdr.history.solver import _turns
 from tests.drawn_scenes import scene_of
 
 HALF_SPACE = Layer.half_space(youngs_modulus=3.0, poissons_ratio=0.5)
@@ -80,27 +78,9 @@ def test_forces_and_radii_between_bends_of_the_spring_forces(kind):
         assert error <= limit
 
 
-def test_a_front_back_at_an_old_one_but_for_roundings():
-    """A piece of no width beside the front moved forces by 1e-10 with the unit of time, where 1e-12 is claimed."""
-    y, front = np.linspace(0.0, 1.0, 641), 0.9551
-    bed = SpringBed(y=y, radius=y**2, profile=y**2, density=1.0 + y, core=0.0)
-    forces = np.maximum(np.exp(3.0 * front) - np.exp(3.0 * y), 0.0)
-
-    def force(bend: float) -> float:
-        return float(total_force(bed, y < front, forces, (front, 0.0), np.array([0.5, bend]))[0])
-
-    assert force(front * (1.0 - 1e-15)) == pytest.approx(force(front), rel=1e-14, abs=0.0)
-
-
 @pytest.mark.parametrize("number", [69, 539])
 def test_a_front_that_comes_back_to_an_old_place_bends_nothing_anew(number):
     """Two bends but for roundings moved forces by 2e-11 and 8e-10 of the largest with the unit of time."""
     scene = scene_of(6215, number, "reloading")
     here, elsewhere = (Mdr().solve(one).normal_force for one in (scene, in_units(scene, Units(time=3.7))))
     np.testing.assert_allclose(elsewhere, here, rtol=0.0, atol=1e-13 * here.max())
-
-
-def test_speeds_that_differ_by_a_few_millionths_are_two():
-    """They counted as one: springs of their own would then be followed through another depth than the bed's."""
-    loading = DepthHistory(time=[0.0, 1.0, 2.0], depth=[0.0, 1.0, 2.0 + 5e-6])
-    assert _turns(loading).tolist() == [True, True, True]

@@ -85,22 +85,6 @@ class LayerParts:
         ends = [part.youngs_modulus(part.top + np.array([0.0, part.thickness])) for part in self.parts]
         return float(np.max(ends) / np.min(ends))
 
-    @property
-    def restrained_length(self) -> float:
-        """Within which stiff layers hold the surface of an elastic base back, times the share that it loses by that."""
-        base = self.parts[-1]
-        at = np.array([base.top])
-        nu, modulus = float(base.poissons_ratio(at)[0]), float(base.youngs_modulus(at)[0])
-        stiffest = max(
-            float(part.youngs_modulus(part.top + np.array([0.0, part.thickness])).max()) for part in self.parts
-        )
-        return (1 - 2 * nu) ** 2 / (4 * (1 - nu) ** 2) * self.layer_thickness * stiffest / modulus
-
-    @property
-    def is_nearly_incompressible(self) -> bool:
-        """Whether nu comes near 1/2 in some part."""
-        return any(part.poissons_ratio(np.array([part.top])).max() >= 0.49 for part in self.parts)
-
 
 def parts_of(layer: ElasticLayer, contact_radius: float, base_reach: float) -> LayerParts:
     """A stack or graded layer in units of a contact radius [m].

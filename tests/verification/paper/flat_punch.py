@@ -5,7 +5,6 @@ from functools import partial
 
 import numpy as np
 
-from bem.kernels.layer import compliance_kernel
 from cases.library._hayes import COMMON as HAYES
 from cases.library._hayes import RATIOS as HAYES_RATIOS
 from contact import Layer
@@ -13,6 +12,7 @@ from docs.gallery._parts import UNBONDED, layer, name_of, punch
 from docs.gallery.figure_03 import thin_layer_stiffness
 from docs.gallery.figure_04 import second_maximum
 from docs.gallery.figure_05 import exponent
+from tests.layer_kernel import compliance_kernel
 from tests.verification.paper.statement import FORMULA, GOOD, SAME, Measured, Statement, above, deviation, reads, within
 
 LAYERS = (UNBONDED, *(layer(nu) for nu in (0.0, 0.3, 0.4, 0.45, 0.5)))
