@@ -23,12 +23,11 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import j0, j1
 
 from bem.equation import Sizes
 from bem.kernels.of_layer import surface_kernel
 from bem.kernels.stack import Material, Transfer, half_space_at
-from bem.numerics import EPS, even_bessel, gauss, panels
+from bem.numerics import EPS, even_bessel, gauss, panels, special
 from contact import ElasticLayer, InvalidInput
 from contact.answer.inside import InsideFields, KnownContact
 from contact.records.validation import FloatArray
@@ -156,12 +155,12 @@ class Body:
         """What layers add; G of the material over the surface's; whether the half-space part counts there."""
         found, shear, own = np.empty((9, r.size)), np.empty(r.size), np.empty(r.size, dtype=bool)
         groups = np.zeros(z.size) if self.kernel.is_smooth else np.floor(np.log2(z))
-        for number in np.unique(groups):
+        for number in sorted(set(groups.tolist())):
             some = np.flatnonzero(groups == number)
             k, load = self._load(float(z[some].min()), float(r[some].max()))
             descent = self.kernel.descent(k * self.unit)
             places = descent.places(z[some] / self.unit)
-            for place in np.unique(places).tolist():
+            for place in sorted(set(places.tolist())):
                 here = some[places == place]
                 parts = 1 + here.size * k.size // _WAVES
                 for few in np.array_split(here[np.argsort(z[here], kind="stable")], parts):
@@ -250,7 +249,7 @@ def _row_factors(transfer: Transfer, k: FloatArray, material: Material) -> Float
 def _waves(rows: FloatArray, k: FloatArray, r: FloatArray, at: NDArray[np.intp] | None = None) -> FloatArray:
     """Sums over k of rows times J1/r, J0 or J1: all depths by all radii, or each radius at its own depth."""
     kr = np.multiply.outer(r, k)
-    even, odd = j0(kr), j1(kr)
+    even, odd = special().j0(kr), special().j1(kr)
     over_r = np.where(r[:, None] > 0, odd / np.where(r > 0, r, 1.0)[:, None], k / 2)
     waves = [over_r, even, even, odd, even, even, even, odd, even]
     if at is None:

@@ -45,9 +45,10 @@ from mdr.spring_bed import Springs
 # 1e-6 are stated.
 _NODES_OF_DEPTHS, _NODES = 14, 6
 # Substeps of a whole force history at the default accuracy, at least two in each interval, and multiples of them whose
-# limits are compared. Twice as many err a thirtieth. One digit more of accuracy doubles them, between the bounds below.
+# limits are compared. Twice as many err a thirtieth. One digit more of accuracy doubles them, at
+# most twice; one digit less changes nothing.
 _SUBSTEPS, _LEVELS = 32, (2, 1)
-_FEWEST, _MOST = -2, 2
+_FEWEST, _MOST = 0, 2
 # Share of the change by twice as many substeps that is added to it: errors are of third order or better, with a dashpot
 # of second. The stated error is a multiple of that share.
 _LEFT, _LEFT_OF_DASHPOTS = 1 / 7, 1 / 3

@@ -55,7 +55,6 @@ def test_lapack_is_scipys_where_its_file_is_not_found_alone():
     assert "scipy.linalg" in loaded_after(f"{told}; assert lapack().dpotrf([[4.0]])[0][0, 0] == 2.0")
 
 
-@pytest.mark.xfail(reason="the bound of friction loads more since fields inside rest on the one equation")
 def test_a_command_that_solves_loads_neither_storage_nor_scipys_linear_algebra():
     run = "from typer.testing import CliRunner; from reports.command_line import app; "
     run += "assert CliRunner().invoke(app, ['solve', 'examples/cartilage.toml']).exit_code == 0"

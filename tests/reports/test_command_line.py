@@ -303,7 +303,6 @@ def test_the_example_scene_is_a_scene(tmp_path, capsys):
     assert load_scene(path).indenter.flat_radius == 0.5e-3
 
 
-@pytest.mark.xfail(reason="the bound of friction loads more")
 def test_solve_loads_with_few_collections_of_garbage(hertz):
     """They walk what was just loaded: 124 of the youngest objects once, 85 now, and go on afterwards."""
     code = (
