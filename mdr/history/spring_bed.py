@@ -68,6 +68,26 @@ class Course(NamedTuple):
         slopes[3:] = -self.rates[:, None] * values[3:]
         return values, slopes
 
+    def is_above(
+        self,
+        i: NDArray[np.intp],
+        span: FloatArray,
+        start: tuple[FloatArray, FloatArray],
+        end: tuple[FloatArray, FloatArray],
+    ) -> NDArray[np.bool_]:
+        """Whether springs i stay above zero, within rounding, for a span [s] between terms at its start and end.
+
+        Convex terms lie above their tangents, concave ones above their chords: A is concave, B and exp are convex.
+        """
+        convex = np.empty(start[0].shape, dtype=np.bool_)
+        convex[0], convex[1], convex[2] = True, self.speed[i] <= 0, self.acceleration >= 0
+        convex[3:] = self.amplitudes[:, i] >= 0
+        at_end = np.where(convex, start[0] + span * start[1], end[0]).sum(axis=0)
+        at_start = np.where(convex, end[0] - span * end[1], start[0]).sum(axis=0)
+        rounding = _ROUNDING * (self.size[i] + np.abs(start[0]).sum(axis=0))
+        from_start = (start[0].sum(axis=0) >= -rounding) & (at_end >= -rounding)
+        return np.asarray(from_start | ((end[0].sum(axis=0) >= -rounding) & (at_start >= -rounding)))
+
     def is_positive(self, i: NDArray[np.intp], terms: FloatArray) -> NDArray[np.bool_]:
         """Whether sums of terms are zero or above, within rounding."""
         return np.asarray(terms.sum(axis=0) >= -_ROUNDING * (self.size[i] + np.abs(terms).sum(axis=0)))
@@ -96,12 +116,13 @@ def first_fall(course: Course, span: FloatArray) -> FloatArray:
         rises = np.minimum(at_low[1], at_high[1]).sum(axis=0) >= 0
         falls = np.maximum(at_low[1], at_high[1]).sum(axis=0) <= 0
         decided = falls | (high - low <= _SHORTEST * span[i])
-        clear = rises | (np.minimum(at_low[0], at_high[0]).sum(axis=0) > 0)
+        clear = rises | course.is_above(i, high - low, at_low, at_high)
         clear |= decided & course.is_positive(i, at_high[0])
         root = decided & ~clear
-        event[i[root]] = _root(course, i[root], low[root], high[root])
+        if root.any():
+            event[i[root]] = _root(course, i[root], low[root], high[root])
         keep = ~root & ~(clear & (high >= span[i]))
-        step = (high - low) * np.where(clear, 2.0, 0.25)
+        step = (high - low) * np.where(clear, 4.0, 0.25)
         low = np.where(clear, high, low)
         at_low = np.where(clear, at_high[0], at_low[0]), np.where(clear, at_high[1], at_low[1])
         high = np.minimum(low + step, span[i])
