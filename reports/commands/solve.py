@@ -162,9 +162,7 @@ def _write(solution: Solution, path: Path) -> None:
     if path.suffix == ".csv":
         _put(path, solution_csv(solution))
     elif path.suffix == ".h5":
-        from contact.files.storage import save_solution  # noqa: PLC0415 - h5py only where it is asked for
-
-        save_solution(path, solution)
+        solution.save(path)
     elif path.suffix in MESHES:
         _write_mesh(solution, path)
     elif path.stem.startswith(INSIDE):

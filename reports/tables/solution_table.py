@@ -17,9 +17,9 @@ from contact import (
     Solution,
     StageRecord,
 )
-from contact.answer.shown import SYMBOLS
+from contact.answer.evidence import SYMBOLS
 from contact.answer.small_strains import depth_note, depths_of
-from contact.answer.summary import scene_line
+from contact.answer.solution import scene_line
 from contact.records.units import prefix_for
 from reports.tables.table import Table
 from reports.words.method_names import display_name

@@ -322,7 +322,7 @@ FAULTS = (
         SharedFault(
             "restitution and duration of an impact",
             what,
-            wrong_property("contact.answer.solution:ImpactHistory", name),
+            wrong_property("contact.answer.paths:ImpactHistory", name),
             ("punch impact", "sphere impact"),
         )
         for what, name in (("restitution", "coefficient_of_restitution"), ("duration", "contact_time"))

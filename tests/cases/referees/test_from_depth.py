@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from cases.referees.from_depth import Response, answer_from_depths, inverted
 from contact import (
     ContactPath,
     ContactRadii,
@@ -17,7 +18,6 @@ from contact import (
     StageLog,
     UnsupportedSceneError,
 )
-from contact.answer.from_depth import Response, answer_from_depths, inverted
 
 R, MODULUS = 1e-2, 1e6 / (1 - 0.3**2)
 

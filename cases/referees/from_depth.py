@@ -8,9 +8,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from contact.answer.solution import ContactPath, ForcePath, Setting
-from contact.records.errors import NotConvergedError, UnsupportedSceneError
-from contact.scene.loading import ContactRadii, IndentationDepths, NormalForces
+from contact import (
+    ContactPath,
+    ContactRadii,
+    ForcePath,
+    IndentationDepths,
+    NormalForces,
+    NotConvergedError,
+    UnsupportedSceneError,
+)
+from contact.answer.solution import Setting
 
 if TYPE_CHECKING:
     from contact.answer.stages import StageLog

@@ -35,11 +35,6 @@ def compiled(name: str, otherwise: str) -> Any:
     return _alone(name) or importlib.import_module(otherwise)
 
 
-def is_loaded() -> bool:
-    """Whether SciPy's LAPACK, and so its BLAS, is in this process."""
-    return _NAME in sys.modules
-
-
 def _alone(name: str) -> ModuleType | None:
     """The compiled file; None where it is loaded already, or where the package is arranged in another way."""
     first, *folders, _ = name.split(".")
