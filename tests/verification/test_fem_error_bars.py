@@ -119,6 +119,7 @@ def pulled(control):
     return Fem(accuracy=1e-3).solve(PULLED.replace(loading=Detachment(control=control)))
 
 
+@pytest.mark.slow
 def test_strongest_pull_is_the_extremum_whatever_is_controlled():
     """Under displacement control the force passes its extremum, where pull-off lies under force control."""
     forces = [pulled(control).pull_off_force for control in ("displacement", "force")]
