@@ -216,8 +216,9 @@ def _largest(scene: Scene, pressing: Pressing) -> float:
         return end
     branch = AdheringIndenter.up_to(scene, pressing, end, NODES // 2).branch
     if deepest is None:
-        return min(AHEAD * branch.loss(FORCE, end) + 0.1 * indenter.flat_radius, indenter.max_radius)
-    return min(ROOM * max(branch.solutions(DEPTH, deepest), default=end), end)
+        lost, _, _ = branch.state(branch.loss(FORCE, branch.end))
+        return min(AHEAD * lost + 0.1 * indenter.flat_radius, indenter.max_radius)
+    return min(ROOM * branch.widest(DEPTH, deepest), end)
 
 
 def _pull_off(columns: FloatArray, *, by_force: bool) -> dict[str, float]:

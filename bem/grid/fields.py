@@ -178,15 +178,16 @@ class NoContact:
     surface_displacement = pressure
 
 
-def pressure_difference(one: ContactFields, other: ContactFields) -> float:
-    """Distance of two pressures at equal r/a in the norm weighted with r (a^2 - r^2), relative to the first."""
+def field_changes(one: ContactFields | NoContact, other: ContactFields | NoContact) -> tuple[float, float]:
+    """Change of pressure and displacement between two grids; all of them where only one grid is in contact.
+
+    Pressures at equal r/a in the norm weighted with r (a^2 - r^2); the largest change of displacements outside the
+    contact, relative to depth or height at the edge.
+    """
+    if isinstance(one, NoContact) or isinstance(other, NoContact):
+        return (0.0, 0.0) if type(one) is type(other) else (1.0, 1.0)
     p, q = (np.sqrt(1.0 - INSIDE**2) * of.pressure(INSIDE * of.radius) for of in (one, other))
-    return float(np.linalg.norm(p - q) / np.linalg.norm(p))
-
-
-def displacement_difference(one: ContactFields, other: ContactFields) -> float:
-    """Largest distance of two displacements outside the contact, relative to depth or height at the edge."""
     r = OUTSIDE * max(one.radius, other.radius)
     apart = one.surface_displacement(r) - other.surface_displacement(r)
     scale = max(abs(one.depth), float(one.indenter.height(one.radius)))
-    return float(np.abs(apart).max() / scale)
+    return float(np.linalg.norm(p - q) / np.linalg.norm(p)), float(np.abs(apart).max() / scale)

@@ -222,7 +222,7 @@ def test_pulling_is_refused_where_the_contact_exceeds_its_flat_end_by_roundings(
         indenter=TruncatedCone(flat_radius=1.0, slope=1e-3),
         loading=ContactRadii([1.0 + 4 * np.finfo(float).eps]),
     )
-    with pytest.raises(UnsupportedSceneError, match="pulled at r = 0.36"):
+    with pytest.raises(UnsupportedSceneError, match=r"pulled at r = 0\.36"):
         IntegralEquationMethod().solve(scene)
 
 
