@@ -78,7 +78,8 @@ class Branch:
                 depth, force = sample(start, (y - low) ** 2)
                 return np.stack([depth, force, depth + compliance * force])
 
-            return Piecewise.resolved(values, low, high, error)
+            # Short sections between many breakpoints are smooth.
+            return Piecewise.resolved(values, low, high, error, parts=max(1, 4 // (radii.size - 1)))
 
         radii = np.array([0.0, *(b for b in sorted(set(breakpoints)) if 0.0 < b < radius), radius])
         ends = np.concatenate([[0.0], np.cumsum(np.sqrt(np.diff(radii)))])

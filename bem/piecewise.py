@@ -42,20 +42,21 @@ class Piecewise:
 
     @classmethod
     def resolved(
-        cls, sample: Callable[[FloatArray], FloatArray], low: float, high: float, error: float = 0.0
+        cls, sample: Callable[[FloatArray], FloatArray], low: float, high: float, error: float = 0.0, parts: int = 4
     ) -> Piecewise:
-        """Halves four panels until the last coefficients of each function are small.
+        """Halves panels until the last coefficients of each function are small.
 
         Args:
             sample: Values of all functions, shape (functions, n), at y of shape (n,).
             low: Left end of the interval.
             high: Right end.
             error: Relative error of the samples, which need not be resolved any finer.
+            parts: Number of the first panels.
 
         Raises:
             NotConvergedError: If a function is too rough.
         """
-        waiting, size = np.array(list(pairwise(np.linspace(low, high, 5)))), None
+        waiting, size = np.array(list(pairwise(np.linspace(low, high, parts + 1)))), None
         done: list[tuple[float, float, FloatArray]] = []
         while waiting.size:
             middle, half = waiting.mean(axis=1), np.diff(waiting)[:, 0] / 2

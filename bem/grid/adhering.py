@@ -111,19 +111,13 @@ class AdheringIndenter:
 
     def equilibria(self, radius: FloatArray) -> FloatArray:
         """Depth [m] and force [N] at radii [m], shape (2, n)."""
-        depth, stiffness, moment = self.springs(radius)
-        return np.stack([depth, contact_modulus(self.scene.layer) * (stiffness * depth - moment)])
-
-    def springs(self, radius: FloatArray) -> FloatArray:
-        """Depth [m], k_N/E* [m] and M [m^2] at radii [m], shape (3, n); zero without contact."""
-        found = np.zeros((3, radius.size))
-        for i in np.flatnonzero(radius):
-            state = self.at(float(radius[i]))
-            found[:, i] = state.depth, state.stiffness, state.moment
-        return found
+        states, E = map(self.at, radius.tolist()), contact_modulus(self.scene.layer)
+        return np.array([(one.depth, E * one.load) for one in states]).T
 
     def at(self, radius: float) -> PressedState:
-        """The equilibrium at a radius [m]: the edge bears phi, Eq. (40)."""
+        """The equilibrium at a radius [m], whose edge bears phi, Eq. (40)."""
+        if radius == 0.0:
+            return PressedState(0.0, 0.0, 0.0, 1.0, 0.0)
         state = self.punches.at(radius).pressed(self.scene.indenter, radius)
         return state._replace(depth=state.depth + edge_density(self.scene, radius) / state.edge_flat)
 

@@ -9,17 +9,10 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from bem.branch import CONTROLS, DEPTH, FORCE
-from bem.grid.adhering import (
-    NODES,
-    AdheringIndenter,
-    edge_density,
-    followed,
-    largest_radius,
-    start_of_withdrawal,
-)
+from bem.grid.adhering import NODES, AdheringIndenter, edge_density, followed, largest_radius, start_of_withdrawal
 from bem.grid.discs import refuse_unresolved, shared_error
 from bem.grid.fields import ContactFields, NoContact, field_changes
-from bem.grid.pressed import Equilibrium, Prescribed, Pressing, equilibrium, refuse_falling
+from bem.grid.pressed import Guess, Prescribed, PressedState, Pressing, equilibrium, refuse_falling
 from bem.kernels.moduli import contact_modulus
 from contact import (
     ContactPath,
@@ -107,15 +100,16 @@ class GridSolver:
         """Contacts without adhesion."""
         fine, loading = self.pressing, self.scene.loading
         prescribed = PRESCRIBED[type(loading)]
-        unit = self._modulus if isinstance(loading, NormalForces) else 1.0
-        pairs: list[tuple[Equilibrium, Equilibrium]] = []
+        unit = contact_modulus(self.scene.layer) if isinstance(loading, NormalForces) else 1.0
+        pairs = []
         with self.log.stage("contact"):
             for value in (loading.values / unit).tolist():  # type: ignore[attr-defined]
-                coarse, near = equilibrium(fine.coarser(), prescribed, value)
-                pairs.append((equilibrium(fine, prescribed, value, near)[0], coarse))
-                refuse_unresolved(fine.layer, fine.indenter, pairs[-1][0].radius, fine.cells)
+                coarse = equilibrium(fine.coarser(), prescribed, value)
+                pairs.append((equilibrium(fine, prescribed, value, coarse[-1]), coarse))
+                radius = pairs[-1][0][0].radius
+                refuse_unresolved(fine.layer, fine.indenter, radius, fine.cells)
                 if not fine.indenter.is_convex:
-                    refuse_falling(fine, pairs[-1][0].radius)
+                    refuse_falling(fine, radius)
         with self.log.stage("fields"):
             grids = fine, fine.coarser()
             found, other = (self._pressed(*one) for one in zip(grids, zip(*pairs, strict=True), strict=True))
@@ -123,15 +117,16 @@ class GridSolver:
                 one.refuse_pulling(coarser)  # type: ignore[union-attr, arg-type]
         return self._path(found, other, adheres=False)
 
-    def _pressed(self, pressing: Pressing, states: Sequence[Equilibrium]) -> OnGrid:
-        E, edge = self._modulus, None if isinstance(pressing.indenter, FlatPunch) else 0.0
-        values = np.array([(one.radius, one.depth, E * one.load, E * one.stiffness) for one in states]).T
-        fields = []
-        for radius, depth, load, _, near in states:
-            own = (depth, load, 0.0) if edge is None else (near.depth, near.load(), near.moment)
-            punch = pressing.punch(near.radius)
-            fields.append(ContactFields(pressing.layer, pressing.indenter, punch, radius, depth, load, edge, own))
-        return OnGrid(values, fields)
+    def _pressed(self, pressing: Pressing, found: Sequence[tuple[PressedState, PressedState, Guess]]) -> OnGrid:
+        if isinstance(pressing.indenter, FlatPunch):
+            fields = [ContactFields(pressing, state, state, None) for state, _, _ in found]
+        else:
+            fields = [ContactFields(pressing, state, near, 0.0) for state, near, _ in found]
+        return OnGrid(self._values([state for state, _, _ in found]), fields)
+
+    def _values(self, states: Sequence[PressedState]) -> FloatArray:
+        E = contact_modulus(self.scene.layer)
+        return np.array([(one.radius, one.depth, E * one.load, E * one.stiffness) for one in states]).T
 
     def adhering(self) -> ContactPath:
         """Contacts with adhesion at prescribed radii, or depths or forces in their order."""
@@ -140,19 +135,25 @@ class GridSolver:
 
     def _followed(self, of: AdheringIndenter) -> OnGrid:
         """What is prescribed is inserted as it is: a flat punch may be held below its fold."""
-        loading, E = self.scene.loading, self._modulus
+        loading = self.scene.loading
         values = np.array(loading.values)  # type: ignore[attr-defined]
         radius = values if isinstance(loading, ContactRadii) else followed(of, self._quantity, values)
-        depth, stiffness, moment = of.springs(radius)
+        states = [of.at(a) for a in radius.tolist()]
         if isinstance(loading, IndentationDepths):
-            depth = values
+            states = [one._replace(depth=value) for one, value in zip(states, values.tolist(), strict=True)]
         elif isinstance(loading, NormalForces):
-            depth = (values / E + moment) / stiffness
-        load = stiffness * depth - moment
-        force = values if isinstance(loading, NormalForces) else E * load
-        states = zip(radius.tolist(), depth.tolist(), load.tolist(), moment.tolist(), strict=True)
-        fields = [self._fields(of.pressing, *one) for one in states]
-        return OnGrid(np.array([radius, depth, force, E * stiffness]), fields)
+            loads = (values / contact_modulus(self.scene.layer)).tolist()
+            depths = [(load + one.moment) / one.stiffness for one, load in zip(states, loads, strict=True)]
+            states = [one._replace(depth=depth) for one, depth in zip(states, depths, strict=True)]
+        return OnGrid(self._values(states), [self._adhering(of.pressing, one) for one in states])
+
+    def _adhering(self, pressing: Pressing, state: PressedState) -> ContactFields | NoContact:
+        if state.radius == 0.0:
+            return NoContact()
+        # A flat end holds the front: its density is what the contact bears, not what adhesion could.
+        held = state.radius == self.scene.indenter.flat_radius
+        edge = state.depth * state.edge_flat if held else edge_density(self.scene, state.radius)
+        return ContactFields(pressing, state, state, edge)
 
     def detachment(self) -> DetachmentPath:
         """The whole equilibrium branch of a withdrawal, in order of decreasing radius."""
@@ -175,7 +176,7 @@ class GridSolver:
             errors[name] = self._stated(np.array([value]), np.array([others[name]]), floor[:1])
         if scalars["pull_off_contact_radius"] == others["pull_off_contact_radius"] == self.scene.indenter.flat_radius:
             errors["pull_off_contact_radius"] = np.array([HALF_SPACE_FLOOR])
-        self._refuse_touching(pair[0], radius, depth, errors)
+        self._refuse_touching(pair[0], radius, errors)
         branch, y = pair[0].branch, pair[0].branch.position(radius)
         return DetachmentPath(
             **self._common(errors) | scalars,
@@ -207,22 +208,6 @@ class GridSolver:
     @property
     def _quantity(self) -> int:
         return FORCE if isinstance(self.scene.loading, NormalForces) else DEPTH
-
-    @property
-    def _modulus(self) -> float:
-        return contact_modulus(self.scene.layer)
-
-    def _fields(
-        self, pressing: Pressing, radius: float, depth: float, load: float, moment: float
-    ) -> ContactFields | NoContact:
-        if radius == 0.0:
-            return NoContact()
-        edge, punch = edge_density(self.scene, radius), pressing.punch(radius)
-        if radius == self.scene.indenter.flat_radius:
-            # The end holds the front: its density is what the contact bears, not what adhesion could.
-            edge = depth * float(punch.quotient(np.ones(1))[0])
-        solved = depth, load, moment
-        return ContactFields(pressing.layer, pressing.indenter, punch, radius, depth, load, edge, solved)
 
     def _path(self, found: OnGrid, other: OnGrid, *, adheres: bool) -> ContactPath:
         """The answer, with errors of its fields, unless the indenter touches outside a contact."""
@@ -273,19 +258,14 @@ class GridSolver:
         """Of depth and force at contact radii [m]."""
         return self._least + shared_error(self.pressing.cells, radius / self.scene.layer.surface.thickness)
 
-    def _refuse_touching(
-        self, of: AdheringIndenter, radius: FloatArray, depth: FloatArray, errors: dict[str, FloatArray]
-    ) -> None:
+    def _refuse_touching(self, of: AdheringIndenter, radius: FloatArray, errors: dict[str, FloatArray]) -> None:
         """Refuse a withdrawal of which some state is touched outside its circle, as coarse discs show it."""
         if self.scene.indenter.is_convex:
             return
         coarse = replace(self.pressing, cells=min(COARSE_CELLS, self.pressing.cells))
-        chosen = np.linspace(0, radius.size - 1, LOOKED_AT).astype(int)
-        _, stiffness, moment = of.springs(radius[chosen])
-        loads = stiffness * depth[chosen] - moment
-        for i, load, M in zip(chosen.tolist(), loads.tolist(), moment.tolist(), strict=True):
-            a, delta = float(radius[i]), float(depth[i])
-            fields = self._fields(coarse, a, delta, load, M)
-            height = max(abs(delta), float(self.scene.indenter.height(a)))
-            uncertain = 2.0 * (float(errors["indentation_depth"][i]) + UNCERTAIN)
-            refuse_touching(self.scene, [Circle(a, delta, fields.surface_displacement, uncertain * height)])
+        for i in np.linspace(0, radius.size - 1, LOOKED_AT).astype(int).tolist():
+            state = of.at(float(radius[i]))
+            height = max(abs(state.depth), float(self.scene.indenter.height(state.radius)))
+            tolerance = 2.0 * (float(errors["indentation_depth"][i]) + UNCERTAIN) * height
+            displacement = self._adhering(coarse, state).surface_displacement
+            refuse_touching(self.scene, [Circle(state.radius, state.depth, displacement, tolerance)])

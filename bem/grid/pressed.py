@@ -170,7 +170,7 @@ class PressedState(NamedTuple):
         stiffness: k = k_N/E* [m].
         moment: M [m^2].
         edge_flat: phi_1.
-        depth: delta [m] without adhesion.
+        depth: delta [m].
     """
 
     radius: float
@@ -179,54 +179,32 @@ class PressedState(NamedTuple):
     edge_flat: float
     depth: float
 
-    def load(self, depth: float | None = None) -> float:
-        """F/E* [m^2] at a depth [m], by default the own one."""
-        return self.stiffness * (self.depth if depth is None else depth) - self.moment
-
-
-class Equilibrium(NamedTuple):
-    """A contact without adhesion.
-
-    Attributes:
-        radius: a [m].
-        depth: delta [m].
-        load: F/E* [m^2].
-        stiffness: k_N/E* [m].
-        solved: The disc nearby from which it was extrapolated to first order.
-    """
-
-    radius: float
-    depth: float
-    load: float
-    stiffness: float
-    solved: PressedState
+    @property
+    def load(self) -> float:
+        """F/E* [m^2]."""
+        return self.stiffness * self.depth - self.moment
 
 
 Prescribed: TypeAlias = Literal["contact_radius", "indentation_depth", "normal_force"]
 
 
-class Guess(NamedTuple):
-    """Where a contact radius may lie.
-
-    Attributes:
-        excess: a - b [m] over the radius b of a flat end.
-        exponent: d ln(value)/d ln(excess) of what is prescribed.
-    """
-
-    excess: float
-    exponent: float
+# Excess a - b [m] over the radius b of a flat end, and d ln(value)/d ln(excess) of what is prescribed.
+Guess: TypeAlias = tuple[float, float]
 
 
 def equilibrium(
     pressing: Pressing, prescribed: Prescribed, value: float, near: Guess | None = None
-) -> tuple[Equilibrium, Guess]:
-    """The contact with this radius [m], depth [m] or F/E* [m^2], a root over the radius; and a guess for other discs.
+) -> tuple[PressedState, PressedState, Guess]:
+    """The contact with this radius [m], depth [m] or F/E* [m^2], a root over the radius.
 
     Args:
         pressing: The indenter on discs.
         prescribed: What is.
         value: Its value, positive; a force over E*.
         near: A guess; from discs of `FIRST_CELLS` by default.
+
+    Returns:
+        The contact, the disc nearby from which it is extrapolated to first order, and a guess for other discs.
 
     Raises:
         InvalidInput: If the contact reaches the end of the indenter.
@@ -235,11 +213,8 @@ def equilibrium(
     flat = pressing.indenter.flat_radius
     if prescribed == "contact_radius" or isinstance(pressing.indenter, FlatPunch):
         state = pressing.at(value if prescribed == "contact_radius" else flat)
-        if prescribed == "contact_radius":
-            depth = state.depth
-        else:
-            depth = value if prescribed == "indentation_depth" else value / state.stiffness
-        return Equilibrium(state.radius, depth, state.load(depth), state.stiffness, state), Guess(0.0, 1.0)
+        depths = {"indentation_depth": value, "normal_force": value / state.stiffness}
+        return state._replace(depth=depths.get(prescribed, state.depth)), state, (0.0, 1.0)
     excess, exponent = _first_guess(pressing, prescribed, value) if near is None else near
     for _ in range(MOST_STEPS):
         state = pressing.at(flat + excess)
@@ -247,7 +222,12 @@ def equilibrium(
         change = excess * (exp(max(min(-miss / exponent, 1.0), -1.0)) - 1.0)
         excess += change
         if abs(change) <= NEAR * state.radius:
-            return _moved(state, change, prescribed, value), Guess(excess, exponent)
+            # F at a given depth and the depth at a given F are stationary in the radius: k and M of half the way.
+            half = state.edge_flat**2 * change
+            k, M = state.stiffness + half, state.moment + half * state.depth
+            depth = value if prescribed == "indentation_depth" else (value + M) / k
+            moved = PressedState(state.radius + change, k + half, M + half * depth, state.edge_flat, depth)
+            return moved, state, (excess, exponent)
     raise NotConvergedError(f"no contact radius was found at {prescribed} = {value:g}", {"change": abs(change)})
 
 
@@ -262,20 +242,8 @@ def refuse_falling(pressing: Pressing, radius: float) -> None:
         raise no_single_circle(radius, "would be pulled at its edge")
 
 
-def _moved(state: PressedState, change: float, prescribed: Prescribed, value: float) -> Equilibrium:
-    """The state at a radius nearby: F at a given depth, and the depth at a given F, are stationary in the radius."""
-    growth = 2.0 * state.edge_flat**2
-    radius, stiffness = state.radius + change, state.stiffness + growth * change
-    if prescribed == "indentation_depth":
-        load = state.load(value) + 0.5 * growth * (value - state.depth) * change
-        return Equilibrium(radius, value, load, stiffness, state)
-    depth = (value + state.moment) / state.stiffness
-    depth += 0.5 * growth * (state.depth - depth) * change / state.stiffness
-    return Equilibrium(radius, depth, value, stiffness, state)
-
-
 def _value(state: PressedState, prescribed: Prescribed) -> float:
-    return state.depth if prescribed == "indentation_depth" else state.load()
+    return state.depth if prescribed == "indentation_depth" else state.load
 
 
 def _first_guess(pressing: Pressing, prescribed: Prescribed, value: float) -> Guess:
@@ -300,4 +268,4 @@ def _first_guess(pressing: Pressing, prescribed: Prescribed, value: float) -> Gu
         below = miss(low)
     root = brentq(miss, low, high, xtol=1e-4)
     exponent = (miss(root + STEP) - miss(root - STEP)) / (2.0 * STEP)
-    return Guess(exp(root), max(exponent, LEAST_EXPONENT))
+    return exp(root), max(exponent, LEAST_EXPONENT)
