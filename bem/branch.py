@@ -191,7 +191,11 @@ class Branch:
         if not pinned:
             landings = [(c, float(self.smallest(c, np.zeros(1))[0])) for c in self.controls]
             points += [(c, "snap-in", y) for c, y in landings if y > 0.0]
-        return tuple(self._critical_point(*point) for point in points)
+        states = ((c, kind, *self.state(y)) for c, kind, y in points)
+        return tuple(
+            CriticalPoint(control=CONTROLS[c], kind=kind, contact_radius=a, indentation_depth=depth, normal_force=force)
+            for c, kind, a, depth, force in states
+        )
 
     def _within(self, control: int, start: float) -> list[float]:
         return [y for y in self.folds(control) if y < start]
@@ -204,12 +208,6 @@ class Branch:
     def _kind(self, control: int, y: float) -> str:
         """Withdrawing, a fold is met from above: what is stable there loses its stability."""
         return "pull-off" if bool(self.stable(control, np.array([y * (1.0 + EDGE)]))[0]) else "snap-in"
-
-    def _critical_point(self, control: int, kind: str, y: float) -> CriticalPoint:
-        a, depth, force = self.state(y)
-        return CriticalPoint(
-            control=CONTROLS[control], kind=kind, contact_radius=a, indentation_depth=depth, normal_force=force
-        )
 
     @cached_property
     def _folds(self) -> tuple[list[float], ...]:

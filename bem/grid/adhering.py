@@ -14,12 +14,13 @@ from typing import Final
 import numpy as np
 from numpy.polynomial import chebyshev as series
 
-from bem.branch import FORCE, Branch
+from bem.branch import DEPTH, FORCE, Branch
 from bem.grid.pressed import FIRST_CELLS, PressedState, Pressing, Punches
 from bem.kernels.moduli import contact_modulus
-from contact import Adhesion, Detachment, FlatPunch, InvalidInput, Scene
+from contact import Adhesion, ContactRadii, Detachment, FlatPunch, InvalidInput, NormalForces, Scene
 from contact.records.validation import FloatArray
 from contact.scene.extent import radius_of_elongation
+from contact.scene.loading import Loading
 
 # Discs between axis and the largest radius; the coarser companion takes 3/4 of them. With half as
 # many pull-offs of layers lose 1e-5.
@@ -133,24 +134,34 @@ def edge_density(scene: Scene, radius: float) -> float:
     return -sqrt(2.0 * pi * adhesive_length(scene) * radius)
 
 
-def largest_radius(scene: Scene, pressing: Pressing, quantity: int, value: float | None) -> float:
-    """A radius [m] up to which the branch holds a value of depth or force, or without one all of a withdrawal."""
-    indenter = scene.indenter
+def prescribed_quantity(loading: Loading) -> int:
+    """What is prescribed, or for a withdrawal the force, which shows all of the way back."""
+    return FORCE if isinstance(loading, NormalForces | Detachment) else DEPTH
+
+
+def largest_radius(scene: Scene, pressing: Pressing) -> float:
+    """A radius [m] up to which the branch holds all that is prescribed, or all of a withdrawal."""
+    indenter, loading = scene.indenter, scene.loading
+    if isinstance(loading, ContactRadii):
+        return float(loading.values.max())
+    if isinstance(loading, Detachment) and loading.initial_contact_radius:
+        return loading.initial_contact_radius
     if isinstance(indenter, FlatPunch):
         return indenter.radius
+    values, quantity = getattr(loading, "values", None), prescribed_quantity(loading)
     balance = radius_of_elongation(indenter, adhesive_length(scene))
     radius = GROWTH * max(min(balance, FIRST_RATIO * scene.layer.thickness), indenter.flat_radius)
     coarse = replace(pressing, cells=min(FIRST_CELLS, pressing.cells))
     while radius < indenter.max_radius:
         found = AdheringIndenter.up_to(scene, coarse, radius, NODES // 2).branch
-        wanted = found.strength if value is None else BEYOND * max(value, 0.0)
-        if found.at(FORCE if value is None else quantity, found.end) > wanted:
+        wanted = found.strength if values is None else BEYOND * max(float(values.max()), 0.0)
+        if found.at(quantity, found.end) > wanted:
             return radius
         radius *= GROWTH
     return indenter.max_radius
 
 
-def followed(of: AdheringIndenter, quantity: int, values: FloatArray) -> FloatArray:
+def followed(of: AdheringIndenter, values: FloatArray) -> FloatArray:
     """Radii [m] at prescribed depths [m] or forces [N] in their order, from out of contact; zero without contact.
 
     Adhesion of this type has no reach: an approaching indenter snaps in as it touches, at zero depth, to the smallest
@@ -160,9 +171,10 @@ def followed(of: AdheringIndenter, quantity: int, values: FloatArray) -> FloatAr
     Raises:
         InvalidInput: If a force pulls that no contact can carry, or the contact outgrows the indenter.
     """
-    places, y = [], 0.0
-    for entry, (value, stable) in enumerate(zip(values.tolist(), of.branch.solutions(quantity, values).T, strict=True)):
-        y = _next_place(of, quantity, value, stable[np.isfinite(stable)], y)
+    places, y, quantity = [], 0.0, prescribed_quantity(of.scene.loading)
+    stable = of.branch.solutions(quantity, values).T
+    for entry, value in enumerate(values.tolist()):
+        y = _next_place(of, quantity, value, stable[entry][np.isfinite(stable[entry])], y)
         if y == 0.0 and quantity == FORCE:
             raise InvalidInput(
                 f"loading.values = {value:g} (entry {entry}): no contact carries this tension; "
@@ -188,8 +200,8 @@ def _next_place(of: AdheringIndenter, quantity: int, value: float, stable: Float
     return float(wider.min(initial=branch.end))
 
 
-def start_of_withdrawal(of: AdheringIndenter, given: float | None) -> float:
+def start_of_withdrawal(of: AdheringIndenter) -> float:
     """Radius [m] as given, at the punch's edge, or pressed as hard as the contact can pull."""
-    if given is not None or isinstance(of.scene.indenter, FlatPunch):
+    if of.scene.loading.initial_contact_radius is not None or isinstance(of.scene.indenter, FlatPunch):  # type: ignore[attr-defined]
         return of.end
     return of.branch.widest(FORCE, of.branch.strength)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Final, NamedTuple
+from typing import Any, Final, TypeAlias
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from bem.branch import CONTROLS, DEPTH, FORCE
 from bem.grid.adhering import NODES, AdheringIndenter, edge_density, followed, largest_radius, start_of_withdrawal
 from bem.grid.discs import refuse_unresolved, shared_error
 from bem.grid.fields import ContactFields, NoContact, field_changes
-from bem.grid.pressed import Guess, Prescribed, PressedState, Pressing, equilibrium, refuse_falling
+from bem.grid.pressed import Prescribed, PressedState, Pressing, equilibrium, refuse_falling
 from bem.kernels.moduli import contact_modulus
 from contact import (
     ContactPath,
@@ -48,6 +48,8 @@ LOOKED_AT: Final = 20
 COARSE_CELLS: Final = 128
 UNCERTAIN: Final = 5e-3
 
+_Fields: TypeAlias = ContactFields | NoContact
+
 
 @dataclass(frozen=True)
 class FieldSequence:
@@ -57,7 +59,7 @@ class FieldSequence:
         steps: Of each step.
     """
 
-    steps: Sequence[ContactFields | NoContact]
+    steps: Sequence[_Fields]
 
     def pressure(self, radius: FloatArray, step: int) -> FloatArray:
         """p(r) [Pa] of one step."""
@@ -66,18 +68,6 @@ class FieldSequence:
     def surface_displacement(self, radius: FloatArray, step: int) -> FloatArray:
         """w(r) [m] of one step."""
         return self.steps[step].surface_displacement(radius)
-
-
-class OnGrid(NamedTuple):
-    """Contacts on one grid.
-
-    Attributes:
-        values: Rows of `ContactPath.ARRAYS`, shape (4, n).
-        fields: Of each contact.
-    """
-
-    values: FloatArray
-    fields: Sequence[ContactFields | NoContact]
 
 
 @dataclass(frozen=True)
@@ -104,52 +94,46 @@ class GridSolver:
         pairs = []
         with self.log.stage("contact"):
             for value in (loading.values / unit).tolist():  # type: ignore[attr-defined]
-                coarse = equilibrium(fine.coarser(), prescribed, value)
-                pairs.append((equilibrium(fine, prescribed, value, coarse[-1]), coarse))
-                radius = pairs[-1][0][0].radius
-                refuse_unresolved(fine.layer, fine.indenter, radius, fine.cells)
+                *coarse, near = equilibrium(fine.coarser(), prescribed, value)
+                state, solved, _ = equilibrium(fine, prescribed, value, near)
+                refuse_unresolved(fine.layer, fine.indenter, state.radius, fine.cells)
                 if not fine.indenter.is_convex:
-                    refuse_falling(fine, radius)
+                    refuse_falling(fine, state.radius)
+                pairs.append((self._pressed(fine, state, solved), self._pressed(fine.coarser(), *coarse)))
         with self.log.stage("fields"):
-            grids = fine, fine.coarser()
-            found, other = (self._pressed(*one) for one in zip(grids, zip(*pairs, strict=True), strict=True))
-            for one, coarser in zip(found.fields, other.fields, strict=True):
-                one.refuse_pulling(coarser)  # type: ignore[union-attr, arg-type]
-        return self._path(found, other, adheres=False)
+            for one, other in pairs:
+                one.refuse_pulling(other)
+        return self._path(pairs, adheres=False)
 
-    def _pressed(self, pressing: Pressing, found: Sequence[tuple[PressedState, PressedState, Guess]]) -> OnGrid:
-        if isinstance(pressing.indenter, FlatPunch):
-            fields = [ContactFields(pressing, state, state, None) for state, _, _ in found]
-        else:
-            fields = [ContactFields(pressing, state, near, 0.0) for state, near, _ in found]
-        return OnGrid(self._values([state for state, _, _ in found]), fields)
-
-    def _values(self, states: Sequence[PressedState]) -> FloatArray:
-        E = contact_modulus(self.scene.layer)
-        return np.array([(one.radius, one.depth, E * one.load, E * one.stiffness) for one in states]).T
+    @staticmethod
+    def _pressed(pressing: Pressing, state: PressedState, solved: PressedState) -> ContactFields:
+        is_punch = isinstance(pressing.indenter, FlatPunch)
+        return ContactFields(pressing, state, *((state, None) if is_punch else (solved, 0.0)))
 
     def adhering(self) -> ContactPath:
         """Contacts with adhesion at prescribed radii, or depths or forces in their order."""
         found, other = (self._followed(of) for of in self._branches())
-        return self._path(found, other, adheres=True)
+        return self._path(list(zip(found, other, strict=True)), adheres=True)
 
-    def _followed(self, of: AdheringIndenter) -> OnGrid:
+    def _followed(self, of: AdheringIndenter) -> list[_Fields]:
         """What is prescribed is inserted as it is: a flat punch may be held below its fold."""
         loading = self.scene.loading
         values = np.array(loading.values)  # type: ignore[attr-defined]
-        radius = values if isinstance(loading, ContactRadii) else followed(of, self._quantity, values)
-        states = [of.at(a) for a in radius.tolist()]
-        if isinstance(loading, IndentationDepths):
-            states = [one._replace(depth=value) for one, value in zip(states, values.tolist(), strict=True)]
-        elif isinstance(loading, NormalForces):
-            loads = (values / contact_modulus(self.scene.layer)).tolist()
-            depths = [(load + one.moment) / one.stiffness for one, load in zip(states, loads, strict=True)]
-            states = [one._replace(depth=depth) for one, depth in zip(states, depths, strict=True)]
-        return OnGrid(self._values(states), [self._adhering(of.pressing, one) for one in states])
+        radius = values if isinstance(loading, ContactRadii) else followed(of, values)
+        found = []
+        for a, value in zip(radius.tolist(), values.tolist(), strict=True):
+            state = of.at(a)
+            if isinstance(loading, IndentationDepths):
+                state = state._replace(depth=value)
+            elif isinstance(loading, NormalForces):
+                load = value / contact_modulus(self.scene.layer)
+                state = state._replace(depth=(load + state.moment) / state.stiffness)
+            found.append(self._adhering(of.pressing, state))
+        return found
 
-    def _adhering(self, pressing: Pressing, state: PressedState) -> ContactFields | NoContact:
+    def _adhering(self, pressing: Pressing, state: PressedState) -> _Fields:
         if state.radius == 0.0:
-            return NoContact()
+            return NoContact(state)
         # A flat end holds the front: its density is what the contact bears, not what adhesion could.
         held = state.radius == self.scene.indenter.flat_radius
         edge = state.depth * state.edge_flat if held else edge_density(self.scene, state.radius)
@@ -159,10 +143,7 @@ class GridSolver:
         """The whole equilibrium branch of a withdrawal, in order of decreasing radius."""
         loading, pair = self.scene.loading, self._branches()
         assert isinstance(loading, Detachment)
-        start, control = (
-            start_of_withdrawal(pair[0], loading.initial_contact_radius),
-            CONTROLS.index(loading.controlled),
-        )
+        start, control = start_of_withdrawal(pair[0]), CONTROLS.index(loading.controlled)
         radius = np.asarray(start * np.linspace(1.0, 0.0, STATES, endpoint=False) ** 2, dtype=np.float64)
         (depth, force), (other_depth, other_force) = (of.equilibria(radius) for of in pair)
         places = [float(of.branch.position(np.array([start]))[0]) for of in pair]
@@ -190,14 +171,9 @@ class GridSolver:
 
     def _branches(self) -> tuple[AdheringIndenter, AdheringIndenter]:
         """On the fine and on the coarser grid."""
-        loading, fine = self.scene.loading, self.pressing
+        fine = self.pressing
         with self.log.stage("first_guess"):
-            if isinstance(loading, ContactRadii):
-                radius = float(loading.values.max())
-            elif isinstance(loading, Detachment):
-                radius = loading.initial_contact_radius or largest_radius(self.scene, fine, FORCE, None)
-            else:
-                radius = largest_radius(self.scene, fine, self._quantity, float(loading.values.max()))  # type: ignore[attr-defined]
+            radius = largest_radius(self.scene, fine)
         with self.log.stage("branch"):
             refuse_unresolved(fine.layer, fine.indenter, radius, fine.cells)
             return (
@@ -205,26 +181,27 @@ class GridSolver:
                 AdheringIndenter.up_to(self.scene, fine.coarser(), radius, 3 * NODES // 4),
             )
 
-    @property
-    def _quantity(self) -> int:
-        return FORCE if isinstance(self.scene.loading, NormalForces) else DEPTH
-
-    def _path(self, found: OnGrid, other: OnGrid, *, adheres: bool) -> ContactPath:
+    def _path(self, pairs: Sequence[tuple[_Fields, _Fields]], *, adheres: bool) -> ContactPath:
         """The answer, with errors of its fields, unless the indenter touches outside a contact."""
-        errors = self._errors(found.values, other.values, adheres=adheres)
+        found, other = (self._values([pair[i].state for pair in pairs]) for i in (0, 1))
+        errors = self._errors(found, other, adheres=adheres)
         shared = np.maximum(errors["indentation_depth"], errors["normal_force"])
         with self.log.stage("field_errors"):
-            changes = [field_changes(*pair) for pair in zip(found.fields, other.fields, strict=True)]
-            pressure, displacement = np.array(changes).T
+            pressure, displacement = np.array([field_changes(*pair) for pair in pairs]).T
             errors["pressure"] = FIELD_SAFETY * pressure + shared
             errors["surface_displacement"] = SAFETY * displacement + shared
         path = ContactPath(
             **self._common(errors),
             notes=("values are followed in their order, from out of contact",) if adheres else (),
-            fields=FieldSequence(found.fields),
-            **dict(zip(ContactPath.ARRAYS, found.values, strict=True)),
+            fields=FieldSequence([one for one, _ in pairs]),
+            **dict(zip(ContactPath.ARRAYS, found, strict=True)),
         )
         return refuse_touching_path(path)
+
+    def _values(self, states: Sequence[PressedState]) -> FloatArray:
+        """Rows of `ContactPath.ARRAYS`, shape (4, n)."""
+        E = contact_modulus(self.scene.layer)
+        return np.array([(one.radius, one.depth, E * one.load, E * one.stiffness) for one in states]).T
 
     def _common(self, errors: dict[str, FloatArray]) -> dict[str, Any]:
         cost = self.log.cost(unknowns=self.pressing.cells**2 // 4)
@@ -247,7 +224,7 @@ class GridSolver:
         one: FloatArray, other: FloatArray, floor: FloatArray | float, *, in_sequence: bool = False
     ) -> FloatArray:
         """Values of one sequence are relative to its largest magnitude."""
-        scale = np.abs(one).max() if in_sequence else np.abs(one)
+        scale = np.abs(one).max() if in_sequence else one
         return stated_error(one, other, scale=scale, floor=floor, sequence=in_sequence)
 
     @property

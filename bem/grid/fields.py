@@ -175,7 +175,13 @@ class ContactFields:
 
 @dataclass(frozen=True, eq=False)
 class NoContact:
-    """Fields without contact."""
+    """Fields without contact.
+
+    Attributes:
+        state: Of radius zero.
+    """
+
+    state: PressedState
 
     def pressure(self, radius: FloatArray) -> FloatArray:
         """Zero."""

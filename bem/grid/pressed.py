@@ -258,14 +258,13 @@ def _first_guess(pressing: Pressing, prescribed: Prescribed, value: float) -> Gu
 
     guess = (radius_of_depth if prescribed == "indentation_depth" else radius_of_load)(indenter, value)
     high = min(log(guess - flat), last)
-    while (above := miss(high)) < 0.0:
+    while miss(high) < 0.0:
         if high == last:
             raise InvalidInput(f"the contact reaches the end of the indenter at {indenter.max_radius:g} m")
         high = min(high + 1.0, last)
-    low, below = high, above
-    while below >= 0.0:
-        high, above, low = low, below, low - 1.0
-        below = miss(low)
+    low = high - 1.0
+    while miss(low) >= 0.0:
+        low, high = low - 1.0, low
     root = brentq(miss, low, high, xtol=1e-4)
     exponent = (miss(root + STEP) - miss(root - STEP)) / (2.0 * STEP)
     return exp(root), max(exponent, LEAST_EXPONENT)
