@@ -129,7 +129,7 @@ class Table:
         return self._answers.get(identity)
 
     def of_case(self, case: str, *, variants: bool = False) -> list[Answer]:
-        """Return the answers of a case on its own scenes; with ``variants`` those on changed scenes and settings too."""
+        """Return the answers of a case on its own scenes, with ``variants`` also those on changed scenes."""
         return [answer for answer in self if answer.case == case and (variants or not answer.variant)]
 
     def rows(self) -> Iterator[dict[str, object]]:

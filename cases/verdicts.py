@@ -1,4 +1,4 @@
-"""A verdict: a claim on one scene, judged. How it can end, and what that means for the exit code (as pytest's codes)."""
+"""A verdict is a claim on one scene, judged; how it can end, and the exit codes of the command line (as pytest's)."""
 
 from collections.abc import Iterable
 from dataclasses import field

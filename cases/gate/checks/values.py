@@ -10,8 +10,8 @@ from cases.judgement.rules.tolerance import permitted_difference
 from cases.results.records.scene_run import Quantity, SceneRun
 from cases.results.status import Status
 
-# Fraction of the accepted stated error by which a value may move. Processors round differently, and a searched radius or
-# a mesh amplifies that to 3e-9. Half of it is not enough for finite elements; twice is still far below any error.
+# Fraction of the accepted stated error by which a value may move. Processors round differently, and a searched radius
+# or a mesh amplifies that to 3e-9. Half of it is not enough for finite elements, twice is still far below any error.
 OF_STATED_ERROR = 0.01
 FROM_SPREAD = "max(10 x measured spread, 1e-12) of the accepted value or its scale, at least 1 % of its stated error"
 
