@@ -21,7 +21,8 @@ from contact import (
 )
 from mdr import Mdr
 from mdr.curves import ForceCurve, Limit, fit_curve, fit_map
-from mdr.curves.models import Model
+from mdr.curves.adhesion import table_of
+from mdr.curves.force_curve import curve_to
 from mdr.curves.reading import load_curves
 from reports.command_line import run
 
@@ -168,8 +169,8 @@ def test_adhesion_is_found_from_any_guess_or_refused(work, modulus, deepest):
         layer=layer, indenter=tip, loading=IndentationDepths([deepest]), effects=(Adhesion(work_of_adhesion=work),)
     )
     depth = np.linspace(-3 * (work**2 * 5e-6 / modulus**2) ** (1 / 3) - 1e-7, deepest, 200)
-    model = Model(true, depth, ("youngs_modulus",), 6 * max(deepest, np.ptp(depth)))
-    force = model.force({"youngs_modulus": modulus})
+    table = table_of(curve_to(true, 6 * max(deepest, np.ptp(depth))).scene)
+    force = modulus * np.interp(depth, *table.branch(np.sqrt(work / modulus)), left=0.0)
     guess = true.replace(layer=layer.replace(youngs_modulus=1e3), effects=(Adhesion(work_of_adhesion=3 * work),))
     names = ("youngs_modulus", "contact_point", "baseline", "work_of_adhesion")
     try:
@@ -180,6 +181,53 @@ def test_adhesion_is_found_from_any_guess_or_refused(work, modulus, deepest):
         return
     assert found.youngs_modulus == pytest.approx(modulus, rel=1e-2, abs=0.0)
     assert found.values["work_of_adhesion"] == pytest.approx(work, rel=2e-2, abs=0.0)
+
+
+def johnson_kendall_roberts(modulus, work, radius, depth):
+    """Force [N] of withdrawal of a paraboloid from an incompressible half-space, from pull-off on."""
+    reduced = modulus / 0.75
+    a = np.geomspace(1e-3, 2, 20000) * np.sqrt(radius * (depth.max() + 5 * (work**2 * radius / reduced**2) ** (1 / 3)))
+    depths = a**2 / radius - np.sqrt(2 * np.pi * a * work / reduced)
+    forces = 4 / 3 * reduced * a**3 / radius - np.sqrt(8 * np.pi * work * reduced * a**3)
+    stable = slice(int(np.argmin(depths)), None)
+    return np.interp(depth, depths[stable], forces[stable], left=0.0)
+
+
+@pytest.mark.parametrize("deep", [0.1, 0.5, 2.0, 20.0, 500.0])
+@pytest.mark.parametrize("scatter", [0.0, 1e-2])
+def test_curves_of_withdrawal_give_modulus_and_work_however_strong_the_adhesion(deep, scatter):
+    """The depth is in units of the adhesive length (w^2 R/E*^2)^(1/3)."""
+    modulus, work, radius = 2e3, 1e-4, 5e-6
+    scale = (work**2 * radius / (modulus / 0.75) ** 2) ** (1 / 3)
+    depth = np.linspace(-3 * scale - 0.5 * deep * scale, deep * scale, 300)[::-1]
+    force = with_noise(johnson_kendall_roberts(modulus, work, radius, depth) + 2e-10, scatter)
+    guess = HALF_SPACE.replace(effects=(Adhesion(work_of_adhesion=5 * work),))
+    names = ("youngs_modulus", "contact_point", "baseline", "work_of_adhesion")
+    found = fit_curve(guess, depth + 1e-7, force, parameters=names)
+    half = 2 * found.quantile * found.standard_error["youngs_modulus"] + 1e-3 * modulus
+    assert abs(found.youngs_modulus - modulus) < half
+    low, high = found.interval("work_of_adhesion")
+    assert low - work / 100 < work < high + work / 100 or abs(found.values["work_of_adhesion"] - work) < 2 * (
+        high - low
+    )
+    if scatter == 0.0:
+        assert found.youngs_modulus == pytest.approx(modulus, rel=1e-3, abs=0.0)
+        assert any("Tabor parameter" in note for note in found.notes)
+
+
+def test_a_few_points_in_contact_are_no_curve():
+    depth = np.linspace(-1e-4, 5e-7, 200)
+    with pytest.raises(InvalidInput, match=r"points in contact, from .* m on: .* measure more points in contact"):
+        fit_curve(HALF_SPACE, depth, hertz(depth))
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("part", [0.999, 0.01])
+def test_sharp_tips_and_stiff_layers_overflow_nowhere(part):
+    scene = HALF_SPACE.replace(layer=Layer(thickness=2e-6, youngs_modulus=1e3, poissons_ratio=0.5))
+    depth = np.linspace(0.5e-6 * (1 - 1 / part), 0.5e-6, 1000)
+    force = with_noise(ForceCurve(scene)(depth, 1e6), 1e-3)
+    assert fit_curve(scene, depth, force).youngs_modulus == pytest.approx(1e6, rel=0.03, abs=0.0)
 
 
 def test_where_nothing_adheres_the_work_is_within_its_interval_of_zero():
