@@ -7,6 +7,7 @@ Read `force_curve` first, then `contact_point` and `fit`.
 from mdr.curves.fit import Limit, fit_curve
 from mdr.curves.force_curve import ForceCurve
 from mdr.curves.formulas import Formula, formulas_for
+from mdr.curves.histories import fit_history
 from mdr.curves.maps import MapFit, fit_map
 from mdr.curves.reading import read_curve, read_map
 from mdr.curves.result import CurveFit, FormulaFit
@@ -19,6 +20,7 @@ __all__ = [
     "Limit",
     "MapFit",
     "fit_curve",
+    "fit_history",
     "fit_map",
     "formulas_for",
     "read_curve",

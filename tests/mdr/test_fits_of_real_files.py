@@ -23,7 +23,7 @@ from mdr import Mdr
 from mdr.curves import ForceCurve, Limit, fit_curve, fit_map
 from mdr.curves.adhesion import table_of
 from mdr.curves.force_curve import curve_to
-from mdr.curves.reading import load_curves
+from mdr.curves.reading import Cantilever, load_curves, read_map
 from reports.command_line import run
 
 TIP = Paraboloid(radius_of_curvature=5e-6)
@@ -263,6 +263,29 @@ FILES = {
     "time too": ["time [s],depth [nm],force [nN]", *(f"0.1,{line}" for line in rows())],
     "falls": ["depth [nm],force [nN]", *rows(depth=-DEPTH)],
     "pulled too": ["depth [nm],force [nN]", *rows(), *rows(depth=DEPTH[::-1], force=0.8 * FORCE[::-1])],
+    "indenter": ["Displacement (nm)\tLoad (\u00b5N)", *rows("\t", force=FORCE / 1e3)],
+    "capitals": ["DEPTH_NM,FORCE_NN", *rows()],
+    "short heads": ["h (nm),P (nN)", *rows()],
+    "machine": ["Extension [nm],Load [nN]", *rows()],
+    "loading beside withdrawal": [
+        "Extend depth [nm],Extend force [nN],Retract depth [nm],Retract force [nN]",
+        *(f"{line},{line}" for line in rows()),
+    ],
+    "jpk": [
+        "# springConstant: 0.05",
+        "# segment: extend",
+        "# columns: vDeflection height verticalTipPosition",
+        "# units: nN nm nm",
+        *(f"{f:.5f} 0.0 {-d:.4f}" for d, f in zip(DEPTH, FORCE, strict=True)),
+        "# segment: retract",
+        *(f"{0.8 * f:.5f} 0.0 {-d:.4f}" for d, f in zip(DEPTH[::-1], FORCE[::-1], strict=True)),
+    ],
+    "jpk without tip position": [
+        "# springConstant: 0.05",
+        "# columns: height vDeflection",
+        "# units: nm nN",
+        *(f"{-(d + f / 0.05):.4f} {f:.5f}" for d, f in zip(DEPTH, FORCE, strict=True)),
+    ],
     "pulled first": ["depth [nm],force [nN]", *rows(depth=DEPTH[::-1], force=0.8 * FORCE[::-1]), *rows()],
 }
 
@@ -327,6 +350,34 @@ def test_ambiguous_tables_are_refused_with_their_line(tmp_path, lines, message):
     file.write_text("\n".join(lines))
     with pytest.raises(InvalidInput, match=message):
         load_curves(file)
+
+
+def test_ramps_of_bruker_are_read_by_their_direction(tmp_path):
+    file = tmp_path / "curve.txt"
+    lines = [f"{-d - f / 0.05:.4f}\t0\t{f:.5f}\t0" for d, f in zip(DEPTH, FORCE, strict=True)]
+    file.write_text("\n".join(["Calc_Ramp_Ex_nm\tCalc_Ramp_Rt_nm\tDefl_nN_Ex\tDefl_nN_Rt", *lines]))
+    (curve,) = load_curves(file, cantilever=Cantilever(0.05))
+    assert fit_curve(HALF_SPACE, curve.depth, curve.force).youngs_modulus == pytest.approx(5e3, rel=1e-3, abs=0.0)
+
+
+def test_curves_that_a_column_numbers_are_a_map_with_places(tmp_path):
+    file = tmp_path / "map.csv"
+    lines = [f"{n},{n}.5,0,{line}" for n in (3, 4) for line in rows()]
+    file.write_text("\n".join(["curve,x [um],y [um],depth [nm],force [nN]", *lines]))
+    curves = read_map(file)
+    assert [curve.position for curve in curves] == [(3.5e-6, 0.0), (4.5e-6, 0.0)]
+    assert [curve.depth.size for curve in curves] == [100, 100]
+
+
+def test_a_history_is_read_whole_and_needs_times(tmp_path):
+    file = tmp_path / "curve.csv"
+    lines = [f"{0.1 * i:.1f},{line}" for i, line in enumerate([*rows(), *rows()[::-1]])]
+    file.write_text("\n".join(["time [s],depth [nm],force [nN]", *lines]))
+    (curve,) = load_curves(file, direction="history")
+    assert curve.time.size == curve.depth.size == 200
+    file.write_text("\n".join(FILES["pulled too"]))
+    with pytest.raises(InvalidInput, match="needs a column of time"):
+        load_curves(file, direction="history")
 
 
 def test_withdrawal_is_read_for_scenes_with_adhesion(tmp_path):
