@@ -253,7 +253,8 @@ class DirectFields(NamedTuple):
         """w(r) [m]: depth - f(r) inside, Eq. (13) outside."""
         (a, depth), outside = self.contacts[step].state[:2], radius > self.contacts[step].state[0]
         w = np.asarray(depth - self.solver.scene.indenter.height(np.minimum(radius, a)))
-        w[outside] = self.contacts[step].density.displacement(radius[outside], depth)
+        if outside.any():
+            w[outside] = self.contacts[step].density.displacement(radius[outside], depth)
         return w
 
 
