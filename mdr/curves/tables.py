@@ -12,7 +12,7 @@ from typing import Final
 import numpy as np
 
 from contact import InvalidInput
-from contact.files.columns import MAX_BYTES
+from contact.records.columns import MAX_BYTES
 from contact.records.errors import printable
 from contact.records.validation import FloatArray, IntArray
 

@@ -1,15 +1,14 @@
-"""Pictures of fits of force curves and of sweeps."""
+"""Pictures of fits of force curves."""
 
 from typing import Any
 
 import numpy as np
 
-from cases.measurements.sweep import Sweep
 from cases.results.records.figure import Figure, Panel, Series
 from contact.records.units import prefix_for
 from contact.records.validation import BoolArray, FloatArray, IntArray
 from mdr.curves import CurveFit, MapFit
-from reports.words.numbers import with_prefix
+from reports.words import with_prefix
 
 # Moduli at depths below this share of the largest are not drawn: forces there are lost in the scatter.
 _LEAST_SHARE = 0.05
@@ -136,41 +135,3 @@ def _places(found: MapFit, factor: float, unit: str) -> Panel:
             series.append(Series(label=label, method="measured", group=label, x=x, y=y, style="symbols"))
     labels: Any = {"x_label": f"x [{prefix}m]", "y_label": f"y [{prefix}m]"}
     return Panel(title="Map", series=tuple(series), **labels)
-
-
-def sweep_figure(found: Sweep) -> Figure:
-    """Each quantity over the varied number, a line for each state."""
-    columns = found.columns
-    x_head, *heads = (head for head in columns if "_uncertainty" not in head)
-    values = np.unique(columns[x_head])
-    states = len(columns[x_head]) // len(values)
-    panels = tuple(_panel(columns[x_head], columns[head], x_head, head, states) for head in heads)
-    kept = tuple(panel for panel in panels if len(set(panel.series[-1].y)) > 1)
-    return Figure(name="sweep", title=f"Over {found.swept.name}", caption="One line a state.", panels=kept or panels)
-
-
-def _panel(x: FloatArray, y: FloatArray, x_head: str, y_head: str, states: int) -> Panel:
-    x_factor, x_label = _scaled(x, x_head)
-    y_factor, y_label = _scaled(y, y_head)
-    series = tuple(
-        Series(
-            label=f"state {state + 1}",
-            method="mdr",
-            group=f"state {state + 1}",
-            x=tuple((x[state::states] / x_factor).tolist()),
-            y=tuple((y[state::states] / y_factor).tolist()),
-            style="solid",
-        )
-        for state in range(states)
-    )
-    return Panel(title=y_label, x_label=x_label, y_label=y_label, series=series)
-
-
-def _scaled(values: FloatArray, head: str) -> tuple[float, str]:
-    """Factor and label with a fitting prefix."""
-    name, bracket, unit = head.partition(" [")
-    words = name.replace("_", " ")
-    if not bracket:
-        return 1.0, words
-    factor, prefix = prefix_for(values.tolist())
-    return factor, f"{words} [{prefix}{unit}"

@@ -1,4 +1,4 @@
-"""`contact-verify fit` and `sweep`: read, compute, print, and write the files asked for."""
+"""`contact-verify fit`: read, compute, print, and write the files asked for."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -7,22 +7,20 @@ from typing import Any, Final, Literal
 
 import numpy as np
 
-from cases.declare.guarded_method import build_guarded
 from cases.declare.uncertain_inputs import read_inputs
-from cases.measurements.sweep import read_range, sweep
 from cases.measurements.uncertain_fit import fit_uncertain
 from cases.results.files import write_whole
 from contact import Adhesion, InvalidInput, Scene, load_scene
-from contact.answer.small_strains import depth_note, depth_share, depths_of
 from contact.files.scene_file import scene_notes, uses_units
 from contact.records.units import read_quantity
 from contact.scene.effects import Viscoelasticity
 from mdr.curves import Limit, fit_curve, fit_history, fit_map
 from mdr.curves.fit import DEFAULT_PARAMETERS
 from mdr.curves.reading import Cantilever, Direction, Measured, load_curves, read_map
-from reports.tables.curve_tables import fit_csv, fit_table, formula_table, map_csv, map_facts, shares_table, sweep_table
-from reports.terminal.terminal import console, show_facts, show_table
-from reports.words.numbers import small
+from reports.files import PICTURES, check_outputs, write_picture
+from reports.tables.curve_tables import fit_csv, fit_table, formula_table, map_csv, map_facts, shares_table
+from reports.terminal import console, show_facts, show_table
+from reports.words import small
 
 # Stands for all that is fitted beside by default.
 ALL: Final = "all"
@@ -110,7 +108,7 @@ def fit_file(file: Path, scene_file: Path, request: FitRequest, *, uncertain: st
     Raises:
         InvalidInput: For a wrong scene, curve, parameter or file.
     """
-    _check_outputs(request.outputs)
+    check_outputs(request.outputs, {".csv": "CSV", **PICTURES})
     scene = load_scene(scene_file)
     curves = request.curves(file, scene)
     if not 0 <= request.number < len(curves):
@@ -145,7 +143,7 @@ def fit_map_file(file: Path, scene_file: Path, request: FitRequest, *, progress:
     Raises:
         InvalidInput: For a wrong scene, map, parameter or file.
     """
-    _check_outputs(request.outputs)
+    check_outputs(request.outputs, {".csv": "CSV", **PICTURES})
     scene = load_scene(scene_file)
     if _relaxes(scene):
         raise InvalidInput("--map: maps are fitted for scenes that do not relax; fit single curves (--curve NUMBER)")
@@ -164,43 +162,6 @@ def fit_map_file(file: Path, scene_file: Path, request: FitRequest, *, progress:
     _write_outputs(request.outputs, lambda: map_csv(found), "map_figure", found)
 
 
-def sweep_file(
-    scene_file: Path, over: str, *, method: str, outputs: Sequence[Path], progress: Callable[[int, int], None]
-) -> None:
-    """Sweep, print the table, and write the files.
-
-    Raises:
-        InvalidInput: For a wrong scene, range or file, or if every value is refused.
-    """
-    _check_outputs(outputs)
-    scene = load_scene(scene_file)
-    found = sweep(
-        scene, read_range(over, scene, with_units=uses_units(scene_file)), build_guarded(method, {}), progress
-    )
-    if not found.answers:
-        raise InvalidInput(f"over {over}: no value was answered; the first refusal: {found.refused[0][1]}")
-    terminal = console()
-    pressed = [(answer.scene, depths_of(answer)) for _, answer in found.answers]
-    note = depth_note(*max(pressed, key=lambda one: depth_share(*one)))
-    show_facts([("warning", f"at its deepest, {note}")] * bool(note), on=terminal)
-    show_table(sweep_table(found), on=terminal)
-    show_facts([("refused", f"{value:g}: {reason}") for value, reason in found.refused], on=terminal)
-    _write_outputs(outputs, found.to_csv, "sweep_figure", found)
-
-
-def _check_outputs(outputs: Sequence[Path]) -> None:
-    """Refuse files that cannot be written.
-
-    Raises:
-        InvalidInput: For another ending than .csv or .svg, or a folder that is not there.
-    """
-    for path in outputs:
-        if path.suffix not in (".csv", ".svg"):
-            raise InvalidInput(f"--write {path}: the ending says the format; use .csv or .svg")
-        if path.is_dir() or not path.parent.is_dir():
-            raise InvalidInput(f"--write {path}: no file can be there; check that the folder exists")
-
-
 def _write_outputs(outputs: Sequence[Path], table: Callable[[], str], figure: str, found: object) -> None:
     """Write the table to files that end with .csv, the figure of that name in `reports.charts.curves` to the others."""
     for path in outputs:
@@ -209,7 +170,7 @@ def _write_outputs(outputs: Sequence[Path], table: Callable[[], str], figure: st
         else:
             # Matplotlib only where it is asked for.
             from reports.charts import curves  # noqa: PLC0415
-            from reports.figures.renderer import figure_svg  # noqa: PLC0415
+            from reports.figures.renderer import draw  # noqa: PLC0415
 
-            write_whole(path, figure_svg(getattr(curves, figure)(found)))
+            write_picture(path, lambda: draw(getattr(curves, figure)(found)), key="fit")
         console().print(f"written: {path}")

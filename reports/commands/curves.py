@@ -1,12 +1,7 @@
-"""Commands of the bench: fit measured force curves, and solve a scene for a range of one of its numbers.
+"""The command `fit` with its options; what it needs is imported when it is called."""
 
-Each is declared here with its options; what it needs is imported when it is called.
-"""
-
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
@@ -59,6 +54,7 @@ def fit(
     Every number has an interval. Prints what Hertz, Dimitriadis and other formulas would have found on the same curve.
     """
     from reports.commands.bench import FitRequest, fit_file, fit_map_file  # noqa: PLC0415 - see the first lines
+    from reports.terminal import progress_bar  # noqa: PLC0415
 
     request = FitRequest(
         fit=moduli,
@@ -73,41 +69,8 @@ def fit(
     )
     if uncertain and (curves or until):
         raise typer.BadParameter("--uncertain is for whole single curves; leave --map and --until out")
-    with _bar("curves") as progress:
+    with progress_bar("curves") as progress:
         if curves:
             fit_map_file(curve, scene, request, progress=progress)
         else:
             fit_file(curve, scene, request, uncertain=uncertain)
-
-
-def sweep(
-    scene: SceneFile,
-    *,
-    over: Annotated[
-        str, typer.Option(help='Number and range, "thickness=1um..10um:20", ":log" behind it for equal factors.')
-    ],
-    method: Annotated[str, typer.Option(help="Method that solves.")] = "mdr",
-    write: Written = None,
-) -> None:
-    """Solve a scene for a range of one of its numbers: a table, CSV and picture."""
-    from reports.commands.bench import sweep_file  # noqa: PLC0415 - see the first lines of this module
-
-    with _bar("scenes") as progress:
-        sweep_file(scene, over, method=method, outputs=write or [], progress=progress)
-
-
-COMMANDS: tuple[Callable[..., Any], ...] = (fit, sweep)
-
-
-@contextmanager
-def _bar(what: str) -> Iterator[Callable[[int, int], None]]:
-    """A bar on a terminal, and nothing in a pipe or a log."""
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn  # noqa: PLC0415
-
-    from reports.terminal.terminal import console  # noqa: PLC0415
-
-    terminal = console(stderr=True)
-    columns = TextColumn(what), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn()
-    with Progress(*columns, console=terminal, disable=not terminal.is_terminal, transient=True) as bar:
-        task = bar.add_task(what, total=None)
-        yield lambda done, total: bar.update(task, completed=done, total=total)

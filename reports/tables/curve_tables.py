@@ -1,14 +1,12 @@
-"""Fits of force curves and sweeps as tables and CSV files."""
+"""Fits of force curves as tables and CSV files."""
 
 import numpy as np
 
-from cases.measurements.sweep import Sweep
 from cases.measurements.uncertain_fit import UncertainFit
 from cases.results.csv_table import csv_text
 from mdr.curves import CurveFit, MapFit
 from mdr.curves.families import unit_of_parameter
-from reports.tables.table import Table
-from reports.words.numbers import measured, scaled_unit, small, with_prefix
+from reports.words import Table, measured, scaled_unit, small, with_prefix
 
 
 def fit_table(found: CurveFit) -> Table:
@@ -111,23 +109,3 @@ def map_facts(found: MapFit) -> list[tuple[str, str]]:
         ("standard error of E", f"{100 * error:.2g} % in the median, from the scatter of each curve"),
         ("numerical error", f"{small(error_of_computation)} of E, in the intervals"),
     ]
-
-
-def sweep_table(found: Sweep) -> Table:
-    """One row a state; quantities with their uncertainty in brackets."""
-    columns = found.columns
-    shown = {head: values for head, values in columns.items() if "_uncertainty" not in head}
-    texts = []
-    for head, values in shown.items():
-        name, bracket, unit = head.partition(" [")
-        spread = columns.get(f"{name}_uncertainty{bracket}{unit}", np.zeros_like(values))
-        texts.append([_cell(float(v), float(u)) for v, u in zip(values, spread, strict=True)])
-    note = "Digits in brackets: uncertainty of the last digits. A number without brackets is right to the digits shown."
-    heads, rows = tuple(shown), tuple(zip(*texts, strict=True))
-    return Table(title=f"Over {found.swept.name}", note=note, heads=heads, rows=rows, words=0)
-
-
-def _cell(value: float, uncertainty: float) -> str:
-    if not np.isfinite(uncertainty) or uncertainty < 0.5e-6 * abs(value) or value == 0.0:
-        return f"{value:.6g}"
-    return measured(value, uncertainty)

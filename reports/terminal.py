@@ -1,8 +1,9 @@
-"""What stands in the terminal: tables, and the progress of a run."""
+"""The terminal: tables, facts and bars; characters that steer a terminal are shown as escapes."""
 
 import os
 import sys
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from typing import Any
 
 from rich.console import Console
@@ -10,7 +11,7 @@ from rich.table import Table as RichTable
 from rich.text import Text
 
 from contact.records.errors import printable
-from reports.tables.table import Table
+from reports.words import Table
 
 WIDTH_WITHOUT_TERMINAL = 160
 STYLES = {"bad": "bold white on red", "warn": "black on yellow", "skip": "dim", "good": "green"}
@@ -57,3 +58,15 @@ def show_facts(facts: Iterable[tuple[str, str]], *, on: Console) -> None:
     """One fact a line, its name dim before it."""
     for name, fact in facts:
         on.print(Text.assemble((f"{name}: ", "dim"), fact))
+
+
+@contextmanager
+def progress_bar(what: str) -> Iterator[Callable[[int, int], None]]:
+    """A bar on a terminal, nothing in a pipe or a log; yields what takes the number done and the total."""
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn  # noqa: PLC0415
+
+    terminal = console(stderr=True)
+    columns = TextColumn(what), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn()
+    with Progress(*columns, console=terminal, disable=not terminal.is_terminal, transient=True) as bar:
+        task = bar.add_task(what, total=None)
+        yield lambda done, total: bar.update(task, completed=done, total=total)

@@ -1,17 +1,28 @@
-"""Numbers as people read them: with a unit, with an uncertainty, and with no digit that the uncertainty does not allow.
+"""Words of reports: numbers with units and no digit beyond their uncertainty, names of methods and files, tables.
 
-The notation is that of CODATA: `1.480210(21)` means 1.480210 with an uncertainty of 0.000021.
+A number with its uncertainty is written as CODATA does: `1.480210(21)` means 1.480210 with an uncertainty of 0.000021.
 """
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING
+import re
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from typing import TypeVar
 
 from contact.records.units import prefix_for
 
-if TYPE_CHECKING:
-    from cases.results.records.scene_run import Quantity
+R = TypeVar("R")
+
+NAMES: Mapping[str, str] = {
+    "mdr": "MDR",
+    "fem": "FEM",
+    "bem": "BEM",
+    "integral_equation": "integral equation",
+    "mdr_table": "MDR (FFT table)",
+    "calculix": "CalculiX",
+    "contact_mechanics": "ContactMechanics",
+    "tamaas": "Tamaas",
+}
 
 # What stands where a number should be and is none; the letters of a floating point NaN never reach a page.
 NOT_FINITE = "not finite"
@@ -98,17 +109,56 @@ def scaled_unit(value: float, unit: str) -> tuple[float, str]:
     return factor, f"{prefix}{unit}"
 
 
-def last_value(quantity: Quantity) -> str:
-    """What a quantity ends with, its uncertainty and a fitting unit: 12.345(67) mN."""
-    value = quantity.values[-1]
-    factor, unit = scaled_unit(value, quantity.unit)
-    uncertainty = quantity.uncertainty[-1] if quantity.uncertainty else math.inf
-    return f"{measured(value / factor, uncertainty / factor)} {unit}".strip()
-
-
 def _three_digits(value: float) -> str:
     """Three significant digits without a power of ten, for values in [0, 1000)."""
     if value == 0.0:
         return "0"
     rounded = float(f"{value:.2e}")  # 0.9999 becomes 1.00, not 1.000
     return f"{rounded:.{max(0, 2 - _leading_power(abs(rounded)))}f}"
+
+
+def base_of(method: str) -> str:
+    """The method of a label: "mdr" of "mdr", of "mdr fft" and of "mdr[fft]"."""
+    return re.split(r"[\s\[(,:]", method, maxsplit=1)[0]
+
+
+def display_name(method: str) -> str:
+    """The label with its method as readers know it, "MDR fft"; a method from elsewhere keeps its own name."""
+    base = base_of(method)
+    return NAMES.get(base, base) + method[len(base) :]
+
+
+def file_name(*parts: str) -> str:
+    """The parts in lower case, joined by dashes, without what a file system or an address could misread."""
+    words = (re.sub(r"[^\w.]+", "-", part).strip("-") for part in parts)
+    return "-".join(words).lower()
+
+
+@dataclass(frozen=True, kw_only=True)
+class Table:
+    """A table ready to print; the first `words` columns are words, the others numbers.
+
+    A row of a single cell is a heading over the rows that follow it.
+    """
+
+    title: str
+    note: str
+    heads: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+    words: int = 1
+
+
+def tabulated(
+    records: Iterable[R], columns: Mapping[str, Callable[[R], str]], *, title: str, note: str = "", words: int = 1
+) -> Table | None:
+    """A table of one row a record; None without records.
+
+    Args:
+        records: in the order of the rows.
+        columns: what each column shows of a record, by its head.
+        title: over the table.
+        note: below it.
+        words: how many of the first columns are words.
+    """
+    rows = tuple(tuple(cell(record) for cell in columns.values()) for record in records)
+    return Table(title=title, note=note, heads=tuple(columns), rows=rows, words=words) if rows else None

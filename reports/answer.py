@@ -1,6 +1,7 @@
-"""An answer as people and spreadsheets read it: a table with error bars, and a CSV file with every digit."""
+"""An answer as people and spreadsheets read it: tables with error bars, and CSV with every digit."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,6 +15,7 @@ from contact import (
     FrictionPath,
     HistoryPath,
     ImpactHistory,
+    InvalidInput,
     Solution,
     StageRecord,
 )
@@ -21,9 +23,12 @@ from contact.answer.shown import SYMBOLS
 from contact.answer.small_strains import depth_note, depths_of
 from contact.answer.summary import scene_line
 from contact.records.units import prefix_for
-from reports.tables.table import Table
-from reports.words.method_names import display_name
-from reports.words.numbers import duration, measured, memory, scaled_unit, small
+from contact.records.validation import FloatArray
+from reports.words import Table, display_name, duration, measured, memory, scaled_unit, small
+
+if TYPE_CHECKING:
+    from cases.measurements.sweep import Sweep
+    from cases.run.propagation import Propagated, PropagatedQuantity
 
 BRACKETS = (
     "Digits in brackets: uncertainty of the last digits, as the method itself estimates it; (?) where it gives none. "
@@ -88,7 +93,7 @@ def _readable(value: float, uncertainty: float) -> str:
     return measured(value, uncertainty)
 
 
-def _uncertainty(solution: Solution, name: str) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
+def _uncertainty(solution: Solution, name: str) -> FloatArray:
     """Absolute uncertainty, shape (n,): zero for what the scene prescribes, infinite where the method states none."""
     states = (len(solution),)
     if name in _prescribed(solution):
@@ -110,6 +115,33 @@ def _prescribed(solution: Solution) -> tuple[str, ...]:
         "Detachment": ("contact_radius",),
     }
     return given[type(solution.scene.loading).__name__]
+
+
+def difference_table(solution: Solution, other: Solution) -> Table:
+    """The largest difference of each quantity of two answers to one scene, beside the error that both state.
+
+    Raises:
+        InvalidInput: if the answers are of another kind or have other states.
+    """
+    if type(other) is not type(solution) or len(other) != len(solution):
+        raise InvalidInput(
+            f"{solution.method} gives {len(solution)} states and {other.method} {len(other)}: they choose their states "
+            "themselves; prescribe radii, depths or forces to compare them"
+        )
+    rows = []
+    for name in PRINTED[type(solution)]:
+        values, others = getattr(solution, name), getattr(other, name)
+        step = int(np.argmax(np.abs(values - others)))
+        scale = float(np.max(np.abs(values))) or 1.0
+        stated = np.hypot(_uncertainty(solution, name), _uncertainty(other, name))[step] / scale
+        difference = float(abs(values[step] - others[step])) / scale
+        rows.append((name.replace("_", " "), small(difference), small(stated) if np.isfinite(stated) else "(?)"))
+    return Table(
+        title=f"{display_name(solution.method)} against {display_name(other.method)}",
+        note="Largest difference over all states, over the largest value; stated: by both methods together, there.",
+        heads=("quantity", "difference", "stated"),
+        rows=tuple(rows),
+    )
 
 
 def solution_facts(solution: Solution) -> list[tuple[str, str]]:
@@ -156,3 +188,74 @@ def _stage(stage: StageRecord) -> str:
     times = "" if stage.calls == 1 else f" in {stage.calls} calls"
     size = f", {memory(stage.bytes)}" if stage.bytes else ""
     return f"{stage.name.replace('_', ' ')} {duration(stage.wall_seconds)}{times}{size}"
+
+
+# Pairs of quantities are listed where they move together at least so much.
+TOGETHER = 0.5
+
+
+def propagated_table(found: "Propagated") -> Table:
+    """Value, numerical error, uncertainty by the inputs and what each input contributes, of the last step."""
+    names = list(found.quantities[0].by_input) if found.quantities else []
+    rows = tuple(_row(one, names) for one in found.quantities)
+    how = f"{found.solved} scenes solved" + ("" if names else ", by samples")
+    bent = [one.name.replace("_", " ") for one in found.quantities if one.bends]
+    advice = (
+        f" Not linear over these uncertainties: {', '.join(bent)}; --samples takes the whole of it." if bent else ""
+    )
+    return Table(
+        title="Uncertain inputs",
+        note=f"Standard uncertainty by the inputs at the last step, beside the error of the method; {how}.{advice}"
+        f"{_together(found)}",
+        heads=("quantity", "value", "numerical error", "by inputs", "relative", *names),
+        rows=rows,
+        words=1,
+    )
+
+
+def _row(one: "PropagatedQuantity", names: list[str]) -> tuple[str, ...]:
+    value, spread = float(one.values[-1]), float(one.inputs[-1])
+    numerical = None if one.numerical is None else float(one.numerical[-1])
+    factor, unit = scaled_unit(value, one.unit)
+    size = abs(value) or 1.0
+    return (
+        one.name.replace("_", " "),
+        f"{measured(value / factor, spread / factor) if spread else f'{value / factor:.6g}'} {unit}".strip(),
+        "(?)" if numerical is None else small(numerical / size),
+        f"{small(spread / factor)} {unit}".strip(),
+        f"{100 * spread / size:.2g} %",
+        *(f"{100 * float(one.by_input[name][-1]) / size:+.2g} %" for name in names),
+    )
+
+
+def _together(found: "Propagated") -> str:
+    pairs = list(_pairs(found))
+    return f" Moving together: {', '.join(pairs)}." if pairs else ""
+
+
+def _pairs(found: "Propagated") -> Iterator[str]:
+    names = [one.name.replace("_", " ") for one in found.quantities]
+    for i, j in zip(*np.triu_indices(len(names), 1), strict=True):
+        share = float(found.correlation[i, j])
+        if abs(share) >= TOGETHER:
+            yield f"{names[i]} and {names[j]} ({share:+.2f})"
+
+
+def sweep_table(found: "Sweep") -> Table:
+    """One row a state; quantities with their uncertainty in brackets."""
+    columns = found.columns
+    shown = {head: values for head, values in columns.items() if "_uncertainty" not in head}
+    texts = []
+    for head, values in shown.items():
+        name, bracket, unit = head.partition(" [")
+        spread = columns.get(f"{name}_uncertainty{bracket}{unit}", np.zeros_like(values))
+        texts.append([_cell(float(v), float(u)) for v, u in zip(values, spread, strict=True)])
+    note = "Digits in brackets: uncertainty of the last digits. A number without brackets is right to the digits shown."
+    heads, rows = tuple(shown), tuple(zip(*texts, strict=True))
+    return Table(title=f"Over {found.swept.name}", note=note, heads=heads, rows=rows, words=0)
+
+
+def _cell(value: float, uncertainty: float) -> str:
+    if not np.isfinite(uncertainty) or uncertainty < 0.5e-6 * abs(value) or value == 0.0:
+        return f"{value:.6g}"
+    return measured(value, uncertainty)

@@ -8,7 +8,7 @@ from cases.measurements.measurement import grouped
 from cases.results.records.claim import Claim, Kind
 from cases.results.records.run import RunResult
 from cases.results.status import Status
-from reports.words.method_names import display_name
+from reports.words import display_name
 
 # Fewer numbers than this are no group: they are counted among the rest.
 FEWEST = 3

@@ -9,7 +9,7 @@ from cases.results.records.claim import Claim, Kind, Verdict
 from cases.results.records.run import CaseResult, RunResult
 from cases.results.records.scene_run import SceneRun
 from cases.results.status import Status
-from reports.words.numbers import NOT_FINITE, measured, small
+from reports.words import NOT_FINITE, measured, small
 
 # The order of reading; skips stand before passes because someone has to look at their reasons.
 WORST_FIRST = (

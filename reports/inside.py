@@ -22,9 +22,8 @@ from contact import ContactPath, InvalidInput, LayerStack, Solution
 from contact.answer.inside import InsideFields
 from contact.records.units import prefix_for
 from contact.records.validation import FloatArray
-from reports.figures.style import BLACK, GREY, figure_style, svg_text
-from reports.words.method_names import display_name
-from reports.words.numbers import with_prefix
+from reports.style import BLACK, GREY
+from reports.words import display_name, with_prefix
 
 # Points along r and z of the half-section.
 POINTS = (200, 100)
@@ -76,18 +75,12 @@ class Half:
         return self.side * r / self.unit, (self.depth + self.enlarged * self.fields.axial_displacement) / self.unit
 
 
-def inside_svg(solution: Solution, other: Solution | None) -> str:
-    """The picture of the last state of a path.
+def draw_inside(solution: Solution, other: Solution | None) -> Drawing:
+    """The picture of the last state of a path; without another answer both sides show the same one.
 
     Raises:
         InvalidInput: if the answer is no path, or its method gives no fields inside.
     """
-    with figure_style():
-        return svg_text(draw_inside(solution, other), key="inside")
-
-
-def draw_inside(solution: Solution, other: Solution | None) -> Drawing:
-    """The picture; without another answer both sides show the same one."""
     if not isinstance(solution, ContactPath):
         raise InvalidInput(f"a {type(solution).__name__} has no picture inside; prescribe radii, depths or forces")
     pair = (solution, other if isinstance(other, ContactPath) else solution)

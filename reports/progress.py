@@ -12,8 +12,8 @@ from rich.text import Text
 
 from cases.results.status import Status
 from cases.run.progress import ProgressEvent
-from reports.terminal.terminal import STYLES
-from reports.words.outcomes import tone_of, worded
+from reports.pages.outcomes import tone_of, worded
+from reports.terminal import STYLES
 
 TONES = ("good", "skip", "warn", "bad")
 
