@@ -9,7 +9,7 @@ import gc
 import io
 import sys
 import traceback
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, nullcontext
 from enum import StrEnum
 from pathlib import Path
@@ -89,20 +89,17 @@ class Only(StrEnum):
     STABILITY = "stability"
 
 
+Option = typer.Option
 Cases = Annotated[
     list[str] | None, typer.Argument(metavar="[CASE]...", help="Cases by name; all of the suite if none.")
 ]
-Out = Annotated[Path, typer.Option(help="Folder of the run: results.json, results.h5, report.html, figures.")]
-Baselines = Annotated[Path, typer.Option(help="Folder of the accepted numbers.")]
-Setting = Annotated[
-    list[str] | None,
-    typer.Option(
-        metavar="NAME=VALUE",
-        help="Setting of a method of an installed package: name=value, method.name=value, or a TOML file with a table "
-        "a method (a table in it, of the name of a scene, is for that scene). Repeatable.",
-    ),
-]
-Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Only the verdict and errors; for logs of CI.")]
+Methods = Annotated[list[str] | None, Option(help="Only this method. Repeatable.")]
+Against = Annotated[list[str] | None, Option(help="Compare each --method with this one, and nothing else. Repeatable.")]
+Baselines = Annotated[Path, Option(help="Folder of the accepted numbers.")]
+Folder = Annotated[Path, typer.Argument(help="Folder of a finished run.")]
+Quiet = Annotated[bool, Option("--quiet", "-q", help="Only the verdict and errors; for logs of CI.")]
+Strict = Annotated[bool, Option("--strict", help="Verdicts that stay open end with exit code 6.")]
+OUT = Path("build/verification")
 
 
 EXAMPLE_SCENE = """\
@@ -124,88 +121,74 @@ values = [2e-6, 5e-6, 10e-6]
 """
 
 
-def _print_example(wanted: bool) -> None:
-    if wanted:
-        typer.echo(EXAMPLE_SCENE, nl=False)
-        raise typer.Exit
+def _printed(text: Callable[[], str]) -> Callable[[bool], None]:
+    """A callback of an option that prints a text and stops."""
+
+    def callback(wanted: bool) -> None:
+        if wanted:
+            typer.echo(text().rstrip("\n"))
+            raise typer.Exit
+
+    return callback
 
 
-def _print_version(wanted: bool) -> None:
-    if wanted:
-        from importlib.metadata import version  # noqa: PLC0415
+def _version() -> str:
+    from importlib.metadata import version  # noqa: PLC0415
 
-        typer.echo(f"contact-verify {version('contact-verification')}")
-        raise typer.Exit
+    return f"contact-verify {version('contact-verification')}"
+
+
+def _schema() -> str:
+    import json  # noqa: PLC0415
+
+    from contact.files.scene_file import scene_schema  # noqa: PLC0415
+
+    return json.dumps(scene_schema(), indent=1, sort_keys=True)
 
 
 @app.callback()
 def _options(
     version: Annotated[
-        bool, typer.Option("--version", is_eager=True, callback=_print_version, help="Print the version and stop.")
+        bool, Option("--version", is_eager=True, callback=_printed(_version), help="Print the version and stop.")
     ] = False,
 ) -> None:
     pass
-
-
-def _print_schema(wanted: bool) -> None:
-    if wanted:
-        import json  # noqa: PLC0415
-
-        from contact.files.scene_file import scene_schema  # noqa: PLC0415
-
-        typer.echo(json.dumps(scene_schema(), indent=1, sort_keys=True))
-        raise typer.Exit
 
 
 @app.command("run", epilog=EXIT_CODES)
 def run_suite(
     cases: Cases = None,
     *,
-    suite: Annotated[Suite | None, typer.Option(help="Only cases of this suite.")] = None,
-    method: Annotated[
+    suite: Annotated[Suite | None, Option(help="Only cases of this suite.")] = None,
+    method: Methods = None,
+    against: Against = None,
+    setting: Annotated[
         list[str] | None,
-        typer.Option(
-            help="Only these methods; claims, timings and figures that need others are left out. Repeatable. "
-            "A method of an installed package, named alone, is compared with mdr."
+        Option(
+            metavar="NAME=VALUE",
+            help="Setting of a method of an installed package: name=value, method.name=value, or a TOML file with a "
+            "table per method (a table in it, of the name of a scene, is for that scene). Repeatable.",
         ),
     ] = None,
-    against: Annotated[
-        list[str] | None,
-        typer.Option(
-            help="Compare each --method with this one on all scenes of the cases, and nothing else. Repeatable."
-        ),
-    ] = None,
-    setting: Setting = None,
-    jobs: Annotated[int, typer.Option(help="Solutions at a time; timings always run alone.")] = 2,
-    out: Out = Path("build/verification"),
-    resume: Annotated[bool, typer.Option("--resume", help="Keep finished solutions of an earlier run in OUT.")] = False,
-    executor: Annotated[
-        str, typer.Option(help="processes, serial, or the address of a Dask scheduler (tcp://host:port).")
-    ] = "processes",
+    jobs: Annotated[int, Option(help="Solutions at a time; timings always run alone.")] = 2,
+    out: Annotated[Path, Option(help="Folder of the run: answers, report.html, figures.")] = OUT,
+    resume: Annotated[bool, Option("--resume", help="Keep finished solutions of an earlier run in OUT.")] = False,
+    executor: Annotated[str, Option(help="processes, serial, or a Dask scheduler (tcp://host:port).")] = "processes",
     time_limit: Annotated[
-        float | None,
-        typer.Option(
-            min=0.0,
-            help="Seconds a single solution may take; 0: no limit. By default 300 for methods of installed packages.",
-        ),
+        float | None, Option(min=0.0, help="Seconds per solution, 0: no limit; 300 for methods of installed packages.")
     ] = None,
-    timing: Annotated[bool, typer.Option(help="Measure what accuracy costs in time.")] = True,
+    timing: Annotated[bool, Option(help="Measure what accuracy costs in time.")] = True,
     only: Annotated[
-        Only | None,
-        typer.Option(
-            help="cost: time every method from coarse to fine, one solution at a time. stability: make one parameter "
-            "harder step by step; CASE then names stress tests."
-        ),
+        Only | None, Option(help="cost: only timings, coarse to fine. stability: only stress tests.")
     ] = None,
-    listed: Annotated[
-        bool, typer.Option("--list", help="List the cases and stop; a single CASE is shown in full.")
-    ] = False,
-    strict: Annotated[bool, typer.Option("--strict", help="Verdicts that stay open end with exit code 6.")] = False,
+    listed: Annotated[bool, Option("--list", help="List the cases and stop; a single CASE is shown in full.")] = False,
+    strict: Strict = False,
     quiet: Quiet = False,
 ) -> int:
     """Solve cases by every method, judge their claims, write the report.
 
-    Ctrl-C leaves a valid partial report; --resume goes on from there.
+    A method of an installed package, named alone, is compared with mdr. Ctrl-C leaves a valid partial report; --resume
+    goes on from there. With --only stability CASE names stress tests.
     """
     from cases.run.runner import RunOptions  # noqa: PLC0415
     from reports.commands import runs  # noqa: PLC0415
@@ -214,37 +197,27 @@ def run_suite(
         runs.list_cases(cases or [], suite or "")
         return 0
     options = RunOptions(out=out, suite=suite or "", jobs=jobs, resume=resume, time_limit=time_limit, timing=timing)
+    methods, settings = method or [], setting or []
     if only is Only.STABILITY:
-        return runs.stress(cases or [], method or [], options, quiet=quiet)
+        return runs.stress(cases or [], methods, options, quiet=quiet)
     if only is Only.COST:
-        return runs.cost(cases or [], options, methods=method or [], settings=setting or [], quiet=quiet)
-    return runs.run(
-        cases or [],
-        methods=method or [],
-        others=against or [],
-        settings=setting or [],
-        options=options,
-        executor=executor,
-        quiet=quiet,
-        strict=strict,
-    )
+        return runs.cost(cases or [], options, methods=methods, settings=settings, quiet=quiet)
+    asked = runs.Asked(names=cases or [], methods=methods, others=against or [], settings=settings)
+    return runs.run(asked, options, executor=executor, quiet=quiet, strict=strict)
 
 
 @app.command(epilog=EXIT_CODES)
 def gate(
-    run: Annotated[Path, typer.Argument(help="Folder of a finished run.")] = Path("build/verification"),
+    run: Folder = OUT,
     *,
     baseline: Baselines = Path("baselines"),
-    method: Annotated[
-        list[str] | None,
-        typer.Option(help="Only these methods; by default those that the run was made with. Repeatable."),
-    ] = None,
-    strict: Annotated[bool, typer.Option("--strict", help="Verdicts that stay open end with exit code 6.")] = False,
+    method: Methods = None,
+    strict: Strict = False,
     quiet: Quiet = False,
 ) -> int:
     """Compare a run with the accepted numbers: values, counters, nothing missing, nothing extra; then its claims.
 
-    results.json, summary.md and junit.xml then hold these checks too; `contact-verify report` draws pages with them.
+    By default those methods are compared that the run was made with. `contact-verify report` draws pages with it.
     """
     from reports.commands.baselines import run_gate  # noqa: PLC0415
 
@@ -253,19 +226,16 @@ def gate(
 
 @app.command(epilog=EXIT_CODES)
 def accept(
-    cases: Annotated[
-        list[str] | None,
-        typer.Argument(metavar="[CASE]...", help="Cases whose numbers become the baseline; all of RUN."),
-    ] = None,
+    cases: Cases = None,
     *,
-    reason: Annotated[str, typer.Option(help="Why these numbers are right; it is kept beside them.")],
-    run: Annotated[Path, typer.Option(help="Folder of the finished run they come from.")] = Path("build/verification"),
+    reason: Annotated[str, Option(help="Why these numbers are right; it is kept beside them.")],
+    run: Annotated[Path, Option(help="Folder of the finished run they come from.")] = OUT,
     baseline: Baselines = Path("baselines"),
-    write: Annotated[bool, typer.Option("--write", help="Write; without it only show what would change.")] = False,
-    loosen: Annotated[bool, typer.Option("--loosen", help="Let tolerances grow or records be withdrawn.")] = False,
-    jobs: Annotated[int, typer.Option(help="Repetitions at a time.")] = 2,
+    write: Annotated[bool, Option("--write", help="Write; without it only show what would change.")] = False,
+    loosen: Annotated[bool, Option("--loosen", help="Let tolerances grow or records be withdrawn.")] = False,
+    jobs: Annotated[int, Option(help="Repetitions at a time.")] = 2,
 ) -> None:
-    """Show what accepting a run's numbers would change, in units of tolerance and of uncertainty; write it if told to.
+    """Show what accepting a run's numbers would change, in units of tolerance and of stated error; write it on request.
 
     Refused: numbers that are not finite, uncommitted changes, a failing exact or order claim, continuous integration.
     """
@@ -280,47 +250,37 @@ def solve(
     scene: Annotated[Path, typer.Argument(help="Scene in TOML: tables layer, indenter, loading and effects.")],
     *,
     method: Annotated[
-        str,
-        typer.Option(help="mdr (the default), mdr_table, fem, bem, integral_equation, or a registered one."),
+        str, Option(help="mdr (the default), mdr_table, fem, bem, integral_equation, or a registered one.")
     ] = "",
     accuracy: Annotated[
         float | None,
-        typer.Option(
+        Option(
             help="Relative accuracy of radius, depth, force and stiffness, of critical numbers, or of restitution and "
             "peaks: tries methods from cheap to fine, and refuses an answer that states a larger error."
         ),
     ] = None,
     pressure_accuracy: Annotated[
-        float | None, typer.Option(help="Relative accuracy of the contact pressure, besides --accuracy.")
+        float | None, Option(help="Relative accuracy of the contact pressure, besides --accuracy.")
     ] = None,
     uncertain: Annotated[
         str,
-        typer.Option(
+        Option(
             metavar="INPUTS",
             help='Uncertain inputs, "thickness=3%, poissons_ratio=0.48..0.5, thickness~youngs_modulus=0.8": standard '
             "deviations, ranges, correlations.",
         ),
     ] = "",
-    samples: Annotated[
-        int, typer.Option(help="Scenes to draw for --uncertain; by default two for each input, and differences.")
-    ] = 0,
+    samples: Annotated[int, Option(help="Scenes to draw for --uncertain; by default differences, two per input.")] = 0,
     over: Annotated[
-        str,
-        typer.Option(
-            metavar="RANGE",
-            help='Solve for a range of one number, "thickness=1um..10um:20", ":log" behind it for equal factors.',
-        ),
+        str, Option(metavar="RANGE", help='Vary one number: "thickness=1um..10um:20", then ":log" for equal factors.')
     ] = "",
     advise: Annotated[
-        bool,
-        typer.Option("--advise", help="Say which effects change the answer by more than --accuracy (1 % by default)."),
+        bool, Option("--advise", help="Which effects change the answer by more than --accuracy?")
     ] = False,
-    against: Annotated[
-        str, typer.Option(metavar="METHOD", help="Solve by a second method too, and show the differences.")
-    ] = "",
+    against: Annotated[str, Option(metavar="METHOD", help="Solve by a second method too, show the differences.")] = "",
     write: Annotated[
         list[Path] | None,
-        typer.Option(
+        Option(
             "--write",
             "-w",
             help="Also write the answer: FILE.csv, .h5, .svg, .png or .pdf. inside.svg (.png, .pdf) draws the stressed "
@@ -329,39 +289,26 @@ def solve(
     ] = None,
     example: Annotated[
         bool,
-        typer.Option("--example", is_eager=True, callback=_print_example, help="Print an example scene and stop."),
+        Option("--example", is_eager=True, callback=_printed(lambda: EXAMPLE_SCENE), help="Print a scene and stop."),
     ] = False,
     schema: Annotated[
         bool,
-        typer.Option(
-            "--schema",
-            is_eager=True,
-            callback=_print_schema,
-            help="Print the JSON Schema of scenes for an editor and stop. Editors complete and check a scene whose "
-            "first line is `#:schema scene.schema.json`.",
-        ),
+        Option("--schema", is_eager=True, callback=_printed(_schema), help="Print the JSON Schema of scenes and stop."),
     ] = False,
 ) -> None:
     """Solve one scene: force, depth, contact radius and stiffness, each with its error bar.
 
-    An example to start from: contact-verify solve --example > scene.toml
+    An example to start from: contact-verify solve --example > scene.toml. With contact-verify solve --schema >
+    scene.schema.json editors complete and check a scene whose first line is `#:schema scene.schema.json`.
     """
     with _loading():
         from reports.commands.solve import Request  # noqa: PLC0415
         from reports.commands.solve import solve as run_command  # noqa: PLC0415
         from reports.terminal import progress_bar  # noqa: PLC0415
 
-    request = Request(
-        method=method,
-        accuracy=accuracy,
-        pressure_accuracy=pressure_accuracy,
-        uncertain=uncertain,
-        samples=samples,
-        over=over,
-        advise=advise,
-        against=against,
-        outputs=write or [],
-    )
+    wanted: Any = {"method": method, "accuracy": accuracy, "pressure_accuracy": pressure_accuracy, "samples": samples}
+    wanted |= {"uncertain": uncertain, "over": over, "advise": advise, "against": against, "outputs": write or []}
+    request = Request(**wanted)
     with progress_bar("scenes") if over else nullcontext() as progress:
         run_command(scene, request, progress)
 
@@ -371,9 +318,9 @@ app.command(epilog=EXIT_CODES)(curves.fit)
 
 @app.command(epilog=EXIT_CODES)
 def report(
-    run: Annotated[Path, typer.Argument(help="Folder of a finished or interrupted run.")],
+    run: Folder,
     other: Annotated[Path | None, typer.Argument(help="A second run to compare with the first.")] = None,
-    single_file: Annotated[bool, typer.Option("--single-file", help="All cases on one page.")] = False,
+    single_file: Annotated[bool, Option("--single-file", help="All cases on one page.")] = False,
 ) -> int:
     """Build the pages of a run again without computing; with two runs, compare the second with the first."""
     from reports.commands.runs import compare_runs, rebuild  # noqa: PLC0415

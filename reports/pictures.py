@@ -28,6 +28,8 @@ POINTS = 240
 FEWEST = 8
 # Histories of more instants are drawn as symbols: solving between them would take longer than the answer.
 MOST_INSTANTS = 2000
+# States named in a legend, at most: more fill the picture.
+MOST_NAMED = 8
 # A panel [inches]; one that stands alone is larger by this factor.
 SIZE, ALONE = (4.0, 2.9), 1.4
 
@@ -111,7 +113,7 @@ def sweep_figure(found: Sweep) -> Figure:
         axes.set(xlabel=x_label, ylabel=y_label)
         for state in range(states):
             axes.plot(x[state::states], y[state::states], label=f"state {state + 1}")
-    if states > 1:
+    if 1 < states <= MOST_NAMED:
         drawing.legend(handles=all_axes[0].lines, loc="outside lower center", ncols=min(states, 4))
     return drawing
 

@@ -12,7 +12,7 @@ from rich.text import Text
 
 from cases.results.status import Status
 from cases.run.progress import ProgressEvent
-from reports.pages.outcomes import tone_of, worded
+from reports.findings import in_words, tone_of
 from reports.terminal import STYLES
 
 TONES = ("good", "skip", "warn", "bad")
@@ -62,7 +62,7 @@ class RunDisplay:
         case = event.label.partition(" / ")[0]
         self._counts.setdefault(case, Counter())[tone_of(status)] += 1
         if tone_of(status) == "bad":
-            self._say(f"{status} {event.label}: {worded(event.reason)}", style=STYLES["bad"])
+            self._say(f"{status} {event.label}: {in_words(event.reason)}", style=STYLES["bad"])
 
     def _judged(self, case: str, status: Status) -> None:
         self._verdicts[case] = status

@@ -109,7 +109,7 @@ def told_of_friction(layer: ElasticLayer, radius: FloatArray) -> tuple[str, ...]
     most = f"by up to {100.0 * slip / (1.0 - slip):.2g} %" if slip < 0.5 else "by more than half of it"
     place = f"at a/h = {ratio:.3g} and nu = {layer.poissons_ratio:g}"
     told = f"frictionless: {place} dry friction of {_SPOKEN_OF:g} may raise the force {most}"
-    return (f"{told}; contact-verify advise tells more closely, Friction(coefficient=..) solves it",)
+    return (f"{told}; contact-verify solve --advise tells more closely, Friction(coefficient=..) solves it",)
 
 
 def _told_of_what_lies_below(layer: ElasticLayer, ratio: float) -> tuple[str, ...]:
@@ -118,4 +118,4 @@ def _told_of_what_lies_below(layer: ElasticLayer, ratio: float) -> tuple[str, ..
         return ()
     place = f"at a/h = {ratio:.3g} of the surface layer and nu = {layer.surface.poissons_ratio:g}"
     told = f"frictionless: {place} dry friction may raise the force, the more the stiffer what lies below"
-    return (f"{told}; contact-verify advise bounds it, Friction(coefficient=..) solves it",)
+    return (f"{told}; contact-verify solve --advise bounds it, Friction(coefficient=..) solves it",)

@@ -15,6 +15,7 @@ from cases.gate.ladders import accept_ladders, ladder_claims, read_ladders
 from cases.gate.proposal import BaselineChange, Proposal, propose
 from cases.gate.spread import measured_spreads
 from cases.gate.write_permission import write_conditions
+from cases.results.as_run import as_run
 from cases.results.files import read_run, require_run, write_verdicts
 from cases.results.records.claim import Kind
 from cases.results.records.run import CaseResult, RunResult
@@ -48,8 +49,8 @@ def run_gate(directory: Path, baselines: Path, *, methods: Collection[str], stri
         run = read_run(directory)
         result = _gated(run, baselines, methods or run.methods)
         write_verdicts(result, directory)
-        write_summaries(result, directory)
-    show_verdict(result, directory / "summary.md", quiet=quiet)
+        write_summaries(as_run(result), directory)
+    show_verdict(as_run(result), directory / "summary.md", quiet=quiet)
     return exit_code(result.statuses, strict=strict) if result.complete else ExitCode.INTERRUPTED
 
 

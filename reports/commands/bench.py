@@ -14,7 +14,7 @@ from contact.records.units import read_quantity
 from mdr.curves import Limit, fit_curve, fit_map
 from mdr.curves.reading import Cantilever, Measured, load_curves, read_map
 from reports.files import PICTURES, check_outputs, write_picture
-from reports.tables.curve_tables import fit_csv, fit_table, formula_table, map_csv, map_facts, shares_table
+from reports.fit_tables import fit_csv, fit_table, formula_table, map_csv, map_facts, shares_table
 from reports.terminal import console, show_facts, show_table
 from reports.words import small
 
@@ -134,14 +134,13 @@ def fit_map_file(file: Path, scene_file: Path, request: FitRequest, *, progress:
 
 
 def _write_outputs(outputs: Sequence[Path], table: Callable[[], str], figure: str, found: object) -> None:
-    """Write the table to files that end with .csv, the figure of that name in `reports.charts.curves` to the others."""
+    """Write the table to files that end with .csv, the figure of that name in `reports.fit_figures` to the others."""
     for path in outputs:
         if path.suffix == ".csv":
             write_whole(path, table())
         else:
             # Matplotlib only where it is asked for.
-            from reports.charts import curves  # noqa: PLC0415
-            from reports.figures.renderer import draw  # noqa: PLC0415
+            from reports import fit_figures  # noqa: PLC0415
 
-            write_picture(path, lambda: draw(getattr(curves, figure)(found)), key="fit")
+            write_picture(path, lambda: getattr(fit_figures, figure)(found), key="fit")
         console().print(f"written: {path}")

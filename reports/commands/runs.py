@@ -18,25 +18,21 @@ from cases.declare.selection import only_methods
 from cases.measurements.ladders.ladder_study import CLIMBERS, chosen, ladder_case
 from cases.measurements.ladders.ladder_table import LADDERS
 from cases.measurements.suites import SuiteStudies, run_of
-from cases.results.compare_runs import compare
+from cases.results.as_run import as_run
 from cases.results.files import read_run, require_run, write_whole
-from cases.results.records.run import RunResult
 from cases.results.status import ExitCode, Status, exit_code
 from cases.run.executors import by_name
 from cases.run.lock import locked
 from cases.run.runner import RunOptions, run_cases
+from cases.runs import Run
 from contact import InvalidInput
 from contact.records.extras import missing_extra
-from reports.pages.annotations import annotation_lines
-from reports.pages.junit import junit_text
-from reports.pages.matrix import run_matrix
-from reports.pages.moves import moves
-from reports.pages.one_factor import one_factor
-from reports.pages.outcomes import headline, nothing_ran, outcomes
-from reports.pages.summary import summary_text
+from reports import comparison
+from reports.book import claim_table, method_table, scene_table
+from reports.ci import annotation_lines, junit_text, summary_text
+from reports.findings import causes, findings, headline, nothing_ran, tone_of, who
 from reports.progress import RunDisplay
-from reports.tables.cost_tables import shortest_times, speed_ups
-from reports.tables.declaration_tables import claim_table, method_table, scene_table
+from reports.tables import matrix_table, shortest_times, speed_ups
 from reports.terminal import STYLES, console, show_table
 from reports.words import Table, display_name
 
@@ -46,107 +42,80 @@ REFEREE = "mdr"
 WORST_SHOWN = 12
 
 
-def run(
-    names: list[str],
-    *,
-    methods: list[str],
-    others: list[str],
-    settings: list[str],
-    options: RunOptions,
-    executor: str,
-    quiet: bool,
-    strict: bool,
-) -> int:
-    """Run cases and return the exit code.
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class Asked:
+    """What the command line names.
 
-    Args:
+    Attributes:
         names: of cases; all of the suite if none.
         methods: that solve them; all of the project if none.
         others: methods that these are compared with, and with nothing else.
         settings: of methods of installed packages, in words or files.
-        options: of the run.
-        executor: where solutions are computed.
-        quiet: whether only the verdict is shown.
-        strict: whether verdicts that stay open fail.
     """
-    foreign = bool(methods) and set(methods) <= set(registered())
-    asked = read_settings(settings, methods)
-    if others:
-        cases = list(_against(names, methods, others, options.suite))
-    elif foreign:
-        cases = [beside(case, methods, REFEREE) for case in _chosen(methods, names, options.suite)]
-    else:
-        chosen = _chosen(methods, names, options.suite)
-        # Of a suite those cases run that have one of the methods.
-        solved = [case for case in chosen if not methods or any(use.label in methods for use in case.methods)]
-        cases = [only_methods(case, methods) for case in ((not names and solved) or chosen)]
-    cases = [with_settings(case, asked) for case in cases]
-    options = dataclasses.replace(
-        options, methods=tuple(dict.fromkeys((*methods, *others))), executor=by_name(executor)
-    )
-    studied = options.suite in USUAL_SUITES and not names and not methods
+
+    names: list[str]
+    methods: list[str]
+    others: list[str]
+    settings: list[str]
+
+
+def run(asked: Asked, options: RunOptions, *, executor: str, quiet: bool, strict: bool) -> int:
+    """Run cases in an executor and return the exit code; with `strict`, verdicts that stay open fail."""
+    methods = asked.methods
+    settings = read_settings(asked.settings, methods)
+    cases = [with_settings(case, settings) for case in _cases(asked, options.suite)]
+    chosen = tuple(dict.fromkeys((*methods, *asked.others)))
+    options = dataclasses.replace(options, methods=chosen, executor=by_name(executor))
+    studied = options.suite in USUAL_SUITES and not asked.names and not methods
     with locked(options.out):
-        result = _carried_out(cases, options, studied, quiet=quiet)
-        write_pages(result, options.out)
-    show_verdict(result, page_of(options.out), quiet=quiet)
-    if not result.complete:
+        found = _carried_out(cases, options, studied, quiet=quiet)
+        write_pages(found, options.out)
+    show_verdict(found, page_of(options.out), quiet=quiet)
+    if not found.judged.complete:
         return ExitCode.INTERRUPTED
-    code = exit_code(result.statuses, strict=strict)
-    return ExitCode.NOTHING_RAN if result.unjudged and code is not ExitCode.GATE_FAILED else code
+    code = exit_code(found.statuses, strict=strict)
+    return ExitCode.NOTHING_RAN if found.unjudged and code is not ExitCode.GATE_FAILED else code
 
 
-def _chosen(methods: list[str], names: list[str], suite: str) -> tuple[Case, ...]:
-    """The cases of a suite, open to those of the methods that are of installed packages."""
-    library = {name: with_registered(case, methods) for name, case in load_cases().items()}
-    return select(library, names=names, suite=suite)
+def _cases(asked: Asked, suite: str) -> Sequence[Case]:
+    """The cases that are asked for, open to methods of installed packages."""
+    library, methods = load_cases(), asked.methods
+    if asked.others:
+        chosen = [library[case.name] for case in select(library, names=asked.names, suite=suite)]
+        return against(chosen, methods, asked.others)
+    opened = {name: with_registered(case, methods) for name, case in library.items()}
+    cases = select(opened, names=asked.names, suite=suite)
+    if methods and set(methods) <= set(registered()):
+        return [beside(case, methods, REFEREE) for case in cases]
+    # Of a suite those cases run that have one of the methods.
+    solved = [case for case in cases if not methods or any(use.label in methods for use in case.methods)]
+    return [only_methods(case, methods) for case in ((not asked.names and solved) or cases)]
 
 
-def _against(names: list[str], methods: list[str], others: list[str], suite: str) -> Sequence[Case]:
-    """The cases of a suite, with all their scenes, as comparisons of methods with others."""
-    library = load_cases()
-    chosen = [library[case.name] for case in select(library, names=names, suite=suite)]
-    return against(chosen, methods, others)
-
-
-def _carried_out(cases: Sequence[Case], options: RunOptions, studied: bool, *, quiet: bool) -> RunResult:
+def _carried_out(cases: Sequence[Case], options: RunOptions, studied: bool, *, quiet: bool) -> Run:
     """Run cases and, if this is a whole suite, its studies."""
     with SuiteStudies(options.suite, options.executor, options.jobs) as studies:
         solved = studies.begin if studied else options.solved
         with RunDisplay(console(), quiet=quiet) as display:
             result = run_cases(cases, dataclasses.replace(options, progress=display, solved=solved))
-        return studies.join(result, options.out) if studied and result.complete else result
+        return as_run(studies.join(result, options.out) if studied and result.complete else result)
 
 
-def show_verdict(result: RunResult, page: Path, *, quiet: bool) -> None:
-    """Matrix and worst rows (unless quiet), the verdict, where the report lies, annotations for GitHub."""
+def show_verdict(run: Run, page: Path, *, quiet: bool) -> None:
+    """The matrix (unless quiet), the worst findings, their cause, the verdict, the page, and annotations on GitHub."""
     terminal = console()
-    rows = outcomes(result)
     if not quiet:
-        show_table(matrix_table(result), on=terminal)
-    for sentence in moves(result):
+        show_table(matrix_table(run), on=terminal)
+    for one in [one for one in findings(run) if one.tone == "bad"][:WORST_SHOWN]:
+        terminal.print(Text.assemble((one.word, STYLES["bad"]), f" {one.sentence}: {one.message}"))
+    for sentence in causes(run):
         terminal.print(sentence)
-    failed = [row for row in rows if row.tone == "bad"][:WORST_SHOWN]
-    for row in failed:
-        terminal.print(Text.assemble((row.word, STYLES["bad"]), f" {row.case}: {row.place} ({row.who}): {row.message}"))
-    for sentence in one_factor(result):
-        terminal.print(sentence)
-    words, tone = headline(result, rows)
+    words, tone = headline(run)
     terminal.print(words, style=STYLES[tone])
     terminal.print(f"report: {page}")
     if os.environ.get("GITHUB_ACTIONS") == "true":
-        for line in annotation_lines(result):
+        for line in annotation_lines(run):
             terminal.print(line, soft_wrap=True)
-
-
-def matrix_table(result: RunResult) -> Table:
-    """The matrix case x kind of claim as words."""
-    matrix = run_matrix(result)
-    rows = tuple(
-        (name, *(f"{cell.word} {cell.fraction}".strip() if cell else "" for cell in cells))
-        for name, cells in matrix.rows
-    )
-    note = "The worst check of each kind with the fraction of its tolerance."
-    return Table(title="", note=note, heads=("case", *matrix.columns), rows=rows, words=1 + len(matrix.columns))
 
 
 def list_cases(names: list[str], suite: str) -> None:
@@ -208,13 +177,13 @@ def cost(names: list[str], options: RunOptions, *, methods: list[str], settings:
     terminal = console()
     with locked(options.out):
         with RunDisplay(terminal, quiet=quiet) as display:
-            result = run_cases(timed, dataclasses.replace(options, only_costs=True, progress=display))
+            result = as_run(run_cases(timed, dataclasses.replace(options, only_costs=True, progress=display)))
         write_pages(result, options.out)
     for table in (shortest_times(result), speed_ups(result)):
         if table is not None:
             show_table(table, on=terminal)
     terminal.print(f"report: {options.out / 'report.html'}")
-    missing = [case for case in result.cases if not case.work_precision]
+    missing = {case.name for case in result.judged.cases} - {cost.case for cost in result.judged.costs}
     return ExitCode.GATE_FAILED if missing or any(s is Status.INVALID for s in result.statuses) else 0
 
 
@@ -237,7 +206,7 @@ def stress(names: list[str], methods: list[str], options: RunOptions, *, quiet: 
             terminal.print(line, soft_wrap=True)
 
     with locked(options.out):
-        result = run_of((ladder_case(plans, climbers, progress=say) for _ in range(1)), options.out)
+        result = as_run(run_of((ladder_case(plans, climbers, progress=say) for _ in range(1)), options.out))
         write_pages(result, options.out)
     terminal.print(f"report: {page_of(options.out)}")
     return exit_code(result.statuses)
@@ -247,39 +216,44 @@ def rebuild(directory: Path, *, single_file: bool = False) -> int:
     """Write the pages of the run in `directory` again; return 5 if nothing ran in it, else 0."""
     require_run(directory)
     with locked(directory):
-        run = read_run(directory)
+        run = read(directory)
         write_pages(run, directory, single_file=single_file)
-    words, tone = headline(run, outcomes(run))
+    words, tone = headline(run)
     console().print(words, style=STYLES[tone])
-    console().print(f"report: {directory / 'report.html'}")
+    console().print(f"report: {page_of(directory)}")
     return _code(run)
 
 
-def _code(*runs: RunResult) -> ExitCode:
-    return ExitCode.NOTHING_RAN if any(nothing_ran(run) for run in runs) else ExitCode.PASSED
+def read(directory: Path) -> Run:
+    """The run in a folder.
+
+    Raises:
+        InvalidInput: if there is none, or it cannot be read.
+    """
+    return as_run(read_run(directory))
 
 
-# Processes that draw figures.
-DRAWERS = 2
+def _code(*runs: Run) -> ExitCode:
+    return ExitCode.NOTHING_RAN if any(map(nothing_ran, runs)) else ExitCode.PASSED
 
 
-def write_pages(run: RunResult, directory: Path, *, single_file: bool = False) -> None:
-    """report.html with a page for each case and figures, summary.md and junit.xml.
+def write_pages(run: Run, directory: Path, *, single_file: bool = False) -> None:
+    """report.html with a page per case and figures, summary.md and junit.xml.
 
     Where the packages of pages are not installed, the numbers, summary and junit.xml stand without them.
     """
     try:
-        from reports.pages.report import write_report  # noqa: PLC0415 - an extra brings what it draws with
+        from reports.page import write_report  # noqa: PLC0415 - an extra brings what it draws with
     except ModuleNotFoundError as error:
         if not missing_extra(error):
             raise
         console(stderr=True).print(f"no pages: {missing_extra(error)}, then contact-verify report {directory}")
     else:
-        write_report(run, directory, jobs=DRAWERS, single_file=single_file)
+        write_report(run, directory, single_file=single_file)
     write_summaries(run, directory)
 
 
-def write_summaries(run: RunResult, directory: Path) -> None:
+def write_summaries(run: Run, directory: Path) -> None:
     """Write summary.md and junit.xml."""
     write_whole(directory / "summary.md", summary_text(run))
     write_whole(directory / "junit.xml", junit_text(run))
@@ -291,23 +265,18 @@ def page_of(directory: Path) -> Path:
     return report if report.is_file() else directory / "summary.md"
 
 
-# The terminal shows so many of the numbers that moved; the page shows more.
-ROWS_IN_TERMINAL = 20
-
-
 def compare_runs(first: Path, second: Path) -> int:
     """Compare the run in `second` with that in `first`; the page lands beside the second; 5 if nothing ran in one."""
-    from reports.pages import comparison as pages  # noqa: PLC0415 - as above
+    from reports.page import write_comparison  # noqa: PLC0415 - an extra brings what it draws with
 
-    runs = read_run(first), read_run(second)
-    comparison = compare(*runs)
-    page = second / "comparison.html"
-    pages.write_comparison(comparison, runs, page)
-    words, tone = pages.headline(comparison)
-    terminal = console()
-    terminal.print(words, style=STYLES[tone])
-    for table in (pages.claim_table(comparison.claims), pages.number_table(comparison.numbers, most=ROWS_IN_TERMINAL)):
-        if table is not None:
-            show_table(table, on=terminal)
-    terminal.print(f"comparison: {page}")
+    runs = read(first), read(second)
+    claims, numbers = comparison.changed_claims(*runs), comparison.changed_numbers(*runs)
+    changes = comparison.worst_first(claims + numbers)
+    words, tone = comparison.headline(claims, numbers)
+    write_comparison(changes, (words, tone), runs, second / "comparison.html")
+    console().print(words, style=STYLES[tone])
+    for verdict in changes[:WORST_SHOWN]:
+        place = f"{verdict.case}: {verdict.claim} [{verdict.scene}] ({who(verdict.methods)})"
+        console().print(Text.assemble((verdict.word, STYLES[tone_of(verdict.status)]), f" {place}: {verdict.message}"))
+    console().print(f"comparison: {second / 'comparison.html'}")
     return _code(*runs)

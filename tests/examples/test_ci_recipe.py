@@ -25,9 +25,9 @@ from cases.declare import methods
 methods.BUILT_IN["fake"] = methods.TableEntry(module="tests.cases.fake_method", attribute="FakeHertz")
 from cases.measurements import suites
 from reports.commands import baselines, runs
-from reports.figures import figure_files
+from reports import page
 # Other tests look at pictures and at the studies of the suite, which take most of the time.
-figure_files.write_figure = lambda figure, directory: "<svg></svg>"
+page.svg_text = lambda drawing, key: "<svg></svg>"
 suites.QUICK = ()
 from tests.cases.fake_case import SLOW, fake_case, spoiled
 case = fake_case(slow=spoiled(SLOW, plant={plant!r}))

@@ -4,12 +4,14 @@ import dataclasses
 
 import pytest
 
-from cases.results.compare_runs import compare
+from cases.answers import Table
 from cases.results.files import write_run
-from cases.results.status import Status
+from cases.runs import Run
+from cases.verdicts import Status
 from reports.commands.runs import compare_runs, rebuild
-from reports.pages.comparison import headline
+from reports.comparison import changed_claims, changed_numbers, headline, worst_first
 from tests.cases.example_run import example_run, passing_case
+from tests.reports.example import example
 from tests.reports.test_pages import not_a_number, words_of
 
 
@@ -25,8 +27,22 @@ def runs(tmp_path):
 
 
 def test_a_run_against_itself_is_all_equal():
-    words, tone = headline(compare(example_run(), example_run()))
-    assert (words, tone) == ("all 10 numbers identical", "good")
+    run = example()
+    claims, numbers = changed_claims(run, run), changed_numbers(run, run)
+    assert headline(claims, numbers) == ("all 10 numbers identical", "good")
+    assert worst_first(claims + numbers) == []
+
+
+def test_a_number_that_moved_beyond_the_stated_errors_is_told_from_one_within():
+    run = example()
+    first, *others = run.answers
+    force = first.quantities["normal_force"]
+    for move, status in ((0.5, Status.PASS), (3.0, Status.DIFF)):
+        values = (force.values[0] + move * force.error[0],)
+        moved = dataclasses.replace(first, quantities={"normal_force": dataclasses.replace(force, values=values)})
+        found = changed_numbers(run, Run(judged=run.judged, answers=Table([moved, *others])))
+        assert [v.status for v in found if v.quantity == "normal_force" and v.error] == [status]
+        assert Status.INCOMPARABLE in {v.status for v in found if v.quantity == "indentation_depth"}
 
 
 def test_what_got_worse_is_the_headline(runs, capsys):

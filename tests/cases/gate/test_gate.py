@@ -4,10 +4,11 @@ import dataclasses
 
 import pytest
 
+from cases.results.as_run import as_run
 from cases.results.records.claim import Kind
 from cases.results.status import ExitCode, Status, exit_code
 from contact.records.extras import NOT_INSTALLED
-from reports.pages.annotations import MOST, annotation_lines
+from reports.ci import MOST, annotation_lines
 from tests.cases.example_run import OTHER_SCENE, SCENE, fast_run, passing_case
 from tests.cases.gate.example_baselines import accepted, clean_run, gated, regressions, scaled, with_force, with_rows
 
@@ -207,7 +208,7 @@ def test_without_any_baseline_everything_is_extra(tmp_path):
 
 
 def test_sixteen_failures_make_at_most_nine_annotations(tmp_path):
-    lines = annotation_lines(gated(clean_run(), tmp_path))
+    lines = annotation_lines(as_run(gated(clean_run(), tmp_path)))
     assert len(lines) <= MOST == 9
 
 
