@@ -9,7 +9,7 @@ from collections import Counter
 from collections.abc import Callable, Collection, Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from statistics import median
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from cases.answers import Answer
 from cases.runs import Run
@@ -171,14 +171,37 @@ class Finding:
 
 def findings(run: Run, verdicts: Collection[Verdict] | None = None) -> list[Finding]:
     """All that did not pass, grouped, worst first; of some verdicts only if they are given."""
-    found = [_of_answers(same) for same in grouped(_unanswered(run), _reason).values()] if verdicts is None else []
+    answers = _unanswered(run) if verdicts is None else []
+    found = [_of_answers(same) for same in grouped(answers, _reason).values()]
     chosen = run.judged.verdicts if verdicts is None else verdicts
     for same in grouped((v for v in chosen if v.status is not Status.SKIP), _claim).values():
         by_status = grouped((v for v in same if v.status is not Status.PASS), lambda v: v.status)
         found += [_of_verdicts(alike, len(same)) for alike in by_status.values()]
-    skipped = (v for v in chosen if v.status is Status.SKIP)
-    found += [_skipped(same, found) for same in grouped(skipped, _skip_reason).values()]
-    return sorted(_without_repeats(found), key=lambda one: (WORST_FIRST.index(one.status), -one.fraction))
+    # Each reason of a skip once: what a method does not model is not compared either.
+    known = {one.message for one in found}
+    skipped = grouped((v for v in chosen if v.status is Status.SKIP), _skip_reason)
+    found += [
+        _finding(same, "not compared", reason, methods=dict.fromkeys(method for v in same for method in v.methods))
+        for reason, same in skipped.items()
+        if reason not in known
+    ]
+    return sorted(found, key=lambda one: (WORST_FIRST.index(one.status), -one.fraction))
+
+
+def _finding(
+    same: Sequence[Verdict | Answer], claim: str, message: str, *, methods: Iterable[str], **more: Any
+) -> Finding:
+    """The finding of verdicts or answers that ended alike."""
+    cases = list(dict.fromkeys(one.case for one in same))
+    return Finding(
+        status=same[0].status,
+        case=cases[0] if len(cases) == 1 else f"{len(cases)} cases",
+        claim=claim,
+        methods=tuple(methods),
+        scenes=tuple(one.scene for one in same),
+        message=in_words(message),
+        **{"word": same[0].status.value, "total": len(same)} | more,
+    )
 
 
 def _claim(verdict: Verdict) -> tuple[str, ...]:
@@ -189,20 +212,9 @@ def _claim(verdict: Verdict) -> tuple[str, ...]:
 
 def _of_verdicts(same: Sequence[Verdict], total: int) -> Finding:
     worst = min(same, key=severity)
-    cases = list(dict.fromkeys(v.case for v in same))
-    return Finding(
-        status=worst.status,
-        word=word_of(worst),
-        case=cases[0] if len(cases) == 1 else f"{len(cases)} cases",
-        claim=worst.claim,
-        methods=worst.methods,
-        scenes=tuple(v.scene for v in same),
-        total=total,
-        size=size_text([error for v in same if (error := relative_error(v)) is not None]) if len(same) > 1 else "",
-        fraction=worst.fraction or 0.0,
-        worst=worst,
-        message=in_words(worst.message),
-    )
+    errors = [error for v in same if (error := relative_error(v)) is not None]
+    sizes = {"size": size_text(errors) if len(same) > 1 else "", "fraction": worst.fraction or 0.0, "worst": worst}
+    return _finding(same, worst.claim, worst.message, methods=worst.methods, word=word_of(worst), total=total, **sizes)
 
 
 def size_text(errors: Sequence[float]) -> str:
@@ -225,47 +237,14 @@ def _reason(answer: Answer) -> tuple[str, ...]:
 
 
 def _of_answers(same: Sequence[Answer]) -> Finding:
-    first, cases = same[0], list(dict.fromkeys(answer.case for answer in same))
-    return Finding(
-        status=first.status,
-        word=first.status.value,
-        case=cases[0] if len(cases) == 1 else f"{len(cases)} cases",
-        claim="not modelled" if first.status is Status.SKIP else "no answer",
-        methods=tuple(dict.fromkeys(answer.method for answer in same)),
-        scenes=tuple(answer.scene for answer in same),
-        total=len(same),
-        message=in_words(first.reason),
-    )
+    claim = "not modelled" if same[0].status is Status.SKIP else "no answer"
+    return _finding(same, claim, same[0].reason, methods=dict.fromkeys(answer.method for answer in same))
 
 
 def _skip_reason(verdict: Verdict) -> str:
     """Why a verdict was skipped, without the method's name before it."""
-    names = (f"{method}: " for method in verdict.methods)
-    return next(
-        (verdict.message.removeprefix(name) for name in names if verdict.message.startswith(name)), verdict.message
-    )
-
-
-def _skipped(same: Sequence[Verdict], known: Iterable[Finding]) -> Finding:
-    cases = list(dict.fromkeys(v.case for v in same))
-    return Finding(
-        status=Status.SKIP,
-        word=Status.SKIP.value,
-        case=cases[0] if len(cases) == 1 else f"{len(cases)} cases",
-        claim="not compared",
-        methods=tuple(dict.fromkeys(method for v in same for method in v.methods)),
-        scenes=tuple(v.scene for v in same),
-        total=len(same),
-        message=in_words(_skip_reason(same[0])),
-    )
-
-
-def _without_repeats(found: Iterable[Finding]) -> list[Finding]:
-    """Each reason of a skip once: what a method does not model is not compared either."""
-    kept: dict[object, Finding] = {}
-    for one in found:
-        kept.setdefault(one.message if one.status is Status.SKIP else id(one), one)
-    return list(kept.values())
+    method, _, reason = verdict.message.partition(": ")
+    return reason if method in verdict.methods else verdict.message
 
 
 def counts(run: Run) -> tuple[tuple[Status, int], ...]:
