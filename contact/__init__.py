@@ -23,7 +23,6 @@ from contact.answer.stages import Cost, StageLog, StageRecord
 from contact.records.errors import ContactError, InvalidInput, NotConvergedError, UnsupportedSceneError
 from contact.records.validation import Numbers
 from contact.scene.coated_pair import CoatedPair
-from contact.scene.depth_functions import DepthFunction, ExponentialDepth, LinearDepth, PowerLawDepth, TabulatedDepth
 from contact.scene.effects import (
     Adhesion,
     Effect,
@@ -34,10 +33,15 @@ from contact.scene.effects import (
     StandardSolid,
     Viscoelasticity,
 )
-from contact.scene.elastic_layer import ElasticLayer
-from contact.scene.graded_layer import GradedLayer
-from contact.scene.layer import Layer
-from contact.scene.layer_stack import ElasticBase, LayerStack, Sublayer
+from contact.scene.graded_layer import (
+    DepthFunction,
+    ExponentialDepth,
+    GradedLayer,
+    LinearDepth,
+    PowerLawDepth,
+    TabulatedDepth,
+)
+from contact.scene.layer import ElasticBase, ElasticLayer, Layer, LayerStack, Sublayer
 from contact.scene.loading import (
     ContactRadii,
     DepthHistory,

@@ -1,11 +1,11 @@
-"""Pictures of fits of force curves."""
+"""Pictures of fits of force curves and of maps of them."""
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from contact.records.units import prefix_for
-from contact.records.validation import FloatArray, IntArray
+from contact.records.validation import FloatArray
 from mdr.curves import CurveFit, MapFit
 from reports.style import BLUE, GREEN, GREY, ORANGE, PURPLE, VERMILLION, line_with_band, mark_decades, panels
 from reports.words import with_prefix
@@ -17,57 +17,73 @@ COLOURS = (VERMILLION, GREEN, ORANGE, PURPLE)
 
 
 def fit_figure(found: CurveFit) -> Figure:
-    """Measured curve with fit and formulas of the same modulus, moduli by formulas at each depth, residuals."""
-    drawing, (curve, *apparent, residual) = panels(3 if found.formulas else 2, size=(4.0, 3.1))
-    order = np.argsort(found.depth)
-    factor, prefix = prefix_for(found.depth.tolist())
-    for axes in (curve, *apparent, residual):
-        axes.set_xlabel(f"depth [{prefix}m]")
-    _draw_curve(curve, found, order, found.depth[order] / factor)
-    for axes in apparent:
-        _draw_moduli(axes, found, order, found.depth[order] / factor)
-    left = (found.force - found.fitted)[order]
-    size, unit = prefix_for(left.tolist())
-    residual.plot(found.depth[order] / factor, left / size, "o", color=GREY, markersize=3.0, markerfacecolor="none")
-    residual.set(title="Residual", ylabel=f"measured - fit [{unit}N]")
+    """Measured and fitted curve with formulas of the same modulus, moduli at each depth, residuals."""
+    drawing, (curve, *modulus, residual) = panels(3 if found.per_modulus.size else 2, size=(4.0, 3.1))
+    in_time = bool(found.time.size)
+    factor, prefix = (1.0, "") if in_time else prefix_for(found.depth.tolist())
+    x = (found.time if in_time else found.depth) / factor
+    for axes in (curve, *modulus, residual):
+        axes.set_xlabel("time [s]" if in_time else f"depth [{prefix}m]")
+    _draw_curve(curve, found, x)
+    for axes in modulus:
+        _draw_moduli(axes, found, x)
+    left = found.measured - found.fitted
+    factor, prefix = prefix_for(left.tolist())
+    _measured(residual, x, left / factor)
+    residual.set(title="Residual", ylabel=f"measured - fit [{prefix}{'N' if found.response == 'force' else 'm'}]")
     drawing.legend(*curve.get_legend_handles_labels(), loc="outside lower center", ncols=2)
     return drawing
 
 
-def _draw_curve(axes: Axes, found: CurveFit, order: IntArray, x: FloatArray) -> None:
-    modulus = with_prefix(found.youngs_modulus, "Pa")
-    factor, prefix = prefix_for(found.force.tolist())
-    axes.set(title="Force curve", ylabel=f"force [{prefix}N]")
-    axes.plot(x, found.force[order] / factor, "o", color=GREY, markersize=3.0, markerfacecolor="none", label="measured")
-    band = found.band[order] / factor
-    line_with_band(axes, x, found.fitted[order] / factor, band, color=BLUE, label=f"fit, E = {modulus}")
+def _measured(axes: Axes, x: FloatArray, y: FloatArray) -> None:
+    axes.plot(x, y, "o", color=GREY, markersize=3.0, markerfacecolor="none", label="measured")
+
+
+def _draw_curve(axes: Axes, found: CurveFit, x: FloatArray) -> None:
+    modulus, order = with_prefix(found.youngs_modulus, "Pa"), np.argsort(x)
+    factor, prefix = prefix_for(found.measured.tolist())
+    axes.set(title="Force curve", ylabel=f"force [{prefix}N]" if found.response == "force" else f"depth [{prefix}m]")
+    _measured(axes, x, found.measured / factor)
+    label, band = f"fit, {'E' if found.per_modulus.size else 'G'} = {modulus}", found.band[order] / factor
+    line_with_band(axes, x[order], found.fitted[order] / factor, band, color=BLUE, label=label)
+    shifted = found.depth - found.values.get("contact_point", 0.0)
     for one, colour in zip(found.formulas, COLOURS, strict=False):
-        shifted = found.depth - found.values.get("contact_point", 0.0)
         force = found.youngs_modulus * one.formula.per_modulus(shifted) + found.background
-        axes.plot(
-            x, force[order] / factor, "--", color=colour, linewidth=1.0, label=f"{one.formula.name}, E = {modulus}"
-        )
+        label = f"{one.formula.name}, E = {modulus}"
+        axes.plot(x[order], force[order] / factor, "--", color=colour, linewidth=1.0, label=label)
 
 
-def _draw_moduli(axes: Axes, found: CurveFit, order: IntArray, x: FloatArray) -> None:
-    """The modulus that a formula takes from the fitted force at each depth; the true one is level."""
+def _draw_moduli(axes: Axes, found: CurveFit, x: FloatArray) -> None:
+    """The modulus of each point alone, and those that formulas take from the fitted force; the true one is level."""
     factor, prefix = prefix_for([found.youngs_modulus])
-    shifted = (found.depth - found.values.get("contact_point", 0.0))[order]
-    pressed = shifted > LEAST_SHARE * shifted.max()
-    axes.set(title="Modulus by a formula at each depth", yscale="log", ylabel=f"E by a formula [{prefix}Pa]")
+    shifted = found.depth - found.values.get("contact_point", 0.0)
+    pressed = (shifted > LEAST_SHARE * shifted.max()) & (found.per_modulus > 0.0)
+    positive = pressed & (found.modulus_at_depth > 0.0)
+    axes.set(title="Modulus at each depth", yscale="log", ylabel=f"E [{prefix}Pa]")
+    _measured(axes, x[positive], found.modulus_at_depth[positive] / factor)
     axes.axhline(found.youngs_modulus / factor, color=BLUE)
-    force = (found.fitted - found.background)[order][pressed]
+    order = np.flatnonzero(pressed)[np.argsort(x[pressed])]
     for one, colour in zip(found.formulas, COLOURS, strict=False):
-        moduli = force / one.formula.per_modulus(shifted[pressed])
-        axes.plot(x[pressed], moduli / factor, "--", color=colour, linewidth=1.0)
+        moduli = (found.fitted - found.background)[order] / one.formula.per_modulus(shifted[order])
+        axes.plot(x[order], moduli / factor, "--", color=colour, linewidth=1.0)
     mark_decades(axes.yaxis)
 
 
 def map_figure(found: MapFit) -> Figure:
-    """Share of curves below each modulus."""
-    known = np.sort(found.youngs_modulus[found.converged])
-    factor, prefix = prefix_for(known.tolist())
-    drawing, (axes,) = panels(1, size=(5.6, 3.9))
-    axes.plot(known / factor, 100 * np.arange(1, known.size + 1) / max(known.size, 1), color=BLUE)
-    axes.set(title="Moduli", xlabel=f"E [{prefix}Pa]", ylabel="share of curves [%]")
+    """Histogram of the moduli, and the moduli in x and y where the places are known."""
+    moduli, places = found.youngs_modulus[found.converged], found.positions[found.converged]
+    factor, prefix = prefix_for(moduli.tolist())
+    placed = bool(moduli.size) and bool(np.isfinite(places).all())
+    drawing, (histogram, *maps) = panels(2 if placed else 1, size=(4.6, 3.6))
+    if moduli.size:
+        histogram.hist(moduli / factor, bins=min(40, 4 + round(np.sqrt(moduli.size))), color=BLUE)
+    failed = found.converged.size - moduli.size
+    title = f"Histogram of {moduli.size} curves" + f", {failed} more have no fit" * bool(failed)
+    histogram.set(title=title, xlabel=f"E [{prefix}Pa]", ylabel="number of curves")
+    for axes in maps:
+        size, unit = prefix_for(np.ravel(places).tolist())
+        x, y = places.T[:2] / size
+        shown = axes.scatter(x, y, c=moduli / factor, cmap="cividis", s=18.0)
+        drawing.colorbar(shown, label=f"E [{prefix}Pa]")
+        axes.set(title="Map", xlabel=f"x [{unit}m]", ylabel=f"y [{unit}m]", aspect="equal")
     return drawing

@@ -10,9 +10,7 @@ from numpy.typing import ArrayLike
 
 from contact.answer.solution import ContactPath, Fields, HistoryPath, sampled
 from contact.records.validation import FloatArray
-from contact.scene.elastic_layer import ElasticLayer
-from contact.scene.layer import Layer
-from contact.scene.layer_stack import LayerStack
+from contact.scene.layer import ElasticLayer, Layer, LayerStack
 
 # From this Poisson's ratio on, and from this a/h, an answer without friction says what friction would move: a
 # coefficient of 0.1 then moves it by up to four per cent or more (0.405 and 0.346 of the bound below at a/h = 1 and

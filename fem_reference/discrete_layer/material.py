@@ -9,7 +9,7 @@ import numpy as np
 
 from contact.records.errors import InvalidInput
 from contact.records.validation import FloatArray, IntArray
-from contact.scene.elastic_layer import ElasticLayer
+from contact.scene.layer import ElasticLayer
 
 
 @dataclass(frozen=True)

@@ -55,7 +55,7 @@ def solved(method, scene, settings="{}"):
 
 
 IN_TIME = ("mdr.history", "mdr.impact", "fem_reference.in_time")
-ADHESION = ("bem.adhesion", "mdr.adhesive", "mdr.detachment", "fem_reference.adhesion")
+ADHESION = ("mdr.adhesive", "mdr.detachment", "fem_reference.adhesion")
 FRICTION = ("mdr.friction", "fem_reference.elastic.stick", "fem_reference.elastic.friction")
 EFFECT_ROOMS = (*IN_TIME, *ADHESION, *FRICTION)
 

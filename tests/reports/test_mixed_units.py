@@ -34,7 +34,8 @@ def answer(tmp_path, capsys, text, *arguments):
 def test_a_scene_with_some_units_names_the_bare_fields_and_the_remedy(told):
     code, text = told(MIXED, "solve")
     assert code == 4
-    assert "layer.thickness = 5, loading.values = 2e-07: no unit" in text
+    assert "layer.thickness = 5: no unit" in text
+    assert "loading.values = [0, '0.1 um', 2e-07]: no unit" in text
     assert "('5 kPa')" in text
     assert 'as in "5 um", or none of them (SI)' in text
 

@@ -1,6 +1,6 @@
 """How the constants of a graded layer change with depth, as finite elements derive it from what the user gave.
 
-It is written here once more, and not asked of `contact.scene.depth_functions`: the other methods do that, and a mistake
+It is written here once more, and not asked of `contact.scene.graded_layer`: the other methods do that, and a mistake
 there would go unseen between two methods that share it.
 """
 

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from contact import InvalidInput, NotConvergedError, Scene
+from contact import InvalidInput, NotConvergedError, Scene, UnsupportedSceneError
 from contact.records.validation import BoolArray, FloatArray
+from mdr.curves.families import check_parameters
 from mdr.curves.fit import DEFAULT_PARAMETERS, Limit, fit_curve
-from mdr.curves.models import check_parameters
 from mdr.curves.result import CurveFit
 
 
@@ -21,20 +21,16 @@ class MapFit:
     Attributes:
         curves: The fit of each curve; None where there is none, see `reasons`.
         reasons: Why a curve has no fit, in words; empty where it has one.
-        confidence: Of intervals.
+        positions: Of the curves in the map [m], shape (n, 2), not a number where unknown.
     """
 
     curves: tuple[CurveFit | None, ...]
     reasons: tuple[str, ...]
-    confidence: float
+    positions: FloatArray
 
     def of(self, quantity: Callable[[CurveFit], float]) -> FloatArray:
         """A number of each curve, not a number where it has no fit, shape (n,)."""
         return np.array([np.nan if fit is None else quantity(fit) for fit in self.curves])
-
-    def value(self, name: str) -> FloatArray:
-        """A fitted parameter of each curve, zero where it was not fitted, shape (n,)."""
-        return self.of(lambda fit: fit.values.get(name, 0.0))
 
     @property
     def youngs_modulus(self) -> FloatArray:
@@ -48,28 +44,13 @@ class MapFit:
 
     @property
     def contact_point(self) -> FloatArray:
-        """d0 [m]."""
-        return self.value("contact_point")
-
-    @property
-    def baseline(self) -> FloatArray:
-        """f0 [N] at the contact point."""
-        return self.value("baseline")
-
-    @property
-    def scatter(self) -> FloatArray:
-        """Standard deviation of the residuals [N]."""
-        return self.of(lambda fit: float(np.std(fit.force - fit.fitted)))
+        """d0 [m], zero where it was not fitted."""
+        return self.of(lambda fit: fit.values.get("contact_point", 0.0))
 
     @property
     def converged(self) -> BoolArray:
         """Which curves have a fit."""
         return np.array([fit is not None for fit in self.curves])
-
-    @property
-    def numerical_error(self) -> float:
-        """Largest relative error of E by the computation itself."""
-        return max((fit.numerical_error for fit in self.curves if fit is not None), default=float("nan"))
 
     @property
     def interval(self) -> FloatArray:
@@ -86,6 +67,7 @@ def fit_map(
     parameters: Sequence[str] = DEFAULT_PARAMETERS,
     confidence: float = 0.95,
     limit: Limit | None = None,
+    positions: FloatArray | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> MapFit:
     """Fit every curve of a map as `fit_curve` does.
@@ -97,6 +79,7 @@ def fit_map(
         parameters: As for `fit_curve`.
         confidence: Of the intervals.
         limit: As for `fit_curve`.
+        positions: Of the curves in the map [m], shape (n, 2).
         progress: Called with how many of how many curves are done.
 
     Raises:
@@ -104,7 +87,7 @@ def fit_map(
     """
     check_parameters(scene, parameters)
     if not len(force) or np.ndim(force[0]) != 1:
-        raise InvalidInput(f"force has the shape {np.shape(force)}: give one row a curve")
+        raise InvalidInput(f"force has the shape {np.shape(force)}: give one row per curve")
     depths = [np.asarray(depth)] * len(force) if np.ndim(depth[0]) == 0 else list(depth)
     if len(depths) != len(force):
         raise InvalidInput(f"a map of {len(depths)} depths and {len(force)} forces: give one depth for each force")
@@ -112,13 +95,14 @@ def fit_map(
     reasons: list[str] = []
     for done, (d, f) in enumerate(zip(depths, force, strict=True), 1):
         try:
-            curves.append(
-                fit_curve(scene, d, f, parameters=parameters, confidence=confidence, limit=limit, formulas=False)
-            )
-            reasons.append("")
-        except (InvalidInput, NotConvergedError) as error:
+            found = fit_curve(scene, d, f, parameters=parameters, confidence=confidence, limit=limit, formulas=False)
+        except (InvalidInput, NotConvergedError, UnsupportedSceneError) as error:
             curves.append(None)
             reasons.append(str(error))
+        else:
+            curves.append(found)
+            reasons.append("")
         if progress is not None:
             progress(done, len(force))
-    return MapFit(curves=tuple(curves), reasons=tuple(reasons), confidence=confidence)
+    unknown = np.full((len(curves), 2), np.nan)
+    return MapFit(curves=tuple(curves), reasons=tuple(reasons), positions=unknown if positions is None else positions)
