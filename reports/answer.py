@@ -1,6 +1,5 @@
 """An answer as people and spreadsheets read it: tables with error bars, and CSV with every digit."""
 
-from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -51,20 +50,18 @@ PRINTED = {
 
 def solution_table(solution: Solution, longest: int = LONGEST) -> Table:
     """The states of an answer, each number with the uncertainty that the method states."""
-    names = PRINTED[type(solution)]
-    shown = _shown(len(solution), longest)
-    factors = {name: prefix_for(getattr(solution, name)) for name in names}
-    heads = tuple(f"{SYMBOLS[name]} [{factors[name][1]}{UNITS[name]}]" for name in names)
-    columns = [_column(solution, name, factors[name][0], shown) for name in names]
-    omitted = len(solution) - len(shown)
-    skipped = f" {omitted} of {len(solution)} states are not printed." if omitted else ""
-    return Table(
-        title=_title(solution),
-        note=f"{BRACKETS}{skipped}",
-        heads=heads,
-        rows=tuple(zip(*columns, strict=True)),
-        words=0,
-    )
+    # Distances of the printed states are one at least, so that none comes twice.
+    states = len(solution)
+    shown = np.linspace(0, states - 1, min(states, longest)).round().astype(np.intp)
+    heads, columns = [], []
+    for name in PRINTED[type(solution)]:
+        factor, prefix = prefix_for(getattr(solution, name))
+        heads.append(f"{SYMBOLS[name]} [{prefix}{UNITS[name]}]")
+        numbers = np.asarray(getattr(solution, name))[shown] / factor, _uncertainty(solution, name)[shown] / factor
+        columns.append([_readable(float(value), float(error)) for value, error in zip(*numbers, strict=True)])
+    skipped = f" {states - len(shown)} of {states} states are not printed." if states > len(shown) else ""
+    rows = tuple(zip(*columns, strict=True))
+    return Table(title=_title(solution), note=f"{BRACKETS}{skipped}", heads=tuple(heads), rows=rows, words=0)
 
 
 def _title(solution: Solution) -> str:
@@ -74,18 +71,6 @@ def _title(solution: Solution) -> str:
     return f"{display_name(solution.method)}: {indenter} on a {solution.scene.layer.title}{effects}"
 
 
-def _shown(states: int, longest: int) -> np.ndarray[tuple[int], np.dtype[np.intp]]:
-    """Indices of the printed states, first and last among them."""
-    # Their distances are one at least, so that none comes twice.
-    return np.linspace(0, states - 1, min(states, longest)).round().astype(np.intp)
-
-
-def _column(solution: Solution, name: str, factor: float, shown: Iterable[int]) -> list[str]:
-    values = np.asarray(getattr(solution, name), dtype=np.float64) / factor
-    uncertain = _uncertainty(solution, name) / factor
-    return [_readable(float(values[i]), float(uncertain[i])) for i in shown]
-
-
 def _readable(value: float, uncertainty: float) -> str:
     """At most `DIGITS` digits; fewer where the uncertainty allows no more."""
     if uncertainty < 0.5 * abs(value) * 10.0**-DIGITS:
@@ -93,28 +78,24 @@ def _readable(value: float, uncertainty: float) -> str:
     return measured(value, uncertainty)
 
 
+# What a loading prescribes is exact.
+GIVEN = {
+    "ContactRadii": ("contact_radius",),
+    "IndentationDepths": ("indentation_depth",),
+    "NormalForces": ("normal_force",),
+    "DepthHistory": ("time", "indentation_depth"),
+    "ForceHistory": ("time", "normal_force"),
+    "Impact": ("time",),
+    "Detachment": ("contact_radius",),
+}
+
+
 def _uncertainty(solution: Solution, name: str) -> FloatArray:
     """Absolute uncertainty, shape (n,): zero for what the scene prescribes, infinite where the method states none."""
-    states = (len(solution),)
-    if name in _prescribed(solution):
-        return np.zeros(states)
-    if name not in solution.error_estimate:
-        return np.full(states, np.inf)
-    return np.array(np.broadcast_to(solution.uncertainty(name), states))
-
-
-def _prescribed(solution: Solution) -> tuple[str, ...]:
-    """What the loading gives: exact by definition."""
-    given = {
-        "ContactRadii": ("contact_radius",),
-        "IndentationDepths": ("indentation_depth",),
-        "NormalForces": ("normal_force",),
-        "DepthHistory": ("time", "indentation_depth"),
-        "ForceHistory": ("time", "normal_force"),
-        "Impact": ("time",),
-        "Detachment": ("contact_radius",),
-    }
-    return given[type(solution.scene.loading).__name__]
+    if name in GIVEN[type(solution.scene.loading).__name__]:
+        return np.zeros(len(solution))
+    stated = solution.stated_error(name)
+    return np.full(len(solution), np.inf) if stated is None else stated
 
 
 def difference_table(solution: Solution, other: Solution) -> Table:
@@ -146,7 +127,8 @@ def difference_table(solution: Solution, other: Solution) -> Table:
 
 def solution_facts(solution: Solution) -> list[tuple[str, str]]:
     """What is said once of an answer: critical values, cost, own error estimate, notes but that on the depth."""
-    facts = _critical_values(solution)
+    # Pull-off of a detachment, restitution and peaks of an impact; nothing for a plain path.
+    facts = [(name.replace("_", " "), _critical_value(solution, name)) for name in single_numbers(solution)]
     worst = {name: float(np.max(error)) for name, error in solution.error_estimate.items() if np.size(error)}
     estimates = ", ".join(f"{name.replace('_', ' ')} {small(error)}" for name, error in worst.items())
     facts += [("relative error estimate", estimates)] if estimates else []
@@ -155,11 +137,6 @@ def solution_facts(solution: Solution) -> list[tuple[str, str]]:
     facts += [("scene", scene_line(solution.scene))]
     above = depth_note(solution.scene, depths_of(solution))
     return facts + [("note", note) for note in solution.notes if note != above]
-
-
-def _critical_values(solution: Solution) -> list[tuple[str, str]]:
-    """Pull-off of a detachment, restitution and peaks of an impact; nothing for a plain path."""
-    return [(name.replace("_", " "), _critical_value(solution, name)) for name in single_numbers(solution)]
 
 
 def _critical_value(solution: Solution, name: str) -> str:
@@ -172,15 +149,13 @@ def _critical_value(solution: Solution, name: str) -> str:
 
 def solution_csv(solution: Solution) -> str:
     """Every state in SI units with its absolute uncertainty; an uncertainty the method does not state stays empty."""
-    units = [(name, UNITS[name].replace("/", "_per_")) for name in solution.ARRAYS]
-    heads = [head for name, unit in units for head in (f"{name}_{unit}", f"{name}_uncertainty_{unit}")]
-    columns = [part for name in solution.ARRAYS for part in _csv_columns(solution, name)]
-    return csv_text(heads, zip(*columns, strict=True))
-
-
-def _csv_columns(solution: Solution, name: str) -> tuple[list[float], list[float | str]]:
-    uncertain = _uncertainty(solution, name).tolist()
-    return getattr(solution, name).tolist(), [u if np.isfinite(u) else "" for u in uncertain]
+    columns: dict[str, list[float | str]] = {}
+    for name in solution.ARRAYS:
+        unit = UNITS[name].replace("/", "_per_")
+        columns[f"{name}_{unit}"] = getattr(solution, name).tolist()
+        stated = _uncertainty(solution, name).tolist()
+        columns[f"{name}_uncertainty_{unit}"] = [error if np.isfinite(error) else "" for error in stated]
+    return csv_text(columns, zip(*columns.values(), strict=True))
 
 
 def _stage(stage: StageRecord) -> str:
@@ -197,65 +172,43 @@ TOGETHER = 0.5
 def propagated_table(found: "Propagated") -> Table:
     """Value, numerical error, uncertainty by the inputs and what each input contributes, of the last step."""
     names = list(found.quantities[0].by_input) if found.quantities else []
+    words = [one.name.replace("_", " ") for one in found.quantities]
+    note = "Standard uncertainty by the inputs at the last step, beside the error of the method; "
+    note += f"{found.solved} scenes solved{'' if names else ', by samples'}."
+    if bent := [word for word, one in zip(words, found.quantities, strict=True) if one.bends]:
+        note += f" Not linear over these uncertainties: {', '.join(bent)}; --samples takes the whole of it."
+    pairs = [(words[i], words[j], float(found.correlation[i, j])) for j in range(len(words)) for i in range(j)]
+    if together := [f"{a} and {b} ({share:+.2f})" for a, b, share in pairs if abs(share) >= TOGETHER]:
+        note += f" Moving together: {', '.join(together)}."
+    heads = ("quantity", "value", "numerical error", "by inputs", "relative", *names)
     rows = tuple(_row(one, names) for one in found.quantities)
-    how = f"{found.solved} scenes solved" + ("" if names else ", by samples")
-    bent = [one.name.replace("_", " ") for one in found.quantities if one.bends]
-    advice = (
-        f" Not linear over these uncertainties: {', '.join(bent)}; --samples takes the whole of it." if bent else ""
-    )
-    return Table(
-        title="Uncertain inputs",
-        note=f"Standard uncertainty by the inputs at the last step, beside the error of the method; {how}.{advice}"
-        f"{_together(found)}",
-        heads=("quantity", "value", "numerical error", "by inputs", "relative", *names),
-        rows=rows,
-        words=1,
-    )
+    return Table(title="Uncertain inputs", note=note, heads=heads, rows=rows)
 
 
 def _row(one: "PropagatedQuantity", names: list[str]) -> tuple[str, ...]:
     value, spread = float(one.values[-1]), float(one.inputs[-1])
-    numerical = None if one.numerical is None else float(one.numerical[-1])
     factor, unit = scaled_unit(value, one.unit)
     size = abs(value) or 1.0
     return (
         one.name.replace("_", " "),
         f"{measured(value / factor, spread / factor) if spread else f'{value / factor:.6g}'} {unit}".strip(),
-        "(?)" if numerical is None else small(numerical / size),
+        "(?)" if one.numerical is None else small(float(one.numerical[-1]) / size),
         f"{small(spread / factor)} {unit}".strip(),
         f"{100 * spread / size:.2g} %",
         *(f"{100 * float(one.by_input[name][-1]) / size:+.2g} %" for name in names),
     )
 
 
-def _together(found: "Propagated") -> str:
-    pairs = list(_pairs(found))
-    return f" Moving together: {', '.join(pairs)}." if pairs else ""
-
-
-def _pairs(found: "Propagated") -> Iterator[str]:
-    names = [one.name.replace("_", " ") for one in found.quantities]
-    for i, j in zip(*np.triu_indices(len(names), 1), strict=True):
-        share = float(found.correlation[i, j])
-        if abs(share) >= TOGETHER:
-            yield f"{names[i]} and {names[j]} ({share:+.2f})"
-
-
 def sweep_table(found: "Sweep") -> Table:
-    """One row a state; quantities with their uncertainty in brackets."""
-    columns = found.columns
-    shown = {head: values for head, values in columns.items() if "_uncertainty" not in head}
-    texts = []
-    for head, values in shown.items():
-        name, bracket, unit = head.partition(" [")
-        spread = columns.get(f"{name}_uncertainty{bracket}{unit}", np.zeros_like(values))
-        texts.append([_cell(float(v), float(u)) for v, u in zip(values, spread, strict=True)])
+    """One row per state; quantities with their uncertainty in brackets."""
+    columns, texts = found.columns, {}
+    for head, values in columns.items():
+        if "_uncertainty" not in head:
+            name, bracket, unit = head.partition(" [")
+            errors = columns.get(f"{name}_uncertainty{bracket}{unit}", np.zeros_like(values))
+            exact = ~np.isfinite(errors) | (values == 0.0)
+            numbers = zip(values.tolist(), np.where(exact, 0.0, errors).tolist(), strict=True)
+            texts[head] = [f"{value:.6g}" if error == 0.0 else _readable(value, error) for value, error in numbers]
     note = "Digits in brackets: uncertainty of the last digits. A number without brackets is right to the digits shown."
-    heads, rows = tuple(shown), tuple(zip(*texts, strict=True))
-    return Table(title=f"Over {found.swept.name}", note=note, heads=heads, rows=rows, words=0)
-
-
-def _cell(value: float, uncertainty: float) -> str:
-    if not np.isfinite(uncertainty) or uncertainty < 0.5e-6 * abs(value) or value == 0.0:
-        return f"{value:.6g}"
-    return measured(value, uncertainty)
+    rows = tuple(zip(*texts.values(), strict=True))
+    return Table(title=f"Over {found.swept.name}", note=note, heads=tuple(texts), rows=rows, words=0)

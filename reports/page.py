@@ -15,33 +15,18 @@ from markupsafe import Markup, escape
 from cases.measurements.cost.cost_of_accuracy import cheapest
 from cases.results.csv_table import csv_text
 from cases.results.files import write_whole
-from cases.runs import CaseText, Run
+from cases.runs import Run
 from cases.verdicts import Kind, Status, Verdict, worst
-from reports import tables
+from reports import findings, tables
 from reports.charts import front, of_case
-from reports.findings import (
-    EXPLANATIONS,
-    baseline_sentence,
-    causes,
-    counts,
-    findings,
-    grouped,
-    headline,
-    in_words,
-    is_wide,
-    observed_text,
-    severity,
-    tone_of,
-    who,
-)
+from reports.findings import grouped, severity, who
 from reports.study_charts import Picture
 from reports.style import figure_style, svg_text
 from reports.words import duration, file_name, small
 
 # The folders of the pages of single cases, and of the pictures.
 CASES, FIGURES = "cases", "figures"
-# The page begins with so many of the worst findings.
-WORST_SHOWN = 5
+QUESTIONS = ("Do the methods agree?", "What does accuracy cost?", "Where does it break?")
 # The accuracies whose price the front page states.
 PRICED = (1e-4, 1e-6)
 
@@ -64,33 +49,21 @@ def write_report(run: Run, directory: Path, *, single_file: bool = False) -> Pat
     for stale in (*(directory / CASES).glob("*.html"), *(directory / FIGURES).glob("*.svg")):
         stale.unlink()
     with figure_style():
-        views = [_case_view(run, case, directory) for case in cases]
-        questions = _three_answers(run, directory)
-    names = {case.name for case in cases}
-    for view in () if single_file else views:
-        page = _page_name(view["case"].name)
-        text = _rendered("case.html", view=view, address=_page_name, names=names, run=run)
-        write_whole(directory / CASES / page, text)
+        pictures = {case.name: [_placed(one, directory) for one in of_case(run, case)] for case in cases}
+        answered = zip(QUESTIONS, (_agreement(run), _cost(run), _breakdown(run)), front(run), strict=True)
+        questions = [(asked, words, one and _placed(one, directory)) for asked, words, one in answered]
+    common = {"run": run, "pictures": pictures, "names": set(pictures)}
+    for case in () if single_file else cases:
+        text = _rendered("case.html", case=case, address=_page_name, **common)
+        write_whole(directory / CASES / _page_name(case.name), text)
+    common |= {"single_file": single_file, "questions": questions, "directory": shlex.quote(str(directory))}
     text = _rendered(
         "report.html",
-        run=run,
-        names=names,
-        views=views if single_file else [],
         address=lambda name: f"#{file_name(name)}" if single_file else f"{CASES}/{_page_name(name)}",
-        questions=questions,
-        headline=headline(run),
-        baseline=baseline_sentence(run),
-        causes=causes(run),
-        found=findings(run),
-        worst_shown=WORST_SHOWN,
-        counts=counts(run),
-        wide=sum(map(is_wide, run.judged.verdicts)),
-        tables=tables,
-        stamp=stamp_lines(run),
-        directory=shlex.quote(str(directory)),
+        **common,
     )
     write_whole(directory / "report.html", text)
-    rows = [row for row in run.answers.rows() if row["value"] is not None]
+    rows = list(run.answers.rows())
     write_whole(directory / "answers.csv", csv_text(rows[0] if rows else (), (row.values() for row in rows)))
     return directory / "report.html"
 
@@ -106,28 +79,13 @@ def _placed(picture: Picture, directory: Path) -> dict[str, Any]:
     return {"picture": picture, "svg": Markup(svg)}
 
 
-def _case_view(run: Run, case: CaseText, directory: Path) -> dict[str, Any]:
-    """What a page shows of one case."""
-    own = [v for v in run.judged.verdicts if v.case == case.name]
-    answers = run.answers.of_case(case.name)
-    broken = [answer.status for answer in answers if answer.status.is_failure]
-    pictures = [_placed(picture, directory) for picture in of_case(run, case)]
-    return {
-        "case": case,
-        "status": worst([v.status for v in own] + broken),
-        "found": findings(run, own),
-        "first": pictures[:1],
-        "pictures": pictures[1:],
-        "blocks": _blocks(own),
-        "answers": tables.answers(answers),
-        "settings": [tables.settings(cost) for cost in run.judged.costs if cost.case == case.name],
-        "stress": tables.stress_tests([test for test in run.judged.stress_tests if test.case == case.name]),
-        "effects": tables.effects([effect for effect in run.judged.effects if effect.case == case.name]),
-        "verdicts": sorted(own, key=severity),
-    }
+def status_of(run: Run, case: str) -> Status:
+    """The status that decides for a case, of verdicts and of answers that broke down."""
+    broken = [answer.status for answer in run.answers.of_case(case) if answer.status.is_failure]
+    return worst([v.status for v in run.judged.verdicts if v.case == case] + broken)
 
 
-def _blocks(verdicts: Iterable[Verdict]) -> list[dict[str, Any]]:
+def blocks(verdicts: Iterable[Verdict]) -> list[dict[str, Any]]:
     """The claims by reason in the order of their kinds: one row per claim and methods, its worst scene."""
     ordered = sorted(verdicts, key=lambda v: list(Kind).index(v.kind))
     blocks = []
@@ -140,15 +98,6 @@ def _blocks(verdicts: Iterable[Verdict]) -> list[dict[str, Any]]:
         block = {"kind": kind, "because": because, "origins": list(origins), "cell": tables.cell_of(same), "rows": rows}
         blocks.append(block)
     return blocks
-
-
-def _three_answers(run: Run, directory: Path) -> list[dict[str, Any]]:
-    """The three questions of a reader, each with its sentences and picture."""
-    questions = ("Do the methods agree?", "What does accuracy cost?", "Where does it break?")
-    sentences = (_agreement(run), _cost(run), _breakdown(run))
-    drawn = [_placed(picture, directory) if picture else None for picture in front(run)]
-    rows = zip(questions, sentences, drawn, strict=True)
-    return [{"question": question, "sentences": lines, "drawn": one} for question, lines, one in rows]
 
 
 def _agreement(run: Run) -> list[str]:
@@ -207,14 +156,12 @@ def stamp_lines(run: Run) -> list[tuple[str, str]]:
 
 def write_comparison(changes: Sequence[Verdict], title: tuple[str, str], runs: Sequence[Run], page: Path) -> None:
     """Write the page of two runs: what differs between the second and the first."""
-    stamps = [stamp_lines(run) for run in runs]
-    write_whole(page, _rendered("comparison.html", verdicts=changes, headline=title, stamps=stamps))
+    write_whole(page, _rendered("comparison.html", verdicts=changes, headline=title, runs=runs))
 
 
 def _rendered(template: str, **values: Any) -> str:
     """The page as text, without the end tags of rows and cells, which HTML lets out: a tenth of many tables."""
-    css = files("reports").joinpath("templates/report.css").read_text(encoding="utf-8")
-    page = _environment().get_template(template).render(css=css, **values)
+    page = _environment().get_template(template).render(**values)
     return page.replace("</td>", "").replace("</tr>", "").replace("</th>", "")
 
 
@@ -232,19 +179,22 @@ def _environment() -> jinja2.Environment:
     environment = jinja2.Environment(
         loader=jinja2.PackageLoader("reports"), autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True
     )
-    environment.globals.update(explanations=EXPLANATIONS)
+    css = files("reports").joinpath("templates/report.css").read_text(encoding="utf-8")
+    own = {"findings": findings, "tables": tables, "blocks": blocks, "status_of": status_of, "stamp_lines": stamp_lines}
+    environment.globals.update(css=css, **own)
     environment.filters.update(
         anchor=file_name,
         duration=duration,
-        in_words=in_words,
-        observed=lambda verdict: unbroken(observed_text(verdict)),
+        in_words=findings.in_words,
+        observed=lambda verdict: unbroken(findings.observed_text(verdict)),
         unbroken=unbroken,
         small=lambda value: "" if value is None else small(value),
-        tone=tone_of,
+        tone=findings.tone_of,
+        worst_first=lambda verdicts: sorted(verdicts, key=severity),
         who=who,
         sentence=lambda text: text[:1].upper() + text[1:],
         breakable=lambda name: Markup("_<wbr>").join(name.split("_")),
         paragraphs=lambda text: [part.strip() for part in text.split("\n\n") if part.strip()],
-        within=lambda verdict: f"within {100 * verdict.tolerance:.2g} %" if is_wide(verdict) else "",
+        within=lambda verdict: f"within {100 * verdict.tolerance:.2g} %" if findings.is_wide(verdict) else "",
     )
     return environment
