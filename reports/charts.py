@@ -7,8 +7,9 @@ from functools import partial
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from cases.measurements.cost.cost_of_accuracy import pareto_front
 from cases.runs import CaseText, Run
-from cases.studies import CostOfAccuracy, Point, StressTest
+from cases.studies import CostOfAccuracy, StressTest
 from cases.verdicts import Status, Verdict
 from reports.findings import grouped, quantity_words, who
 from reports.study_charts import SMALLEST, Picture, finished, logarithmic, study_pictures
@@ -36,39 +37,22 @@ Place = tuple[float, float]
 def front(run: Run) -> tuple[Picture | None, Picture | None, Picture | None]:
     """The pictures of the three questions: do the methods agree, what does accuracy cost, where does it break."""
     found, costs, tests = compared(run), run.judged.costs, run.judged.stress_tests
-    agreement = Picture(
-        name="all-differences",
-        title="Difference of two methods against the error they state",
-        caption="Each symbol is one comparison of two methods, all cases. Below the line the difference is explained "
-        "by the errors that the two methods state; above it, it is not.",
-        draw=partial(_draw_differences, found),
+    agreement = "Difference of two methods against the error they state"
+    return (
+        Picture("all-differences", agreement, partial(_draw_differences, found)) if found else None,
+        Picture("all-costs", "Error against seconds, all timed cases", partial(_draw_costs, costs)) if costs else None,
+        Picture("all-stress-tests", "How far stress tests go", partial(_draw_ends, tests)) if tests else None,
     )
-    cost = Picture(
-        name="all-costs",
-        title="Error against seconds, all timed cases",
-        caption="Each symbol is a setting that no other setting of the same method beats in both time and error on "
-        "its scene: median time of repeated solutions, and the bound of the relative error.",
-        draw=partial(_draw_costs, costs),
-    )
-    breakdown = Picture(
-        name="all-stress-tests",
-        title="How far stress tests go",
-        caption="Each bar is one stress test: a parameter made harder step by step, from left to right. Digits: those "
-        "that perturbed repeats share at worst.",
-        draw=partial(_draw_ends, tests),
-    )
-    return agreement if found else None, cost if costs else None, breakdown if tests else None
 
 
 def of_case(run: Run, case: CaseText) -> list[Picture]:
     """The pictures of a case, the worst differences first."""
     own = [v for v in compared(run) if v.case == case.name]
-    pictures = []
-    if own:
-        pictures.append(_agreement(case.name, sorted(own, key=lambda v: -(v.fraction or 0.0))))
-    if (shown := _over_parameter(run, case)) is not None:
-        pictures.append(shown)
-    return pictures + study_pictures(run, case.name)
+    worst = sorted(own, key=lambda v: -(v.fraction or 0.0))[:WORST_DRAWN]
+    name, title = file_name(case.name, "differences"), f"Largest of {len(own)} differences between methods"
+    differences = Picture(name, title, partial(_draw_agreement, worst))
+    over = _over_parameter(run, case)
+    return [*([differences] if own else []), *([over] if over else []), *study_pictures(run, case.name)]
 
 
 def _symbols(axes: Axes, places: Iterable[Place], methods: Sequence[str]) -> None:
@@ -95,19 +79,10 @@ def _stated(verdict: Verdict) -> float:
 
 def _draw_costs(costs: Sequence[CostOfAccuracy]) -> Figure:
     drawing, axes = logarithmic(FRONT, "seconds", "bound of the relative error")
-    places: dict[str, list[Place]] = {}
-    for cost in costs:
-        for method, points in timed_methods(cost).items():
-            places.setdefault(method, []).extend(_unbeaten(points))
-    for method, found in places.items():
-        _symbols(axes, found, (method,))
+    fronts = [pareto_front(points, 0.0) for cost in costs for points in timed_methods(cost).values()]
+    for method, points in grouped((p for front in fronts for p in front), lambda p: p.method).items():
+        _symbols(axes, [(p.seconds, p.bound or SMALLEST) for p in points], (method,))
     return finished(drawing, axes)
-
-
-def _unbeaten(points: Sequence[Point]) -> list[Place]:
-    """Seconds and bounds of the settings that no other one beats in both."""
-    places = [(point.seconds, point.bound or SMALLEST) for point in points]
-    return [(t, u) for t, u in places if not any(other_t < t and other_u < u for other_t, other_u in places)]
 
 
 def _draw_ends(tests: Sequence[StressTest]) -> Figure:
@@ -124,19 +99,6 @@ def _draw_ends(tests: Sequence[StressTest]) -> Figure:
     axes.set(ylim=(len(tests) - 0.5, -0.5), xlim=(0.0, 1.0), xlabel="share of the steps that were completed")
     axes.grid(visible=False, axis="y")
     return drawing
-
-
-def _agreement(case: str, ordered: Sequence[Verdict]) -> Picture:
-    rest = len(ordered) - WORST_DRAWN
-    more = f" The other {rest} comparisons use less of their tolerance and stand in the table." if rest > 0 else ""
-    return Picture(
-        name=file_name(case, "differences"),
-        title="Largest differences between methods",
-        caption="Each row is one comparison: the difference of two answers over its tolerance (symbol in the colour of "
-        "the second method, a cross where it failed), with the error that both state together (bar). Right of the "
-        f"line at 1 the difference is beyond the tolerance; a bar across it leaves the verdict open.{more}",
-        draw=partial(_draw_agreement, ordered[:WORST_DRAWN]),
-    )
 
 
 def _draw_agreement(found: Sequence[Verdict]) -> Figure:
@@ -181,13 +143,9 @@ def _over_parameter(run: Run, case: CaseText) -> Picture | None:
     groups = sorted(dict.fromkeys(group for group, _ in curves), key=lambda g: -len(curves.get((g, "mdr"), ())))
     shown = {place: curve for place, curve in curves.items() if place[0] in groups[:MOST_CURVES]}
     unit = next(a.quantities[quantity].unit for a in answers if quantity in a.quantities)
-    return Picture(
-        name=file_name(case.name, "answers"),
-        title=f"{quantity_words(quantity).capitalize()} over {name.replace('_over_', '/')}",
-        caption="The last step of each scene; a line joins the scenes that differ in this parameter alone. Colour and "
-        "symbol: method." + " Some groups of scenes are left out." * (len(groups) > MOST_CURVES),
-        draw=partial(_draw_over, shown, name.replace("_over_", "/"), f"{quantity_words(quantity)} [{unit}]"),
-    )
+    label = name.replace("_over_", "/")
+    draw = partial(_draw_over, shown, label, f"{quantity_words(quantity)} [{unit}]")
+    return Picture(file_name(case.name, "answers"), f"{quantity_words(quantity).capitalize()} over {label}", draw)
 
 
 def _draw_over(curves: dict[tuple[str, str], list[Place]], x_label: str, y_label: str) -> Figure:

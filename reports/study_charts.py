@@ -2,9 +2,8 @@
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from typing import Any, NamedTuple
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -24,13 +23,11 @@ MOST_PANELS = 6
 QUANTITY_LOOKS = ((BLACK, "o"), ("#8c510a", "^"), ("#01665e", "D"), ("#762a83", "v"), (GREY, "s"))
 
 
-@dataclass(frozen=True, kw_only=True)
-class Picture:
-    """A picture with its file name (unique in the run), title and caption; `draw` is called in the figure style."""
+class Picture(NamedTuple):
+    """A picture: file name (unique in the run), title, and the drawing, made in the figure style."""
 
     name: str
     title: str
-    caption: str
     draw: Callable[[], Figure]
 
 
@@ -38,24 +35,21 @@ def study_pictures(run: Run, case: str) -> list[Picture]:
     """The pictures of a case's studies."""
     studies = grouped((s for s in run.judged.convergence if s.case == case), lambda s: (s.scene, s.method, s.refined))
     tests = grouped((t for t in run.judged.stress_tests if t.case == case), lambda t: (t.name, t.quantity))
+    orders, digits = "Convergence: error under refinement", "Stress tests: digits left as a parameter gets hard"
     return [
-        *_in_panels(case, "convergence", list(studies.values()), _draw_convergence, CONVERGENCE),
-        *(cost_picture(cost) for cost in run.judged.costs if cost.case == case),
-        *_in_panels(case, "stress-tests", list(tests.values()), _draw_stress_test, STRESS),
+        *_in_panels(case, "convergence", orders, list(studies.values()), _draw_convergence),
+        *(_cost(cost) for cost in run.judged.costs if cost.case == case),
+        *_in_panels(case, "stress-tests", digits, list(tests.values()), _draw_stress_test),
     ]
 
 
 def _in_panels(
-    case: str, kind: str, groups: Sequence[Any], draw: Callable[[Axes, Any], None], words: tuple[str, str]
+    case: str, kind: str, title: str, groups: Sequence[Any], draw: Callable[[Axes, Any], None]
 ) -> list[Picture]:
     """One panel per group, several panels per picture."""
     parts = [groups[start : start + MOST_PANELS] for start in range(0, len(groups), MOST_PANELS)]
-    return [
-        Picture(
-            name=file_name(case, kind, f"{number}"), title=words[0], caption=words[1], draw=partial(_panels, part, draw)
-        )
-        for number, part in enumerate(parts, 1)
-    ]
+    names = (file_name(case, kind, f"{number}") for number in range(1, len(parts) + 1))
+    return [Picture(name, title, partial(_panels, part, draw)) for name, part in zip(names, parts, strict=True)]
 
 
 def _panels(groups: Sequence[Any], draw: Callable[[Axes, Any], None]) -> Figure:
@@ -78,16 +72,6 @@ def finished(drawing: Figure, axes: Axes, columns: int = 2) -> Figure:
     mark_decades(axes.xaxis, axes.yaxis)
     drawing.legend(loc="outside lower center", ncols=columns)
     return drawing
-
-
-CONVERGENCE = (
-    "Convergence: error under refinement",
-    (
-        "One panel per refinement. Filled symbols: distance to the reference, relative to the scale of the quantity; "
-        "without a reference, to the value on the finest grid. Empty symbols: error that the method states, which "
-        "should lie above. Dashes: formal order. In the legend: observed and formal order, or digits per refinement."
-    ),
-)
 
 
 def _draw_convergence(axes: Axes, studies: Sequence[Convergence]) -> None:
@@ -136,17 +120,9 @@ def relative_distance(study: Convergence, grid: Grid) -> float:
     return (abs(grid.value - study.grids[0].value) if grid.error is None else grid.error) / study.scale
 
 
-def cost_picture(cost: CostOfAccuracy) -> Picture:
-    """Error bound over median seconds of every setting."""
-    return Picture(
-        name=file_name(cost.case, "cost", cost.scene, cost.quantity),
-        title=f"Error against seconds: {quantity_words(cost.quantity)}, {cost.scene}",
-        caption="Each symbol is one setting: median time of repeated runs (bars: quartiles) and bound U of the "
-        "relative error (error plus error of the reference, dotted line). Filled: on the Pareto front, nothing is both "
-        "at least as accurate and clearly faster. Crosses on the upper border: settings that failed. "
-        f"Reference: {cost.reference}.",
-        draw=partial(_draw_cost, cost),
-    )
+def _cost(cost: CostOfAccuracy) -> Picture:
+    title = f"Error against seconds: {quantity_words(cost.quantity)}, {cost.scene}, against {cost.reference}"
+    return Picture(file_name(cost.case, "cost", cost.scene, cost.quantity), title, partial(_draw_cost, cost))
 
 
 def _draw_cost(cost: CostOfAccuracy) -> Figure:
@@ -175,16 +151,6 @@ def _draw_cost(cost: CostOfAccuracy) -> Figure:
             markersize=8, markeredgewidth=2.0, clip_on=False,
         )  # fmt: skip
     return finished(drawing, axes, columns=3)
-
-
-STRESS = (
-    "Stress tests: digits left as a parameter gets hard",
-    (
-        "From left to right the parameter gets harder. Symbols: significant digits that repeats share when inputs move "
-        "by one unit in the last place, in other units and on other threads. Crosses at the bottom: the method refused "
-        "with a named error, or failed. The dotted line is what doubles can carry."
-    ),
-)
 
 
 def _draw_stress_test(axes: Axes, tests: Sequence[StressTest]) -> None:

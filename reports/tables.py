@@ -2,7 +2,6 @@
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
 from statistics import median
 
 from cases.answers import Answer, Values
@@ -150,61 +149,42 @@ def timed_methods(cost: CostOfAccuracy) -> dict[str, list[Point]]:
     return grouped((point for point in cost.points if point.bound), lambda point: point.method)
 
 
-def shortest_times(run: Run) -> Table | None:
-    """T*(tau) of every timed scene, quantity and method."""
-    rows = [(cost, *found) for cost in run.judged.costs for found in timed_methods(cost).items()]
-    return tabulated(
-        rows,
-        {
-            "case": lambda row: row[0].case,
-            "quantity": lambda row: quantity_words(row[0].quantity),
-            "method": lambda row: display_name(row[1]),
-            **{percent(tau): partial(_shortest, tau) for tau in SHOWN},
-        },
+def shortest_times(run: Run, fast: str = "mdr") -> Table | None:
+    """T*(tau) of every timed scene, quantity and method, and how much faster the fast method is."""
+    rows = []
+    for cost in run.judged.costs:
+        points = timed_methods(cost)
+        for method, own in points.items():
+            times = (_shortest(own, tau) for tau in SHOWN)
+            faster = _speed_up(points.get(fast, []), own) if method != fast else ""
+            rows.append((cost.case, quantity_words(cost.quantity), display_name(method), *times, faster))
+    if not rows:
+        return None
+    return Table(
         title="Shortest time to an accuracy",
         note="Shortest measured time T* with bound U (error plus error of the reference) within the accuracy; nothing "
         "is interpolated. In brackets, the first solution with the same setting, which prepares flat-punch data or "
         "meshes that later ones reuse. Where an accuracy was not reached, the best U.",
+        heads=("case", "quantity", "method", *map(percent, SHOWN), f"{display_name(fast)} is faster"),
+        rows=tuple(rows),
         words=3,
     )
 
 
-def _shortest(tolerance: float, row: tuple[CostOfAccuracy, str, Sequence[Point]]) -> str:
-    points = row[2]
+def _shortest(points: Sequence[Point], tolerance: float) -> str:
     found = cheapest(points, tolerance)
     if found is None:
         return f"best {small(min(map(bound_of, points)))}"
     return f"{duration(found.seconds)} ({duration(found.cold_seconds)})"
 
 
-def speed_ups(run: Run, fast: str = "mdr") -> Table | None:
-    """How much faster the fast method is than each other one, at the accuracies both reach."""
-    rows = []
-    for cost in run.judged.costs:
-        points = timed_methods(cost)
-        for method in points if fast in points else ():
-            ratios = [_ratio(points[fast], points[method], tau) for tau in SHOWN]
-            if method != fast and any(ratios):
-                rows.append((cost.case, quantity_words(cost.quantity), display_name(method), *ratios))
-    return (
-        Table(
-            title=f"How much faster {display_name(fast)} is",
-            note="Ratio of shortest times; in brackets, of first solutions. Empty where one did not get there.",
-            heads=("case", "quantity", "over", *map(percent, SHOWN)),
-            rows=tuple(rows),
-            words=3,
-        )
-        if rows
-        else None
-    )
-
-
-def _ratio(fast: Sequence[Point], other: Sequence[Point], tolerance: float) -> str:
-    ours, theirs = cheapest(fast, tolerance), cheapest(other, tolerance)
-    if ours is None or theirs is None:
-        return ""
-    first = f" ({small(theirs.cold_seconds / ours.cold_seconds)} x)" if ours.cold_seconds else ""
-    return f"{small(theirs.seconds / ours.seconds)} x{first}"
+def _speed_up(fast: Sequence[Point], other: Sequence[Point]) -> str:
+    """The ratio of shortest times at the finest accuracy that both reach."""
+    for tau in reversed(SHOWN):
+        ours, theirs = cheapest(fast, tau), cheapest(other, tau)
+        if ours and theirs:
+            return f"{small(theirs.seconds / ours.seconds)} x at {percent(tau)}"
+    return ""
 
 
 def settings(cost: CostOfAccuracy) -> Table | None:

@@ -32,7 +32,7 @@ from reports.book import claim_table, method_table, scene_table
 from reports.ci import annotation_lines, junit_text, summary_text
 from reports.findings import causes, findings, headline, nothing_ran, tone_of, who
 from reports.progress import RunDisplay
-from reports.tables import matrix_table, shortest_times, speed_ups
+from reports.tables import matrix_table, shortest_times
 from reports.terminal import STYLES, console, show_table
 from reports.words import Table, display_name
 
@@ -179,7 +179,7 @@ def cost(names: list[str], options: RunOptions, *, methods: list[str], settings:
         with RunDisplay(terminal, quiet=quiet) as display:
             result = as_run(run_cases(timed, dataclasses.replace(options, only_costs=True, progress=display)))
         write_pages(result, options.out)
-    for table in (shortest_times(result), speed_ups(result)):
+    for table in (shortest_times(result),):
         if table is not None:
             show_table(table, on=terminal)
     terminal.print(f"report: {options.out / 'report.html'}")
