@@ -102,25 +102,6 @@ Strict = Annotated[bool, Option("--strict", help="Verdicts that stay open end wi
 OUT = Path("build/verification")
 
 
-EXAMPLE_SCENE = """\
-# A truncated cone pressed 2, 5 and 10 micrometres into a bonded layer, one millimetre thick; SI units.
-[layer]
-thickness = 1e-3
-youngs_modulus = 1e6
-poissons_ratio = 0.45
-support = "bonded"
-
-[indenter]
-kind = "truncated_cone"
-flat_radius = 0.5e-3
-slope = 0.1
-
-[loading]
-kind = "indentation_depths"
-values = [2e-6, 5e-6, 10e-6]
-"""
-
-
 def _printed(text: Callable[[], str]) -> Callable[[bool], None]:
     """A callback of an option that prints a text and stops."""
 
@@ -130,6 +111,12 @@ def _printed(text: Callable[[], str]) -> Callable[[bool], None]:
             raise typer.Exit
 
     return callback
+
+
+def _example() -> str:
+    from importlib.resources import files  # noqa: PLC0415
+
+    return files("reports").joinpath("templates/example.toml").read_text(encoding="utf-8")
 
 
 def _version() -> str:
@@ -289,7 +276,7 @@ def solve(
     ] = None,
     example: Annotated[
         bool,
-        Option("--example", is_eager=True, callback=_printed(lambda: EXAMPLE_SCENE), help="Print a scene and stop."),
+        Option("--example", is_eager=True, callback=_printed(_example), help="Print a scene and stop."),
     ] = False,
     schema: Annotated[
         bool,

@@ -9,6 +9,7 @@ import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from importlib.resources import as_file, files
 from typing import Any, Literal, NamedTuple
 
 import matplotlib as mpl
@@ -26,29 +27,6 @@ BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY = "#0072b2", "#d55e00", "#009e73", 
 # Pixels per inch of a PNG: half is blurred on a slide, twice is four times as large.
 DOTS_PER_INCH = 150
 
-SETTINGS: dict[Any, Any] = {
-    "font.family": ["DejaVu Sans"],
-    "font.size": 9.0,
-    "axes.titlesize": 9.5,
-    "axes.titleweight": "bold",
-    "axes.titlelocation": "left",
-    "axes.linewidth": 0.7,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.grid": True,
-    "axes.axisbelow": True,
-    "axes.formatter.use_mathtext": True,
-    "grid.color": "#e2e2e2",
-    "grid.linewidth": 0.6,
-    "legend.fontsize": 8.0,
-    "legend.frameon": False,
-    "lines.markersize": 4.5,
-    "path.simplify_threshold": 0.2,
-    "pdf.fonttype": 42,
-    "svg.fonttype": "none",
-    "xtick.labelsize": 8.0,
-    "ytick.labelsize": 8.0,
-}
 # Families of equal letter widths first: nothing is clipped where one of them is missing.
 FONT_FAMILY = "'DejaVu Sans', Verdana, 'Liberation Sans', Arial, sans-serif"
 
@@ -106,7 +84,8 @@ def mark_decades(*all_axes: Axis) -> None:
 def figure_style() -> Iterator[None]:
     """Matplotlib settings of all figures, restored afterwards."""
     defaults: dict[Any, Any] = {name: value for name, value in mpl.rcParamsDefault.items() if name != "backend"}
-    with mpl.rc_context(defaults | SETTINGS):
+    style = files("reports").joinpath("templates/figures.mplstyle")
+    with as_file(style) as path, mpl.rc_context(defaults), mpl.rc_context(fname=path):
         yield
 
 

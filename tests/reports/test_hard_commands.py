@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
-from reports.command_line import EXAMPLE_SCENE, run
+from reports.command_line import run
 
 
 @pytest.fixture
 def scene(tmp_path):
     file = tmp_path / "scene.toml"
-    file.write_text(EXAMPLE_SCENE, encoding="utf-8")
+    file.write_bytes(Path("reports/templates/example.toml").read_bytes())
     return str(file)
 
 
