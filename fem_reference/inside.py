@@ -11,7 +11,6 @@ from functools import cached_property
 from pathlib import Path
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from contact import InvalidInput
 from contact.answer.inside import InsideFields
@@ -126,6 +125,8 @@ class MeridianSection:
 
         The triangles with the nearest centres are tried first, then all.
         """
+        from scipy.spatial import cKDTree  # noqa: PLC0415 - takes 0.1 s to import, and only fields inside need it
+
         corners = self.corners
         near = cKDTree(corners.mean(axis=1).T).query(points.T, min(NEAREST, corners.shape[2]))[1]
         near = near.reshape(points.shape[1], -1)

@@ -203,13 +203,13 @@ class Fem:
             return flat_punch_equilibria(scene, self._solver(scene, settings, log, sticks=True))
         solve = self._solver(scene, settings, log)
         if scene.effects:
-            from fem_reference.adhesion.equilibria import adhesive_equilibria  # noqa: PLC0415 - only listed effects load
+            from fem_reference.adhesion import adhesive_equilibria  # noqa: PLC0415 - only listed effects load
 
             return adhesive_equilibria(scene, solve, settings.growth)
         return elastic_equilibria(scene, solve, settings.coarsening, search)
 
     def _detached(self, scene: Scene, log: StageLog, settings: Discretisation) -> DetachmentPath:
-        from fem_reference.adhesion.detachment import Separation, detachment_path  # noqa: PLC0415 - as above
+        from fem_reference.detachment import Separation, detachment_path  # noqa: PLC0415 - as above
 
         companion, found = (
             Separation.of(scene, self._solver(scene, each, log), each.growth) for each in (settings.coarser(), settings)
