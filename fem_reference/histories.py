@@ -13,10 +13,9 @@ from contact.scene.extent import first_radius
 from contact.stated import SAFETY
 from fem_reference.equilibria import refuse_touching_at
 from fem_reference.materials import contact_modulus, shear_modulus
-from fem_reference.motions import CondensedLayer, Samples, segments, simulate_prescribed
+from fem_reference.motions import CondensedLayer, HistorySetup, Resolution, Samples, segments, simulate_prescribed
 from fem_reference.profiles import height
 from fem_reference.stated import FLOOR, exact_names
-from fem_reference.strips import HistorySetup, Resolution
 
 # Instants of the companion to either side, among which the largest change is stated. Not measured: half and twice.
 WINDOW = 6

@@ -14,10 +14,9 @@ from contact.scene.extent import first_radius
 from contact.stated import SAFETY
 from fem_reference.equilibria import refuse_touching_at
 from fem_reference.materials import contact_modulus, shear_modulus
-from fem_reference.motions import CondensedLayer, FallingBody, Samples, simulate_impact
+from fem_reference.motions import CondensedLayer, FallingBody, HistorySetup, Resolution, Samples, simulate_impact
 from fem_reference.profiles import height
 from fem_reference.stated import FLOOR, exact_names, relative_change
-from fem_reference.strips import HistorySetup, Resolution
 
 # Steps of a pilot in the time that contact is expected to take; more than half as many tell how long it lasts.
 PILOT_STEPS = 60

@@ -38,7 +38,6 @@ from contact.answer.accuracy import told_where_less
 from contact.answer.no_contact import without_contact
 from contact.answer.one_thread import one_thread
 from contact.answer.small_strains import within_small_strains
-from fem_reference.adaptive import meshes_that_fit, settings_for, solve_to_accuracy
 from fem_reference.equilibria import (
     FemEquilibrium,
     RadiusSearch,
@@ -52,7 +51,7 @@ from fem_reference.materials import contact_modulus
 from fem_reference.prescribed_contact import ContactSolver, PrescribedContact, solve_contact
 from fem_reference.settings import Discretisation
 from fem_reference.solver import BACKENDS
-from fem_reference.stated import path_with_errors
+from fem_reference.stated import meshes_that_fit, path_with_errors, settings_for, solve_to_accuracy
 
 Answer: TypeAlias = ContactPath | DetachmentPath | ImpactHistory | HistoryPath
 
@@ -230,7 +229,7 @@ class Fem:
     ) -> Callable[[Discretisation], Answer]:
         from fem_reference.histories import HistorySolver  # noqa: PLC0415 - only scenes in time load it
         from fem_reference.impacts import ImpactSolver  # noqa: PLC0415
-        from fem_reference.strips import HistorySetup  # noqa: PLC0415
+        from fem_reference.motions import HistorySetup  # noqa: PLC0415
 
         def attempt(settings: Discretisation) -> ImpactHistory | HistoryPath:
             """The answer, and its companions with half the cells and with half the steps as well."""
