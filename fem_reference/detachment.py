@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cache
 
@@ -27,6 +27,7 @@ from contact.stated import stated_error
 from fem_reference.adhesion import SPANS, InterpolatedBranch, adhesive_equilibrium, branch_of
 from fem_reference.materials import contact_modulus
 from fem_reference.prescribed_contact import ContactSolver, PrescribedContact
+from fem_reference.settings import Discretisation
 from fem_reference.stated import FLOOR
 
 CAVITATION = (
@@ -151,13 +152,25 @@ class Separation:
 
 
 def detachment_path(
-    scene: Scene, found: Separation, companion: Separation, settings: Mapping[str, Setting], log: StageLog
+    scene: Scene,
+    solver: Callable[[Discretisation], ContactSolver],
+    written: Mapping[str, Setting],
+    log: StageLog,
+    settings: Discretisation,
 ) -> DetachmentPath:
     """The branch in the order of decreasing contact radius, with its changes on coarser cells as errors.
+
+    Args:
+        scene: with a `Detachment`.
+        solver: makes the function that solves the contact of a radius with given settings.
+        written: settings of the method.
+        log: of the stages.
+        settings: numerical settings.
 
     Raises:
         UnsupportedSceneError: the indenter would touch outside one of the contacts.
     """
+    companion, found = (Separation.of(scene, solver(each), each.growth) for each in (settings.coarser(), settings))
     branch, radius, modulus = found.branch, found.radius, contact_modulus(scene.layer)
     circles = ((contact, adhesive_equilibrium(contact, branch.work)) for contact in branch.contacts)
     tolerance = float(np.abs(branch.depth(radius) - companion.branch.depth(radius)).max())
@@ -179,7 +192,7 @@ def detachment_path(
     return DetachmentPath(
         scene=scene,
         method="fem",
-        settings=settings,
+        settings=written,
         error_estimate={
             "contact_radius": np.zeros_like(radius),
             "indentation_depth": along[0],

@@ -279,6 +279,15 @@ class HistorySetup:
         self._modes: dict[tuple[float, int], Modes] = {}
         self._needs_field = relaxes and scene.layer.poissons_ratio < 0.5
 
+    @classmethod
+    def resolutions(
+        cls, scene: Scene, settings: Discretisation, backend: str, log: StageLog
+    ) -> list[tuple[HistorySetup, Resolution]]:
+        """Setups and resolutions with half the cells and steps, with half the cells, and of the answer."""
+        coarser, setup = (cls(scene, each, backend, log) for each in (settings.coarser(), settings))
+        cells = coarser.resolution
+        return [(coarser, cells.half_the_steps()), (coarser, cells), (setup, setup.resolution)]
+
     def condensed(self, radius: float, cells: int) -> CondensedLayer:
         """The layer at rest with a strip of ``radius`` [m]."""
         if (radius, cells) not in self._modes:

@@ -115,7 +115,9 @@ class RubbedFields:
         return contact.radius * contact.surface.top.evaluate(nodal, radius / contact.radius)
 
 
-def rubbed_path(scene: Scene, settings: Discretisation, written: Mapping[str, Setting], log: StageLog) -> FrictionPath:
+def rubbed_path(
+    scene: Scene, settings: Discretisation, *, written: Mapping[str, Setting], log: StageLog
+) -> FrictionPath:
     """Equilibria at prescribed radii, depths or forces, each reached from the undeformed layer by loading alone.
 
     Raises:
@@ -186,7 +188,7 @@ def base_force_defect(blend: Blend) -> float:
 
 
 def rubbed_history(
-    scene: Scene, settings: Discretisation, written: Mapping[str, Setting], log: StageLog
+    scene: Scene, settings: Discretisation, *, written: Mapping[str, Setting], log: StageLog
 ) -> FrictionHistory:
     """A history at its own instants, from the undeformed layer; Coulomb friction does not depend on the rate.
 
