@@ -7,7 +7,7 @@ from docutils import nodes
 from latex2mathml.converter import convert
 
 from cases.declare.registry import load_cases
-from reports.pages.book import write_book, write_equations
+from reports.book import write_book, write_equations
 
 HERE = Path(__file__).parent
 sys.path.insert(0, str(HERE.parent))  # scripts of the gallery import their common parts

@@ -5,7 +5,7 @@ numbers. Ranges are those of the paper's text, since its axes are printed as pic
 """
 
 import importlib
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import matplotlib.pyplot as plt
@@ -13,7 +13,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bem.flat_punch import FlatPunchValues, IntegralEquation
-from cases.results.records.figure import Figure, Series
 from contact import Layer
 from contact.records.validation import FloatArray
 
@@ -22,6 +21,43 @@ SOURCE = IntegralEquation(nodes=16)
 MDR = "mdr"
 # The figures end at this a/h.
 LARGEST_RATIO = 100.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Series:
+    """One line or set of symbols: the group chooses the colour, `half_width` is the error of y or empty."""
+
+    label: str
+    method: str
+    group: str
+    x: tuple[float, ...]
+    y: tuple[float, ...]
+    half_width: tuple[float, ...] = ()
+    style: Literal["by method", "solid", "dashed", "dotted", "symbols"] = "by method"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Panel:
+    """One pair of axes, with labels in mathtext and the ranges as printed."""
+
+    title: str
+    x_label: str
+    y_label: str
+    x_scale: Literal["linear", "log"] = "linear"
+    y_scale: Literal["linear", "log"] = "linear"
+    x_range: tuple[float, float] | None = None
+    y_range: tuple[float, float] | None = None
+    series: tuple[Series, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Figure:
+    """A figure of the paper as numbers."""
+
+    name: str
+    title: str
+    caption: str
+    panels: tuple[Panel, ...]
 
 
 def series(

@@ -6,10 +6,9 @@ import numpy as np
 from numpy.polynomial.legendre import leggauss
 
 from cases.library._layers import layer
-from cases.results.records.figure import Series
 from contact import TruncatedCone
 from contact.records.validation import FloatArray
-from docs.gallery._parts import series
+from docs.gallery._parts import Series, series
 from mdr.closed_forms.truncated_cone import thin_cone_force, thin_cone_pressure, thin_cone_profile
 
 HALF_SPACE, THIN_LAYER = "half-space", "thin layer"

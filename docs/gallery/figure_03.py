@@ -6,10 +6,22 @@ Fig. 3: normalised contact stiffness of the flat punch over a/h
 import numpy as np
 
 from cases.library._hayes import TABLE
-from cases.results.records.figure import Figure, Panel, Series
 from contact import Layer
 from contact.records.validation import FloatArray
-from docs.gallery._parts import LARGEST_RATIO, UNBONDED, closed_form, layer, mdr_line, name_of, percent, punch, show
+from docs.gallery._parts import (
+    LARGEST_RATIO,
+    UNBONDED,
+    Figure,
+    Panel,
+    Series,
+    closed_form,
+    layer,
+    mdr_line,
+    name_of,
+    percent,
+    punch,
+    show,
+)
 
 LAYERS = (UNBONDED, layer(0.0), layer(0.3), layer(0.4), layer(0.45), layer(0.5))
 RATIOS = np.geomspace(1e-2, LARGEST_RATIO, 161)

@@ -6,8 +6,7 @@ Fig. 4: contact pressure under a flat punch on a bonded incompressible layer
 import numpy as np
 from scipy.optimize import brentq
 
-from cases.results.records.figure import Figure, Panel
-from docs.gallery._parts import closed_form, layer, mdr_line, punch, show
+from docs.gallery._parts import Figure, Panel, closed_form, layer, mdr_line, punch, show
 
 RATIOS = (0.1, 0.5, 1.0, 2.0, 5.0, 10.0, 50.0)
 # Radii over that of the punch, denser at its edge.

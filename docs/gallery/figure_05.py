@@ -5,10 +5,9 @@ Fig. 5: exponent m and factor kappa of the contact stiffness, Eqs. (33) and (34)
 
 import numpy as np
 
-from cases.results.records.figure import Figure, Panel
 from contact import ContactRadii, Layer, Paraboloid, Scene
 from contact.records.validation import FloatArray
-from docs.gallery._parts import LARGEST_RATIO, SOURCE, UNBONDED, layer, mdr_line, name_of, punch, show
+from docs.gallery._parts import LARGEST_RATIO, SOURCE, UNBONDED, Figure, Panel, layer, mdr_line, name_of, punch, show
 from mdr import Mdr
 
 LAYERS = (UNBONDED, layer(0.0), layer(0.3), layer(0.4), layer(0.45), layer(0.5))

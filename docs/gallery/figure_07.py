@@ -5,10 +5,9 @@ Fig. 7: MDR profile and pressure of a truncated cone, b/a = 0.5, for three layer
 
 import numpy as np
 
-from cases.results.records.figure import Figure, Panel
 from contact import ContactPath, ContactRadii, Layer, Profile, Scene, TruncatedCone
 from contact.records.validation import FloatArray
-from docs.gallery._parts import SOURCE, UNBONDED, layer, mdr_line, name_of, show
+from docs.gallery._parts import SOURCE, UNBONDED, Figure, Panel, layer, mdr_line, name_of, show
 from docs.gallery._truncated_cone_limits import pressure_limits, profile_limits
 from mdr.equilibria import solve_elastic
 

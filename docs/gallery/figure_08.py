@@ -6,10 +6,22 @@ Fig. 8: normalised elongation of the outermost spring before it lets go, Eq. (42
 import numpy as np
 
 from bem.flat_punch import FlatPunchSource
-from cases.results.records.figure import Figure, Panel, Series
 from contact import Adhesion, Detachment, DetachmentPath, FlatPunch, Layer, Scene
 from contact.records.validation import FloatArray
-from docs.gallery._parts import LARGEST_RATIO, SOURCE, UNBONDED, closed_form, layer, mdr_line, name_of, punch, show
+from docs.gallery._parts import (
+    LARGEST_RATIO,
+    SOURCE,
+    UNBONDED,
+    Figure,
+    Panel,
+    Series,
+    closed_form,
+    layer,
+    mdr_line,
+    name_of,
+    punch,
+    show,
+)
 from docs.gallery.figure_03 import thin_layer_stiffness
 from mdr.detachment import solve_detachment
 

@@ -5,9 +5,8 @@ Fig. 9: force over depth while a flat punch detaches from a bonded incompressibl
 
 import numpy as np
 
-from cases.results.records.figure import Figure, Panel, Series
 from contact import Layer
-from docs.gallery._parts import layer, mdr_line, show
+from docs.gallery._parts import Figure, Panel, Series, layer, mdr_line, show
 from docs.gallery.figure_04 import second_maximum
 from docs.gallery.figure_08 import detached, reversals
 

@@ -9,9 +9,8 @@ from typing import Literal
 import numpy as np
 
 from cases.library.in_time.sphere_impact import IMPACT_NUMBER, VELOCITY, scene_of
-from cases.results.records.figure import Figure, Panel, Series
 from contact import ImpactHistory, StandardSolid
-from docs.gallery._parts import SOURCE, mdr_line, show
+from docs.gallery._parts import SOURCE, Figure, Panel, Series, mdr_line, show
 from mdr.impact.solver import solve_impact
 
 # Zero stands for the half-space. [m]

@@ -8,10 +8,9 @@ from itertools import pairwise
 
 import numpy as np
 
-from cases.results.records.figure import Figure, Panel, Series
 from contact import DepthHistory, Friction, FrictionHistory, IndentationDepths, Scene
 from contact.records.validation import FloatArray
-from docs.gallery._parts import series, show
+from docs.gallery._parts import Figure, Panel, Series, series, show
 from fem_reference import Fem
 from mdr import Mdr
 

@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 
-from cases.results.records.figure import Figure, Panel
 from contact import (
     ContactPath,
     ElasticBase,
@@ -23,7 +22,7 @@ from contact import (
     Scene,
     Sublayer,
 )
-from docs.gallery._parts import mdr_line, percent, show
+from docs.gallery._parts import Figure, Panel, mdr_line, percent, show
 from mdr import Mdr
 
 # Depths over the total thickness, under a paraboloid of ten times that radius.

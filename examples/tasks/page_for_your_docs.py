@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from cases.declare.registry import load_cases
-from reports.pages.book import write_book
+from reports.book import write_book
 
 write_book([load_cases()["coated_pair"]], Path("build/book"))
 page = Path("build/book/coated_pair.md").read_text(encoding="utf-8").splitlines()

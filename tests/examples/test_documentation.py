@@ -11,7 +11,7 @@ import matplotlib.pyplot as plt
 import pytest
 
 from cases.declare.registry import load_cases
-from reports.pages.book import write_book, write_equations
+from reports.book import write_book, write_equations
 
 ROOT = Path(__file__).parents[2]
 TUTORIALS = sorted((ROOT / "docs" / "tutorials").glob("*.py"))

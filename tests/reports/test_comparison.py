@@ -4,29 +4,45 @@ import dataclasses
 
 import pytest
 
-from cases.results.compare_runs import compare
-from cases.results.files import write_run
-from cases.results.status import Status
-from reports.commands.report import compare_runs, rebuild
-from reports.pages.comparison import headline
-from tests.cases.example_run import example_run, passing_case
+from cases.answers import NAME, Table
+from cases.runs import RUN, Run, write_run
+from cases.verdicts import Status
+from reports.commands.runs import compare_runs, rebuild
+from reports.comparison import changed_claims, changed_numbers, headline, worst_first
+from tests.cases.example_run import passing_run
+from tests.reports.example import example
 from tests.reports.test_pages import not_a_number, words_of
 
 
 @pytest.fixture
 def runs(tmp_path):
     """A run, and a later one in which a passing claim fails."""
-    case = passing_case()
-    failed = dataclasses.replace(case.claims[0], status=Status.FAIL, fraction=7.0)
-    worse = dataclasses.replace(case, claims=(failed, *case.claims[1:]))
-    for name, cases in (("first", (case,)), ("second", (worse,))):
-        write_run(dataclasses.replace(example_run(), cases=cases), tmp_path / name)
+    run = passing_run()
+    first, *others = run.judged.verdicts
+    failed = dataclasses.replace(first, status=Status.FAIL, fraction=7.0)
+    for name, verdicts in (("first", (first, *others)), ("second", (failed, *others))):
+        write_run(dataclasses.replace(run.judged, verdicts=verdicts), tmp_path / name)
+        (tmp_path / name / NAME).write_text("".join(answer.line() for answer in run.answers), encoding="utf-8")
     return tmp_path / "first", tmp_path / "second"
 
 
 def test_a_run_against_itself_is_all_equal():
-    words, tone = headline(compare(example_run(), example_run()))
-    assert (words, tone) == ("all 10 numbers identical", "good")
+    run = example()
+    claims, numbers = changed_claims(run, run), changed_numbers(run, run)
+    assert headline(claims, numbers) == ("all 10 numbers identical", "good")
+    assert worst_first(claims + numbers) == []
+
+
+def test_a_number_that_moved_beyond_the_stated_errors_is_told_from_one_within():
+    run = example()
+    first, *others = run.answers
+    force = first.quantities["normal_force"]
+    for move, status in ((0.5, Status.PASS), (3.0, Status.DIFF)):
+        values = (force.values[0] + move * force.error[0],)
+        moved = dataclasses.replace(first, quantities={"normal_force": dataclasses.replace(force, values=values)})
+        found = changed_numbers(run, Run(judged=run.judged, answers=Table([moved, *others])))
+        assert [v.status for v in found if v.quantity == "normal_force" and v.error] == [status]
+        assert Status.INCOMPARABLE in {v.status for v in found if v.quantity == "indentation_depth"}
 
 
 def test_what_got_worse_is_the_headline(runs, capsys):
@@ -43,5 +59,5 @@ def test_pages_are_rebuilt_from_stored_results_without_a_change(runs, capsys):
     written = {path: path.read_bytes() for path in first.rglob("*") if path.is_file()}
     rebuild(first)
     assert {path: path.read_bytes() for path in first.rglob("*") if path.is_file()} == written
-    assert {"report.html", "summary.md", "junit.xml", "results.json"} <= {path.name for path in written}
+    assert {"report.html", "summary.md", "junit.xml", RUN} <= {path.name for path in written}
     assert "PASSED: all 3 checks" in capsys.readouterr().out

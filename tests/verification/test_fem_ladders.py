@@ -1,4 +1,4 @@
-"""Hard parameters walked by finite elements, some rungs; `contact-verify ladders --method fem` walks all."""
+"""Hard parameters walked by finite elements, some steps; `run --only stability --method fem` walks all."""
 
 from __future__ import annotations
 

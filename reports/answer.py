@@ -1,0 +1,214 @@
+"""An answer as people and spreadsheets read it: tables with error bars, and CSV with every digit."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from cases.declare.quantities import single_numbers
+from cases.files import csv_text
+from contact import (
+    UNITS,
+    ContactPath,
+    DetachmentPath,
+    FrictionHistory,
+    FrictionPath,
+    HistoryPath,
+    ImpactHistory,
+    InvalidInput,
+    Solution,
+    StageRecord,
+)
+from contact.answer.evidence import SYMBOLS
+from contact.answer.small_strains import depth_note, depths_of
+from contact.answer.solution import scene_line
+from contact.records.units import prefix_for
+from contact.records.validation import FloatArray
+from reports.words import Table, display_name, duration, measured, memory, scaled_unit, small
+
+if TYPE_CHECKING:
+    from cases.measurements.sweep import Sweep
+    from cases.run.propagation import Propagated, PropagatedQuantity
+
+BRACKETS = (
+    "Digits in brackets: uncertainty of the last digits, as the method itself estimates it; (?) where it gives none. "
+    "A number without brackets is right to the digits printed; --write FILE.csv writes all of them."
+)
+# Digits of a printed number whose uncertainty is beyond them: as many as anybody compares by eye.
+DIGITS = 6
+# Rows of a printed table; longer answers show every n-th state and the last one.
+LONGEST = 40
+
+PRINTED = {
+    ContactPath: ("contact_radius", "indentation_depth", "normal_force", "contact_stiffness"),
+    DetachmentPath: ("contact_radius", "indentation_depth", "normal_force"),
+    FrictionPath: ("contact_radius", "indentation_depth", "normal_force", "stick_radius", "dissipated_energy"),
+    FrictionHistory: ("time", "indentation_depth", "normal_force", "contact_radius", "dissipated_energy"),
+    HistoryPath: ("time", "indentation_depth", "normal_force", "contact_radius"),
+    ImpactHistory: ("time", "indentation_depth", "velocity", "normal_force", "contact_radius"),
+}
+
+
+def solution_table(solution: Solution, longest: int = LONGEST) -> Table:
+    """The states of an answer, each number with the uncertainty that the method states."""
+    # Distances of the printed states are one at least, so that none comes twice.
+    states = len(solution)
+    shown = np.linspace(0, states - 1, min(states, longest)).round().astype(np.intp)
+    heads, columns = [], []
+    for name in PRINTED[type(solution)]:
+        factor, prefix = prefix_for(getattr(solution, name))
+        heads.append(f"{SYMBOLS[name]} [{prefix}{UNITS[name]}]")
+        numbers = np.asarray(getattr(solution, name))[shown] / factor, _uncertainty(solution, name)[shown] / factor
+        columns.append([_readable(float(value), float(error)) for value, error in zip(*numbers, strict=True)])
+    skipped = f" {states - len(shown)} of {states} states are not printed." if states > len(shown) else ""
+    rows = tuple(zip(*columns, strict=True))
+    return Table(title=_title(solution), note=f"{BRACKETS}{skipped}", heads=tuple(heads), rows=rows, words=0)
+
+
+def _title(solution: Solution) -> str:
+    """Method, indenter, layer: "MDR: TruncatedCone on a bonded layer, nu = 0.45"."""
+    effects = "".join(f", {type(effect).__name__}" for effect in solution.scene.effects)
+    indenter = type(solution.scene.indenter).__name__
+    return f"{display_name(solution.method)}: {indenter} on a {solution.scene.layer.title}{effects}"
+
+
+def _readable(value: float, uncertainty: float) -> str:
+    """At most `DIGITS` digits; fewer where the uncertainty allows no more."""
+    if uncertainty < 0.5 * abs(value) * 10.0**-DIGITS:
+        return f"{value:.{DIGITS}g}"
+    return measured(value, uncertainty)
+
+
+# What a loading prescribes is exact.
+GIVEN = {
+    "ContactRadii": ("contact_radius",),
+    "IndentationDepths": ("indentation_depth",),
+    "NormalForces": ("normal_force",),
+    "DepthHistory": ("time", "indentation_depth"),
+    "ForceHistory": ("time", "normal_force"),
+    "Impact": ("time",),
+    "Detachment": ("contact_radius",),
+}
+
+
+def _uncertainty(solution: Solution, name: str) -> FloatArray:
+    """Absolute uncertainty, shape (n,): zero for what the scene prescribes, infinite where the method states none."""
+    if name in GIVEN[type(solution.scene.loading).__name__]:
+        return np.zeros(len(solution))
+    stated = solution.stated_error(name)
+    return np.full(len(solution), np.inf) if stated is None else stated
+
+
+def difference_table(solution: Solution, other: Solution) -> Table:
+    """The largest difference of each quantity of two answers to one scene, beside the error that both state.
+
+    Raises:
+        InvalidInput: if the answers are of another kind or have other states.
+    """
+    if type(other) is not type(solution) or len(other) != len(solution):
+        raise InvalidInput(
+            f"{solution.method} gives {len(solution)} states and {other.method} {len(other)}: they choose their states "
+            "themselves; prescribe radii, depths or forces to compare them"
+        )
+    rows = []
+    for name in PRINTED[type(solution)]:
+        values, others = getattr(solution, name), getattr(other, name)
+        step = int(np.argmax(np.abs(values - others)))
+        scale = float(np.max(np.abs(values))) or 1.0
+        stated = np.hypot(_uncertainty(solution, name), _uncertainty(other, name))[step] / scale
+        difference = float(abs(values[step] - others[step])) / scale
+        rows.append((name.replace("_", " "), small(difference), small(stated) if np.isfinite(stated) else "(?)"))
+    return Table(
+        title=f"{display_name(solution.method)} against {display_name(other.method)}",
+        note="Largest difference over all states, over the largest value; stated: by both methods together, there.",
+        heads=("quantity", "difference", "stated"),
+        rows=tuple(rows),
+    )
+
+
+def solution_facts(solution: Solution) -> list[tuple[str, str]]:
+    """What is said once of an answer: critical values, cost, own error estimate, notes but that on the depth."""
+    # Pull-off of a detachment, restitution and peaks of an impact; nothing for a plain path.
+    facts = [(name.replace("_", " "), _critical_value(solution, name)) for name in single_numbers(solution)]
+    worst = {name: float(np.max(error)) for name, error in solution.error_estimate.items() if np.size(error)}
+    estimates = ", ".join(f"{name.replace('_', ' ')} {small(error)}" for name, error in worst.items())
+    facts += [("relative error estimate", estimates)] if estimates else []
+    facts += [("cost", f"{duration(solution.cost.wall_seconds)}, {solution.cost.unknowns} unknowns")]
+    facts += [("stages", ", ".join(map(_stage, solution.stages)))] if solution.stages else []
+    facts += [("scene", scene_line(solution.scene))]
+    above = depth_note(solution.scene, depths_of(solution))
+    return facts + [("note", note) for note in solution.notes if note != above]
+
+
+def _critical_value(solution: Solution, name: str) -> str:
+    value = float(getattr(solution, name))
+    relative = solution.error_estimate.get(name)
+    factor, unit = scaled_unit(value, UNITS[name])
+    uncertainty = float("inf") if relative is None else float(np.max(relative)) * abs(value)
+    return f"{_readable(value / factor, uncertainty / factor)} {unit}".strip()
+
+
+def solution_csv(solution: Solution) -> str:
+    """Every state in SI units with its absolute uncertainty; an uncertainty the method does not state stays empty."""
+    columns: dict[str, list[float | str]] = {}
+    for name in solution.ARRAYS:
+        unit = UNITS[name].replace("/", "_per_")
+        columns[f"{name}_{unit}"] = getattr(solution, name).tolist()
+        stated = _uncertainty(solution, name).tolist()
+        columns[f"{name}_uncertainty_{unit}"] = [error if np.isfinite(error) else "" for error in stated]
+    return csv_text(columns, zip(*columns.values(), strict=True))
+
+
+def _stage(stage: StageRecord) -> str:
+    """The effect ledger in words: what ran, how long, how often, and the bytes it declared."""
+    times = "" if stage.calls == 1 else f" in {stage.calls} calls"
+    size = f", {memory(stage.bytes)}" if stage.bytes else ""
+    return f"{stage.name.replace('_', ' ')} {duration(stage.wall_seconds)}{times}{size}"
+
+
+# Pairs of quantities are listed where they move together at least so much.
+TOGETHER = 0.5
+
+
+def propagated_table(found: "Propagated") -> Table:
+    """Value, numerical error, uncertainty by the inputs and what each input contributes, of the last step."""
+    names = list(found.quantities[0].by_input) if found.quantities else []
+    words = [one.name.replace("_", " ") for one in found.quantities]
+    note = "Standard uncertainty by the inputs at the last step, beside the error of the method; "
+    note += f"{found.solved} scenes solved{'' if names else ', by samples'}."
+    if bent := [word for word, one in zip(words, found.quantities, strict=True) if one.bends]:
+        note += f" Not linear over these uncertainties: {', '.join(bent)}; --samples takes the whole of it."
+    pairs = [(words[i], words[j], float(found.correlation[i, j])) for j in range(len(words)) for i in range(j)]
+    if together := [f"{a} and {b} ({share:+.2f})" for a, b, share in pairs if abs(share) >= TOGETHER]:
+        note += f" Moving together: {', '.join(together)}."
+    heads = ("quantity", "value", "numerical error", "by inputs", "relative", *names)
+    rows = tuple(_row(one, names) for one in found.quantities)
+    return Table(title="Uncertain inputs", note=note, heads=heads, rows=rows)
+
+
+def _row(one: "PropagatedQuantity", names: list[str]) -> tuple[str, ...]:
+    value, spread = float(one.values[-1]), float(one.inputs[-1])
+    factor, unit = scaled_unit(value, one.unit)
+    size = abs(value) or 1.0
+    return (
+        one.name.replace("_", " "),
+        f"{measured(value / factor, spread / factor) if spread else f'{value / factor:.6g}'} {unit}".strip(),
+        "(?)" if one.numerical is None else small(float(one.numerical[-1]) / size),
+        f"{small(spread / factor)} {unit}".strip(),
+        f"{100 * spread / size:.2g} %",
+        *(f"{100 * float(one.by_input[name][-1]) / size:+.2g} %" for name in names),
+    )
+
+
+def sweep_table(found: "Sweep") -> Table:
+    """One row per state; quantities with their uncertainty in brackets."""
+    columns, texts = found.columns, {}
+    for head, values in columns.items():
+        if "_uncertainty" not in head:
+            name, bracket, unit = head.partition(" [")
+            errors = columns.get(f"{name}_uncertainty{bracket}{unit}", np.zeros_like(values))
+            exact = ~np.isfinite(errors) | (values == 0.0)
+            numbers = zip(values.tolist(), np.where(exact, 0.0, errors).tolist(), strict=True)
+            texts[head] = [f"{value:.6g}" if error == 0.0 else _readable(value, error) for value, error in numbers]
+    note = "Digits in brackets: uncertainty of the last digits. A number without brackets is right to the digits shown."
+    rows = tuple(zip(*texts.values(), strict=True))
+    return Table(title=f"Over {found.swept.name}", note=note, heads=tuple(texts), rows=rows, words=0)

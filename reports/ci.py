@@ -1,0 +1,165 @@
+"""What continuous integration reads of a run: summary.md, junit.xml, and `::error` lines that GitHub shows on a job."""
+
+import html
+import re
+import xml.etree.ElementTree as ET
+from collections.abc import Iterable
+
+from cases.answers import Answer
+from cases.runs import Run
+from cases.verdicts import Status, Verdict
+from contact.records.errors import printable
+from reports.findings import (
+    Finding,
+    baseline_sentence,
+    causes,
+    counts,
+    findings,
+    headline,
+    in_words,
+    observed_text,
+    who,
+    word_of,
+)
+from reports.tables import matrix_table
+from reports.words import Table, duration, small
+
+# Bytes of a summary: what a reader scrolls through. GitHub refuses a job summary above 1 MiB.
+LARGEST = 64_000
+# GitHub shows ten annotations of a step and hides the rest: nine leave room for its own.
+MOST = 9
+# What Markdown would take for a cell's end, code, a link, an address, a person, or emphasis at a word's edge.
+MARKDOWN = re.compile(r"[`*~\\@]|\](?=[(\[:])|:(?=//)|(?<![^\W_])_|_(?![^\W_])")
+# Statuses that JUnit calls an error (no answer) and not a failure (a wrong answer).
+BROKEN = (Status.INVALID, Status.TIMEOUT, Status.INCOMPARABLE)
+# Neither passed nor failed.
+OPEN = (Status.SKIP, Status.XFAIL, Status.INCONCLUSIVE)
+
+HEADS = ("verdict", "case", "claim", "method", "scenes", "relative error", "error / tolerance", "what was seen")
+
+
+def summary_text(run: Run, *, largest: int = LARGEST) -> str:
+    """The summary in Markdown, never above `largest` bytes: failures first, and how many rows did not fit."""
+    judged = run.judged
+    tally = ", ".join(f"{number} {status}" for status, number in counts(run))
+    suite = f"Suite {judged.suite}" if judged.suite else "Chosen cases"
+    taken = f"{suite}, revision {judged.stamp.revision[:12]}, {duration(judged.stamp.wall_seconds)}."
+    text = f"# {_escaped(headline(run)[0])}\n\n{tally}. {_escaped(taken)} {_escaped(baseline_sentence(run))}\n\n"
+    text += "".join(f"{_escaped(sentence)}\n\n" for sentence in causes(run))
+    matrix = _markdown(matrix_table(run)) if run.statuses else ""
+    text += matrix * (2 * len(matrix.encode()) <= largest)
+    found = findings(run)
+    if not found:
+        return text + "Every check ran and passed.\n"
+    text += _head(HEADS)
+    for number, row in enumerate(map(_row, found)):
+        if len((text + row).encode()) > largest - 200:
+            return text + f"\n{len(found) - number} further rows are on the page of the report.\n"
+        text += row
+    return text
+
+
+def _head(heads: Iterable[str]) -> str:
+    cells = list(heads)
+    return f"| {' | '.join(cells)} |\n|{'---|' * len(cells)}\n"
+
+
+def _markdown(table: Table) -> str:
+    rows = (f"| {' | '.join(map(_escaped, row))} |\n" for row in table.rows)
+    return f"{_head(table.heads)}{''.join(rows)}\n"
+
+
+def _row(finding: Finding) -> str:
+    word = _escaped(finding.word)
+    fraction = small(finding.fraction) if finding.fraction else ""
+    cells = (
+        finding.case,
+        finding.claim,
+        who(finding.methods, " against "),
+        finding.where,
+        _measured(finding),
+        fraction,
+    )
+    others = " | ".join(map(_escaped, (*cells, finding.message)))
+    return f"| {f'**{word}**' if finding.tone == 'bad' else word} | {others} |\n"
+
+
+def _measured(finding: Finding) -> str:
+    """The sizes of all, or what was measured at the only one."""
+    return finding.size or (observed_text(finding.worst) if finding.worst else "")
+
+
+def _escaped(text: str) -> str:
+    """Text that shows as it stands: it ends no table cell and is neither HTML nor Markdown."""
+    plain = html.escape(printable(" ".join(text.split())), quote=False)
+    return MARKDOWN.sub(lambda found: f"&#{ord(found[0])};", plain).replace("|", "\\|")
+
+
+def annotation_lines(run: Run) -> list[str]:
+    """The worst findings, one line each; when there are more than nine, the ninth line counts the others."""
+    failed = [one for one in findings(run) if one.tone == "bad"]
+    shown = failed if len(failed) <= MOST else failed[: MOST - 1]
+    lines = [_annotation(f"{one.word} {one.sentence}", one.message) for one in shown]
+    rest = len(failed) - len(shown)
+    return [*lines, _annotation("more failures", f"{rest} more failures: see summary.md")] if rest else lines
+
+
+def _annotation(title: str, message: str) -> str:
+    """A workflow command is one line; percent signs and line ends are written as their codes."""
+    title, message = (text.replace("%", "%25").replace("\r", "%0D").replace("\n", "%0A") for text in (title, message))
+    return f"::error title={title.replace(':', '%3A').replace(',', '%2C')}::{message}"
+
+
+def junit_text(run: Run) -> str:
+    """The run as JUnit XML: a suite per case, a test per verdict and per solved scene, class names CASE.METHOD."""
+    root = ET.Element("testsuites", name=f"contact verification, suite {run.judged.suite}")
+    for case in run.judged.cases:
+        suite = ET.SubElement(root, "testsuite", name=case.name, timestamp=run.judged.stamp.started)
+        suite.extend(_of_verdict(v) for v in run.judged.verdicts if v.case == case.name)
+        suite.extend(_of_answer(answer) for answer in run.answers.of_case(case.name))
+        ends = [element.tag for test in suite for element in test]
+        numbers = {"tests": len(suite), "failures": ends.count("failure"), "errors": ends.count("error")}
+        suite.attrib |= {name: str(n) for name, n in (numbers | {"skipped": ends.count("skipped")}).items()}
+        suite.set("time", f"{sum(float(test.get('time', 0)) for test in suite):.3f}")
+    ET.indent(root)
+    return ET.tostring(root, encoding="unicode", xml_declaration=True) + "\n"
+
+
+def _of_verdict(verdict: Verdict) -> ET.Element:
+    name = verdict.claim if verdict.scene in verdict.claim else f"{verdict.claim} [{verdict.scene}]"
+    test = _test(verdict.case, verdict.methods, name)
+    _end(test, verdict.status, f"{word_of(verdict)}: {verdict.message}")
+    for end in test.findall("*[@type]"):
+        facts = {
+            "measured": observed_text(verdict),
+            "tolerance": small(verdict.tolerance),
+            "error / tolerance": "" if verdict.fraction is None else small(verdict.fraction),
+            "expected because": verdict.why.because,
+            "origin": f"{verdict.why.origin}: {verdict.why.source}",
+        }
+        end.text = _xml("\n".join(f"{name}: {fact}" for name, fact in facts.items() if fact))
+    return test
+
+
+def _of_answer(answer: Answer) -> ET.Element:
+    test = _test(answer.case, (answer.method,), f"solves {answer.scene}", answer.wall_seconds)
+    _end(test, answer.status, answer.reason)
+    return test
+
+
+def _test(case: str, methods: Iterable[str], name: str, seconds: float = 0.0) -> ET.Element:
+    return ET.Element("testcase", classname=f"{case}.{'+'.join(methods)}", name=_xml(name), time=f"{seconds:.3f}")
+
+
+def _end(test: ET.Element, status: Status, message: str) -> None:
+    """Add how the test ended, unless it passed."""
+    if status.is_failure:
+        end = "error" if status in BROKEN else "failure"
+        ET.SubElement(test, end, type=status.value, message=_xml(in_words(message)))
+    elif status in OPEN:
+        ET.SubElement(test, "skipped", message=_xml(in_words(message)))
+
+
+def _xml(text: str) -> str:
+    """XML 1.0 has no place for most control characters."""
+    return "".join(letter for letter in text if letter >= " " or letter in "\n\t")

@@ -1,0 +1,184 @@
+"""`contact-verify gate` and `accept`: a finished run against the accepted numbers, and new numbers to accept."""
+
+from collections.abc import Collection
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from cases.answers import Answer, Table
+from cases.case import Case
+from cases.declare.registry import load_cases, select
+from cases.foreign import with_registered
+from cases.gate.accept import (
+    Change,
+    Proposal,
+    accept,
+    accepted_before,
+    propose,
+    refusals,
+    refusals_beforehand,
+)
+from cases.gate.baseline import read_baselines, relative_tolerance
+from cases.gate.gate import gate
+from cases.gate.spread import measured_spreads
+from cases.gate.write_permission import write_conditions
+from cases.run.lock import locked
+from cases.run.stamp import repository
+from cases.runs import Run, read_run, write_run
+from cases.verdicts import ExitCode, exit_code
+from contact import InvalidInput
+from reports import words
+from reports.commands.runs import show_verdict, write_summaries
+from reports.terminal import STYLES, console, show_table
+
+
+def run_gate(directory: Path, baselines: Path, *, methods: Collection[str], strict: bool, quiet: bool) -> int:
+    """Gate the run in `directory`, write its verdicts and summaries again and return the exit code.
+
+    Pages with figures are drawn by `contact-verify report`: a gate is asked often, and a figure takes half a second.
+
+    Args:
+        directory: of the run.
+        baselines: folder of the accepted numbers.
+        methods: that are gated; if none is named, those that the run was made with.
+        strict: whether verdicts that stay open fail.
+        quiet: whether only the verdict is shown.
+
+    Raises:
+        InvalidInput: if there is no run or no baseline.
+    """
+    read_run(directory)
+    with locked(directory):
+        run = read_run(directory)
+        result = _gated(run, baselines, methods or run.judged.methods)
+        write_run(result.judged, directory)
+        write_summaries(result, directory)
+    show_verdict(result, directory / "summary.md", quiet=quiet)
+    return exit_code(result.statuses, strict=strict) if result.judged.complete else ExitCode.INTERRUPTED
+
+
+def _gated(run: Run, baselines: Path, methods: Collection[str]) -> Run:
+    accepted = read_baselines(baselines)
+    if not accepted:
+        raise InvalidInput(f"no baselines in {baselines}; name their folder, or accept a case first")
+    library = load_cases() if run.judged.suite != "ci" else {}
+    unwatched = {(case.name, *place) for case in library.values() for place in case.nightly_only()}
+
+    def watched(answer: Answer) -> bool:
+        return (answer.case, answer.scene, answer.method) not in unwatched
+
+    return gate(run, accepted, methods=methods, watched=watched)
+
+
+@dataclass(frozen=True, kw_only=True)
+class AcceptRequest:
+    """What the user asks for.
+
+    Attributes:
+        reason: why these numbers are right.
+        run: folder of the run they come from.
+        baselines: folder they are written to.
+        loosen: whether a tolerance may grow or a record be withdrawn.
+        write: whether to write at all.
+        jobs: repetitions at a time.
+    """
+
+    reason: str
+    run: Path
+    baselines: Path
+    loosen: bool
+    write: bool
+    jobs: int
+
+
+def accept_cases(names: list[str], request: AcceptRequest) -> None:
+    """Show for each case (all of the run if none is named) what would change; write it when told to.
+
+    Raises:
+        InvalidInput: naming every case that may not be accepted and why; the others are written all the same.
+    """
+    run = read_run(request.run)
+    solved_by = {answer.method for answer in run.answers}
+    library = {name: with_registered(case, solved_by) for name, case in load_cases().items()}
+    ran = [case.name for case in run.judged.cases]
+    # Stress tests are accepted with their study; the code verification has no accepted numbers.
+    studies = [name for name in ran if name not in library and any(t.case == name for t in run.judged.stress_tests)]
+    refused: list[str] = []
+    for name in names or [name for name in ran if name in library or name in studies]:
+        if name not in ran:
+            raise InvalidInput(f"the run in {request.run} does not have {name}; run it first")
+        try:
+            _accept(name, select(library, names=[name])[0] if name not in studies else None, run, request)
+        except InvalidInput as error:
+            refused.append(str(error))
+    if refused:
+        raise InvalidInput("\n".join(refused))
+
+
+def _accept(name: str, case: Case | None, run: Run, request: AcceptRequest) -> None:
+    """Accept a case, or a study of stress tests, which has no case."""
+    now, terminal = write_conditions(repository(), request.baselines), console()
+    if reasons_against := refusals_beforehand(name, run, now):
+        raise InvalidInput(f"{name} is not accepted: {'; '.join(reasons_against)}")
+    watched, spreads = run, dict[tuple[str, str, str], float]()
+    suites: tuple[str, ...] = ()
+    if case is not None:
+        terminal.print(f"{name}: repeating every solution with inputs one unit in the last place away ...")
+        watched, suites = _watched(case, run), case.suites
+        spreads = dict(measured_spreads(case, watched.answers, jobs=request.jobs))
+    before = accepted_before(request.baselines, name)
+    proposal = propose(watched, name, suites=suites, before=before, spreads=spreads, reason=request.reason)
+    show_table(change_table(proposal), on=terminal)
+    for reason in refusals(proposal, run, now, loosen=request.loosen):
+        terminal.print(f"refused: {reason}", style=STYLES["bad"])
+    if request.write:
+        accept(request.baselines, proposal, run, now, loosen=request.loosen)
+        terminal.print(f"{name}: written to {request.baselines}", style=STYLES["good"])
+    else:
+        terminal.print(f"{name}: nothing written; say --write to write it", style=STYLES["warn"])
+
+
+def _watched(case: Case, run: Run) -> Run:
+    """The case as it ran, without what only the nightly suite solves: what is accepted is that of the suite ci."""
+    unwatched = case.nightly_only()
+    at_night = {claim.name for claim in case.claims if claim.nightly}
+    verdicts = tuple(
+        verdict
+        for verdict in run.judged.verdicts
+        if verdict.claim not in at_night and not any((verdict.scene, m) in unwatched for m in verdict.methods)
+    )
+    answers = Table(a for a in run.answers.of_case(case.name) if (a.scene, a.method) not in unwatched)
+    return Run(judged=replace(run.judged, verdicts=verdicts), answers=answers)
+
+
+def change_table(proposal: Proposal) -> words.Table:
+    """Old, new, the change in units of the tolerance and of U; new records are only counted."""
+    changed = [change for change in proposal.changes if change.old is not None]
+    new = len(proposal.changes) - len(changed)
+    return words.Table(
+        title=f"{proposal.case}: {len(changed)} changed, {new} new records",
+        note="A tolerance is relative: max(10 x measured spread, 1e-12). U is the method's own numerical uncertainty.",
+        heads=("method", "scene", "quantity", "old", "new", "unit", "in tolerances", "in U", "tolerance", "was"),
+        rows=tuple(_row(change) for change in changed),
+        words=3,
+    )
+
+
+def _row(change: Change) -> tuple[str, ...]:
+    (shown, *_), (old, new) = [q for q in (change.new, change.old) if q is not None], change.values
+    now, was = ("" if q is None else words.small(relative_tolerance(q)) for q in (change.new, change.old))
+    return (
+        change.method,
+        change.scene,
+        change.quantity,
+        "" if old is None else f"{old:.17g}",
+        "withdrawn" if change.new is None else "" if new is None else f"{new:.17g}",
+        shown.unit,
+        _ratio(change.in_tolerances),
+        _ratio(change.in_stated_errors),
+        f"{now}{' LOOSENED' if change.loosens else ''}" if now else "",
+        was,
+    )
+
+
+def _ratio(value: float | None) -> str:
+    return "" if value is None else f"{value:+.3g}"

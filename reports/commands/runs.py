@@ -1,0 +1,270 @@
+"""`contact-verify run` and `report`: solve cases or list them, write results and pages, print the verdict."""
+
+import dataclasses
+import os
+from collections.abc import Sequence
+from pathlib import Path
+
+from rich.padding import Padding
+from rich.text import Text
+
+from cases.case import USUAL_SUITES, Case
+from cases.declare.methods import check_known, registered
+from cases.declare.registry import load_cases, select
+from cases.declare.settings import Settings, ladder, read_settings, with_settings
+from cases.files import write_whole
+from cases.foreign import against, beside, with_registered
+from cases.measurements.ladders.ladder_study import CLIMBERS, chosen, ladder_case
+from cases.measurements.ladders.ladder_table import LADDERS
+from cases.measurements.suites import SuiteStudies, run_of
+from cases.run.executors import by_name
+from cases.run.lock import locked
+from cases.run.runner import RunOptions, run_cases
+from cases.runs import Run, read_run
+from cases.verdicts import ExitCode, Status, exit_code
+from contact import InvalidInput
+from contact.records.extras import missing_extra
+from reports import comparison
+from reports.book import claim_table, method_table, scene_table
+from reports.ci import annotation_lines, junit_text, summary_text
+from reports.findings import causes, findings, headline, nothing_ran, tone_of, who
+from reports.progress import RunDisplay
+from reports.tables import matrix_table, shortest_times
+from reports.terminal import STYLES, console, show_table
+from reports.words import Table, display_name
+
+# What methods of installed packages are compared with when no other method is named.
+REFEREE = "mdr"
+# The terminal shows so many failed checks; the page shows all.
+WORST_SHOWN = 12
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class Asked:
+    """What the command line names.
+
+    Attributes:
+        names: of cases; all of the suite if none.
+        methods: that solve them; all of the project if none.
+        others: methods that these are compared with, and with nothing else.
+        settings: of methods of installed packages, in words or files.
+    """
+
+    names: list[str]
+    methods: list[str]
+    others: list[str]
+    settings: list[str]
+
+
+def run(asked: Asked, options: RunOptions, *, executor: str, quiet: bool, strict: bool) -> int:
+    """Run cases in an executor and return the exit code; with `strict`, verdicts that stay open fail."""
+    methods = asked.methods
+    settings = read_settings(asked.settings, methods)
+    cases = [with_settings(case, settings) for case in _cases(asked, options.suite)]
+    chosen = tuple(dict.fromkeys((*methods, *asked.others)))
+    options = dataclasses.replace(options, methods=chosen, executor=by_name(executor))
+    studied = options.suite in USUAL_SUITES and not asked.names and not methods
+    with locked(options.out):
+        found = _carried_out(cases, options, studied, quiet=quiet)
+        write_pages(found, options.out)
+    show_verdict(found, page_of(options.out), quiet=quiet)
+    if not found.judged.complete:
+        return ExitCode.INTERRUPTED
+    code = exit_code(found.statuses, strict=strict)
+    return ExitCode.NOTHING_RAN if found.unjudged and code is not ExitCode.GATE_FAILED else code
+
+
+def _cases(asked: Asked, suite: str) -> Sequence[Case]:
+    """The cases that are asked for, open to methods of installed packages."""
+    library, methods = load_cases(), asked.methods
+    if asked.others:
+        chosen = [library[case.name] for case in select(library, names=asked.names, suite=suite)]
+        return against(chosen, methods, asked.others)
+    opened = {name: with_registered(case, methods) for name, case in library.items()}
+    cases = select(opened, names=asked.names, suite=suite)
+    if methods and set(methods) <= set(registered()):
+        return [beside(case, methods, REFEREE) for case in cases]
+    # Of a suite those cases run that have one of the methods.
+    solved = [case for case in cases if not methods or any(use.label in methods for use in case.methods)]
+    return [case.only_methods(methods) for case in ((not asked.names and solved) or cases)]
+
+
+def _carried_out(cases: Sequence[Case], options: RunOptions, studied: bool, *, quiet: bool) -> Run:
+    """Run cases and, if this is a whole suite, its studies."""
+    with SuiteStudies(options.suite, options.executor, options.jobs) as studies:
+        solved = studies.begin if studied else options.solved
+        with RunDisplay(console(), quiet=quiet) as display:
+            result = run_cases(cases, dataclasses.replace(options, progress=display, solved=solved))
+        return studies.join(result, options.out) if studied and result.judged.complete else result
+
+
+def show_verdict(run: Run, page: Path, *, quiet: bool) -> None:
+    """The matrix (unless quiet), the worst findings, their cause, the verdict, the page, and annotations on GitHub."""
+    terminal = console()
+    if not quiet:
+        show_table(matrix_table(run), on=terminal)
+    for one in [one for one in findings(run) if one.tone == "bad"][:WORST_SHOWN]:
+        terminal.print(Text.assemble((one.word, STYLES["bad"]), f" {one.sentence}: {one.message}"))
+    for sentence in causes(run):
+        terminal.print(sentence)
+    words, tone = headline(run)
+    terminal.print(words, style=STYLES[tone])
+    terminal.print(f"report: {page}")
+    if os.environ.get("GITHUB_ACTIONS") == "true":
+        for line in annotation_lines(run):
+            terminal.print(line, soft_wrap=True)
+
+
+def list_cases(names: list[str], suite: str) -> None:
+    """Print the cases of a suite, or all; a single named one in full.
+
+    Raises:
+        InvalidInput: naming the case and what is wrong with it.
+    """
+    library = {name: with_registered(case) for name, case in load_cases().items()}
+    cases = select(library, names=names, suite=suite)
+    if len(names) == 1:
+        _show_case(*cases)
+        return
+    tasks = sum(1 for case in cases for _ in case.tasks())
+    claims = sum(len(case.claims) for case in cases)
+    table = Table(
+        title="",
+        note=f"{len(cases)} cases, {claims} claims, {tasks} solutions: all valid. run --list CASE shows one in full.",
+        heads=("case", "suites", "methods", "scenes", "claims", "question"),
+        rows=tuple(_line(case) for case in cases),
+        words=6,
+    )
+    show_table(table, on=console())
+
+
+def _line(case: Case) -> tuple[str, ...]:
+    methods = ", ".join(display_name(use.label) for use in case.methods)
+    return case.name, ", ".join(case.suites), methods, f"{len(case.scenes)}", f"{len(case.claims)}", case.question
+
+
+def _show_case(case: Case) -> None:
+    """Print a case as a short paper: question, equations, text, scenes, methods, claims."""
+    terminal = console()
+    terminal.print(Text(case.title, style="bold"))
+    terminal.print(Text(f"{case.question}  [{', '.join(case.equations)}]\n"))
+    for paragraph in case.text.split("\n\n"):
+        terminal.print(Padding(Text(" ".join(paragraph.split())), (0, 0, 1, 0)))
+    for table in (scene_table(case), method_table(case), claim_table(case)):
+        show_table(table, on=terminal)
+        terminal.print()
+
+
+def cost(names: list[str], options: RunOptions, *, methods: list[str], settings: list[str], quiet: bool) -> int:
+    """Time the work studies of cases (only these methods, if any) alone on the machine; 1 if a reference broke down.
+
+    A setting that is a list is a ladder of an installed package's method.
+
+    Raises:
+        InvalidInput: if no study times such a method.
+    """
+    for method in methods:
+        check_known(method)
+    chosen = select(load_cases(), names=names, suite=options.suite)
+    asked = read_settings(settings, methods)
+    timed = [case for case in (_of_methods(case, methods, asked) for case in chosen) if case.work]
+    if methods and not timed:
+        raise InvalidInput(f"{', '.join(case.name for case in chosen)}: nothing times {' or '.join(methods)} there")
+    options = dataclasses.replace(options, methods=tuple(methods))
+    terminal = console()
+    with locked(options.out):
+        with RunDisplay(terminal, quiet=quiet) as display:
+            result = run_cases(timed, dataclasses.replace(options, only_costs=True, progress=display))
+        write_pages(result, options.out)
+    for table in (shortest_times(result),):
+        if table is not None:
+            show_table(table, on=terminal)
+    terminal.print(f"report: {options.out / 'report.html'}")
+    missing = {case.name for case in result.judged.cases} - {cost.case for cost in result.judged.costs}
+    return ExitCode.GATE_FAILED if missing or any(s is Status.INVALID for s in result.statuses) else 0
+
+
+def _of_methods(case: Case, methods: list[str], settings: Settings) -> Case:
+    """The case with the studies that time these methods, those of installed packages with the settings asked for."""
+    if not methods:
+        return case
+    rungs = [rung for name in registered() if name in methods for rung in ladder(name, settings.get(name, {}))]
+    studies = (study.of_methods(methods, rungs) for study in case.work)
+    return dataclasses.replace(case, work=tuple(study for study in studies if study.ladder))
+
+
+def stress(names: list[str], methods: list[str], options: RunOptions, *, quiet: bool) -> int:
+    """Carry out stress tests (all if none is named) by these methods, MDR if none is named; 1 if one failed."""
+    plans, climbers = chosen(LADDERS, names), {name: CLIMBERS.get(name, {}) for name in methods or ["mdr"]}
+    terminal = console()
+
+    def say(line: str) -> None:
+        if not quiet:
+            terminal.print(line, soft_wrap=True)
+
+    with locked(options.out):
+        result = run_of([ladder_case(plans, climbers, progress=say)], options.out)
+        write_pages(result, options.out)
+    terminal.print(f"report: {page_of(options.out)}")
+    return exit_code(result.statuses)
+
+
+def rebuild(directory: Path, *, single_file: bool = False) -> int:
+    """Write the pages of the run in `directory` again; return 5 if nothing ran in it, else 0."""
+    read_run(directory)
+    with locked(directory):
+        run = read_run(directory)
+        write_pages(run, directory, single_file=single_file)
+    words, tone = headline(run)
+    console().print(words, style=STYLES[tone])
+    console().print(f"report: {page_of(directory)}")
+    return _code(run)
+
+
+def _code(*runs: Run) -> ExitCode:
+    return ExitCode.NOTHING_RAN if any(map(nothing_ran, runs)) else ExitCode.PASSED
+
+
+def write_pages(run: Run, directory: Path, *, single_file: bool = False) -> None:
+    """report.html with a page per case and figures, summary.md and junit.xml.
+
+    Where the packages of pages are not installed, the numbers, summary and junit.xml stand without them.
+    """
+    try:
+        from reports.page import write_report  # noqa: PLC0415 - an extra brings what it draws with
+    except ModuleNotFoundError as error:
+        if not missing_extra(error):
+            raise
+        console(stderr=True).print(f"no pages: {missing_extra(error)}, then contact-verify report {directory}")
+    else:
+        write_report(run, directory, single_file=single_file)
+    write_summaries(run, directory)
+
+
+def write_summaries(run: Run, directory: Path) -> None:
+    """Write summary.md and junit.xml."""
+    write_whole(directory / "summary.md", summary_text(run))
+    write_whole(directory / "junit.xml", junit_text(run))
+
+
+def page_of(directory: Path) -> Path:
+    """Where a reader begins: the report, or the summary where no pages could be drawn."""
+    report = directory / "report.html"
+    return report if report.is_file() else directory / "summary.md"
+
+
+def compare_runs(first: Path, second: Path) -> int:
+    """Compare the run in `second` with that in `first`; the page lands beside the second; 5 if nothing ran in one."""
+    from reports.page import write_comparison  # noqa: PLC0415 - an extra brings what it draws with
+
+    runs = read_run(first), read_run(second)
+    claims, numbers = comparison.changed_claims(*runs), comparison.changed_numbers(*runs)
+    changes = comparison.worst_first(claims + numbers)
+    words, tone = comparison.headline(claims, numbers)
+    write_comparison(changes, (words, tone), runs, second / "comparison.html")
+    console().print(words, style=STYLES[tone])
+    for verdict in changes[:WORST_SHOWN]:
+        place = f"{verdict.case}: {verdict.claim} [{verdict.scene}] ({who(verdict.methods)})"
+        console().print(Text.assemble((verdict.word, STYLES[tone_of(verdict.status)]), f" {place}: {verdict.message}"))
+    console().print(f"comparison: {second / 'comparison.html'}")
+    return _code(*runs)

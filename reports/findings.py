@@ -1,0 +1,356 @@
+"""What a run found, in words: the verdict, failures grouped per claim, and the cause they point at.
+
+A finding is a claim that ended alike on several scenes ("20 of 20 scenes, +1.0e-3 each"), or one reason why a method
+gave no answer. Page, summary, JUnit file and terminal all show findings, worst first.
+"""
+
+import re
+from collections import Counter
+from collections.abc import Callable, Collection, Hashable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from statistics import median
+from typing import Any, TypeVar
+
+from cases.answers import Answer
+from cases.runs import Run
+from cases.verdicts import Kind, Status, Verdict
+from reports.words import NOT_FINITE, display_name, small
+
+T = TypeVar("T")
+K = TypeVar("K", bound=Hashable)
+
+# Skips stand before passes: someone has to look at their reasons.
+EXPLANATIONS: Mapping[Status, str] = {
+    Status.INVALID: "a number that is not finite, or a solver that broke down",
+    Status.FAIL: "outside its tolerance",
+    Status.TIMEOUT: "stopped at its time limit",
+    Status.INCOMPARABLE: "shape, unit or specification differ",
+    Status.XPASS: "declared to fail, yet it passes: the declaration is out of date",
+    Status.DIFF: "differs from the accepted baseline",
+    Status.PERF: "slower than the accepted baseline",
+    Status.INCONCLUSIVE: "the numerical uncertainty does not allow a verdict",
+    Status.SKIP: "a method does not model some scenes; one for each reason",
+    Status.XFAIL: "fails, as declared with a reason",
+    Status.PASS: "within tolerance",
+}
+WORST_FIRST = tuple(EXPLANATIONS)
+# Relative errors this near to their median, as a share of it, are one error: half as much splits rounded factors.
+ALIKE = 0.05
+# A relative tolerance beyond this is shown beside the verdict: agreement within 5 % is another statement than AGREE.
+WIDE = 1e-2
+# Where to look when a method has the first quantity wrong while it has the second right.
+PLACES = (
+    ("contact_stiffness", "", "k_N, Eq. (10), and the kernel of the layer"),
+    ("indentation_depth", "contact_stiffness", "g, Eq. (8)"),
+    ("normal_force", "indentation_depth", "the integral of the springs' forces, Eq. (4)"),
+    ("normal_force", "contact_stiffness", "g, Eq. (8), or the integral of the springs' forces, Eq. (4)"),
+    ("pressure", "normal_force", "the transform from springs to pressure, Eq. (9)"),
+    ("displacement", "normal_force", "the transform from springs to displacement, Eq. (13)"),
+)
+
+
+def grouped(items: Iterable[T], key: Callable[[T], K]) -> dict[K, list[T]]:
+    """The items by key, both in the order in which they come."""
+    found: dict[K, list[T]] = {}
+    for item in items:
+        found.setdefault(key(item), []).append(item)
+    return found
+
+
+def tone_of(status: Status) -> str:
+    """Class of colour of a status."""
+    if status.is_failure:
+        return "bad"
+    return {Status.INCONCLUSIVE: "warn", Status.SKIP: "skip", Status.XFAIL: "warn"}.get(status, "good")
+
+
+def word_of(verdict: Verdict) -> str:
+    """AGREE, IDENTITY, or the status."""
+    return "IDENTITY" if verdict.identity and verdict.status is Status.PASS else verdict.word
+
+
+def severity(verdict: Verdict) -> tuple[int, float]:
+    """Sorting key: the worst status first, within it the largest fraction of the tolerance."""
+    return WORST_FIRST.index(verdict.status), -(verdict.fraction or 0.0)
+
+
+def who(methods: Iterable[str], between: str = " – ") -> str:
+    """Methods by the names that readers know."""
+    return between.join(map(display_name, methods))
+
+
+def in_words(message: str) -> str:
+    """A message with its non-finite numbers in words, so that pages can be searched for stray ones."""
+    names = {"nan": "not-a-number", "inf": "infinity"}
+    return re.sub(r"(?<![\w-])([-+]?)(nan|inf)\b", lambda found: found[1] + names[found[2]], message)
+
+
+def quantity_words(name: str) -> str:
+    """The name of a quantity as words."""
+    return name.replace("_", " ")
+
+
+def observed_text(verdict: Verdict) -> str:
+    """What was measured, with the error that each method states; errors and residuals have two digits."""
+    unit = "" if verdict.unit == "1" else f" {verdict.unit}"
+    if verdict.error is None:
+        return NOT_FINITE if verdict.status is Status.INVALID else "not compared"
+    if verdict.kind is Kind.ORDER and verdict.expected is not None:
+        return f"{verdict.error:.2f}{unit}, formal {verdict.expected:g}"
+    if verdict.kind is Kind.REGRESSION and (change := relative_error(verdict)) is not None:
+        return f"moved by {change:+.1e}"
+    stated = ", ".join(f"{display_name(method)} {small(u)}" for method, u in verdict.uncertainty.items())
+    return f"{small(verdict.error)}{unit}" + (f" (stated {stated})" if stated else "")
+
+
+def relative_error(verdict: Verdict) -> float | None:
+    """Signed relative error, of accepted numbers the relative change; None where nothing relative was measured."""
+    if verdict.error is None or verdict.kind is Kind.ORDER:
+        return None
+    if verdict.kind is Kind.REGRESSION:
+        return (verdict.error - verdict.expected) / abs(verdict.expected) if verdict.expected else None
+    return verdict.error if verdict.unit == "1" else None
+
+
+def is_wide(verdict: Verdict) -> bool:
+    """Whether a claim passed within a relative tolerance that is shown beside its verdict.
+
+    Orders have another unit. Counts (of silent failures) are claimed to be zero. A limit of one or more is a factor.
+    """
+    counted = verdict.kind is Kind.INVARIANT and verdict.expected == 0.0
+    relative = verdict.kind is not Kind.ORDER and verdict.unit == "1" and not counted
+    return verdict.status is Status.PASS and relative and WIDE < verdict.tolerance < 1.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Finding:
+    """A claim that ended alike on several scenes, or one reason why a method gave no answers.
+
+    Attributes:
+        status: how it ended.
+        word: the same for readers.
+        case: name, or how many cases.
+        claim: name of the claim; "no answer" or "not modelled" of answers.
+        methods: that took part.
+        scenes: on which it ended so.
+        total: number of scenes that the claim speaks about.
+        size: the relative errors in words, "+1.0e-3 each".
+        fraction: largest error over tolerance.
+        worst: the worst verdict; None of answers.
+        message: what was seen at the worst scene, or the reason.
+    """
+
+    status: Status
+    word: str
+    case: str
+    claim: str
+    methods: tuple[str, ...]
+    scenes: tuple[str, ...]
+    total: int
+    message: str
+    size: str = ""
+    fraction: float = 0.0
+    worst: Verdict | None = None
+
+    @property
+    def tone(self) -> str:
+        """Class of colour."""
+        return tone_of(self.status)
+
+    @property
+    def where(self) -> str:
+        """The scene, or how many of how many."""
+        return self.scenes[0] if self.total == 1 else f"{len(self.scenes)} of {self.total} scenes"
+
+    @property
+    def sentence(self) -> str:
+        """One line: claim, where, how large."""
+        size = f", {self.size}" if self.size else ""
+        return f"{self.case}: {self.claim} ({who(self.methods, ' against ')}), {self.where}{size}"
+
+
+def findings(run: Run, verdicts: Collection[Verdict] | None = None) -> list[Finding]:
+    """All that did not pass, grouped, worst first; of some verdicts only if they are given."""
+    answers = _unanswered(run) if verdicts is None else []
+    found = [_of_answers(same) for same in grouped(answers, _reason).values()]
+    chosen = run.judged.verdicts if verdicts is None else verdicts
+    for same in grouped((v for v in chosen if v.status is not Status.SKIP), _claim).values():
+        by_status = grouped((v for v in same if v.status is not Status.PASS), lambda v: v.status)
+        found += [_of_verdicts(alike, len(same)) for alike in by_status.values()]
+    # Each reason of a skip once: what a method does not model is not compared either.
+    known = {one.message for one in found}
+    skipped = grouped((v for v in chosen if v.status is Status.SKIP), _skip_reason)
+    found += [
+        _finding(same, "not compared", reason, methods=dict.fromkeys(method for v in same for method in v.methods))
+        for reason, same in skipped.items()
+        if reason not in known
+    ]
+    return sorted(found, key=lambda one: (WORST_FIRST.index(one.status), -one.fraction))
+
+
+def _finding(
+    same: Sequence[Verdict | Answer], claim: str, message: str, *, methods: Iterable[str], **more: Any
+) -> Finding:
+    """The finding of verdicts or answers that ended alike."""
+    cases = list(dict.fromkeys(one.case for one in same))
+    return Finding(
+        status=same[0].status,
+        case=cases[0] if len(cases) == 1 else f"{len(cases)} cases",
+        claim=claim,
+        methods=tuple(methods),
+        scenes=tuple(one.scene for one in same),
+        message=in_words(message),
+        **{"word": same[0].status.value, "total": len(same)} | more,
+    )
+
+
+def _claim(verdict: Verdict) -> tuple[str, ...]:
+    """What verdicts of one finding share; an accepted number is compared in many cases."""
+    own = ("",) if verdict.kind is Kind.REGRESSION else (verdict.case, verdict.claim)
+    return *own, verdict.quantity, *verdict.methods
+
+
+def _of_verdicts(same: Sequence[Verdict], total: int) -> Finding:
+    worst = min(same, key=severity)
+    errors = [error for v in same if (error := relative_error(v)) is not None]
+    sizes = {"size": size_text(errors) if len(same) > 1 else "", "fraction": worst.fraction or 0.0, "worst": worst}
+    return _finding(same, worst.claim, worst.message, methods=worst.methods, word=word_of(worst), total=total, **sizes)
+
+
+def size_text(errors: Sequence[float]) -> str:
+    """Relative errors in words: one number where they are alike, else their range."""
+    if not errors:
+        return ""
+    if max(errors) - min(errors) <= 2 * ALIKE * abs(median(errors)):
+        return f"{median(errors):+.1e} each"
+    return f"{min(errors):+.1e} to {max(errors):+.1e}"
+
+
+def _unanswered(run: Run) -> list[Answer]:
+    return [answer for answer in run.answers if not answer.variant and answer.status is not Status.PASS]
+
+
+def _reason(answer: Answer) -> tuple[str, ...]:
+    """What answers of one finding share: status and reason; broken ones also method and case."""
+    own = () if answer.status is Status.SKIP else (answer.case, answer.method)
+    return answer.status.value, answer.reason, *own
+
+
+def _of_answers(same: Sequence[Answer]) -> Finding:
+    claim = "not modelled" if same[0].status is Status.SKIP else "no answer"
+    return _finding(same, claim, same[0].reason, methods=dict.fromkeys(answer.method for answer in same))
+
+
+def _skip_reason(verdict: Verdict) -> str:
+    """Why a verdict was skipped, without the method's name before it."""
+    method, _, reason = verdict.message.partition(": ")
+    return reason if method in verdict.methods else verdict.message
+
+
+def counts(run: Run) -> tuple[tuple[Status, int], ...]:
+    """How many checks ended with which status, worst first; answers count where they broke down, skips per reason."""
+    tally: Counter[Status] = Counter()
+    tally.update(v.status for v in run.judged.verdicts if v.status is not Status.SKIP and not v.identity)
+    tally.update(answer.status for answer in _unanswered(run) if answer.status is not Status.SKIP)
+    tally[Status.SKIP] = sum(one.status is Status.SKIP for one in findings(run))
+    return tuple((status, tally[status]) for status in WORST_FIRST if tally[status])
+
+
+def headline(run: Run) -> tuple[str, str]:
+    """The verdict in a few words, and its tone."""
+    tally = {status: number for status, number in counts(run) if status is not Status.SKIP}
+    checks = sum(tally.values())
+    bad = sum(number for status, number in tally.items() if status.is_failure)
+    if checks == 0:
+        timed = len({cost.case for cost in run.judged.costs})
+        words = f"MEASURED: {timed} case{'s'[: timed != 1]}, no claims"
+        return (words, "good") if timed else ("; ".join(["Nothing ran", *_unjudged(run)]), "bad")
+    if bad:
+        return f"FAILED: {bad} of {checks} checks", "bad"
+    if not run.judged.complete:
+        return f"INCOMPLETE: {checks} checks so far, none failed", "warn"
+    if run.unjudged:
+        return "; ".join([*_unjudged(run), f"{checks} checks of other methods hold"]), "bad"
+    still_open = sum(number for status, number in tally.items() if tone_of(status) == "warn")
+    words = f"{checks} checks, {still_open} to look at" if still_open else f"all {checks} checks"
+    return f"PASSED: {words}", "warn" if still_open else "good"
+
+
+def _unjudged(run: Run) -> list[str]:
+    """A sentence for each chosen method about which no claim was judged, with the reason of its first skip."""
+    skipped = [answer for answer in run.answers if answer.status is Status.SKIP]
+    reasons = {method: next((one.reason for one in skipped if one.method == method), "") for method in run.unjudged}
+    return [
+        f"no claim about {method} was judged{': ' if why else ''}{in_words(why)}" for method, why in reasons.items()
+    ]
+
+
+def nothing_ran(run: Run) -> bool:
+    """Whether a run has neither a check that was carried out nor a measurement."""
+    return not run.judged.costs and all(status is Status.SKIP for status in run.statuses)
+
+
+def baseline_sentence(run: Run) -> str:
+    """How many of the accepted numbers changed."""
+    compared = [v for v in run.judged.verdicts if v.kind is Kind.REGRESSION]
+    changed = sum(v.status is not Status.PASS for v in compared)
+    return (
+        f"Since the baseline: {changed} of {len(compared)} numbers changed."
+        if compared
+        else "Not compared with a baseline."
+    )
+
+
+def causes(run: Run) -> list[str]:
+    """One sentence per method that narrows the cause of its failures; nothing where no method stands out.
+
+    A method has a quantity wrong if every comparison partner (other methods, closed forms, literature) contradicts it
+    somewhere. Among two methods that contradict each other alone, neither is named.
+    """
+    judged = [v for v in run.judged.verdicts if v.kind in (Kind.EXACT, Kind.AGREEMENT) and v.error is not None]
+    found = []
+    for method in dict.fromkeys(label for v in judged for label in v.methods):
+        own = grouped((v for v in judged if method in v.methods), lambda v: v.quantity)
+        wrong = {name: _contradicted(method, verdicts) for name, verdicts in own.items()}
+        right = [name for name, verdicts in own.items() if all(v.status is Status.PASS for v in verdicts)]
+        found += [_cause(method, name, errors, right) for name, errors in wrong.items() if errors]
+    return found
+
+
+Errors = dict[str, list[float]]
+
+
+def _contradicted(method: str, verdicts: Sequence[Verdict]) -> Errors:
+    """Signed failing errors of the method by partner; empty unless all partners, two or an exact one, contradict it."""
+    partners = grouped(verdicts, lambda v: _partner(method, v))
+    failing: Errors = {}
+    for partner, same in partners.items():
+        failed = [v for v in same if v.status is Status.FAIL]
+        signs = [-1.0 if v.kind is Kind.AGREEMENT and v.methods[0] != method else 1.0 for v in failed]
+        errors = [
+            sign * error for sign, v in zip(signs, failed, strict=True) if (error := relative_error(v)) is not None
+        ]
+        if not errors:
+            return {}
+        failing[partner] = errors
+    exact = any(v.kind is Kind.EXACT for v in verdicts)
+    return failing if exact or len(failing) > 1 else {}
+
+
+def _partner(method: str, verdict: Verdict) -> str:
+    if verdict.kind is Kind.EXACT:
+        return verdict.why.origin.value
+    return next((display_name(other) for other in verdict.methods if other != method), "itself")
+
+
+def _cause(method: str, quantity: str, errors: Errors, right: Sequence[str]) -> str:
+    all_errors = [error for same in errors.values() for error in same]
+    *others, last = errors
+    against = f"{', '.join(others)} and {last} alike" if others else last
+    words = f"{display_name(method)}: {quantity_words(quantity)} is off against {against}"
+    words += f", {size_text(all_errors)} in {len(all_errors)} comparisons"
+    if len(all_errors) > 1 and size_text(all_errors).endswith("each"):
+        words += f", as by one factor {1 + median(all_errors):.5g} (a modulus, a unit)"
+    passing = f", while {' and '.join(map(quantity_words, right))} pass{'es'[: 2 * (len(right) == 1)]}" if right else ""
+    place = next((hint for wrong, passed, hint in PLACES if wrong == quantity and (not passed or passed in right)), "")
+    return f"{words}{passing}{': look at ' if place else ''}{place}."

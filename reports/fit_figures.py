@@ -1,0 +1,89 @@
+"""Pictures of fits of force curves and of maps of them."""
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from contact.records.units import prefix_for
+from contact.records.validation import FloatArray
+from mdr.curves import CurveFit, MapFit
+from reports.style import BLUE, GREEN, GREY, ORANGE, PURPLE, VERMILLION, line_with_band, mark_decades, panels
+from reports.words import with_prefix
+
+# Moduli at depths below this share of the largest are not drawn: forces there are lost in the scatter.
+LEAST_SHARE = 0.05
+# Colours of formulas, in their order.
+COLOURS = (VERMILLION, GREEN, ORANGE, PURPLE)
+
+
+def fit_figure(found: CurveFit) -> Figure:
+    """Measured and fitted curve with formulas of the same modulus, moduli at each depth, residuals."""
+    drawing, (curve, *modulus, residual) = panels(3 if found.per_modulus.size else 2, size=(4.0, 3.1))
+    in_time = bool(found.time.size)
+    factor, prefix = (1.0, "") if in_time else prefix_for(found.depth.tolist())
+    x = (found.time if in_time else found.depth) / factor
+    for axes in (curve, *modulus, residual):
+        axes.set_xlabel("time [s]" if in_time else f"depth [{prefix}m]")
+    _draw_curve(curve, found, x)
+    for axes in modulus:
+        _draw_moduli(axes, found, x)
+    left = found.measured - found.fitted
+    factor, prefix = prefix_for(left.tolist())
+    _measured(residual, x, left / factor)
+    residual.set(title="Residual", ylabel=f"measured - fit [{prefix}{'N' if found.response == 'force' else 'm'}]")
+    drawing.legend(*curve.get_legend_handles_labels(), loc="outside lower center", ncols=2)
+    return drawing
+
+
+def _measured(axes: Axes, x: FloatArray, y: FloatArray) -> None:
+    axes.plot(x, y, "o", color=GREY, markersize=3.0, markerfacecolor="none", label="measured")
+
+
+def _draw_curve(axes: Axes, found: CurveFit, x: FloatArray) -> None:
+    modulus, order = with_prefix(found.youngs_modulus, "Pa"), np.argsort(x)
+    factor, prefix = prefix_for(found.measured.tolist())
+    axes.set(title="Force curve", ylabel=f"force [{prefix}N]" if found.response == "force" else f"depth [{prefix}m]")
+    _measured(axes, x, found.measured / factor)
+    label, band = f"fit, {'E' if found.per_modulus.size else 'G'} = {modulus}", found.band[order] / factor
+    line_with_band(axes, x[order], found.fitted[order] / factor, band, color=BLUE, label=label)
+    shifted = found.depth - found.values.get("contact_point", 0.0)
+    for one, colour in zip(found.formulas, COLOURS, strict=False):
+        force = found.youngs_modulus * one.formula.per_modulus(shifted) + found.background
+        label = f"{one.formula.name}, E = {modulus}"
+        axes.plot(x[order], force[order] / factor, "--", color=colour, linewidth=1.0, label=label)
+
+
+def _draw_moduli(axes: Axes, found: CurveFit, x: FloatArray) -> None:
+    """The modulus of each point alone, and those that formulas take from the fitted force; the true one is level."""
+    factor, prefix = prefix_for([found.youngs_modulus])
+    shifted = found.depth - found.values.get("contact_point", 0.0)
+    pressed = (shifted > LEAST_SHARE * shifted.max()) & (found.per_modulus > 0.0)
+    positive = pressed & (found.modulus_at_depth > 0.0)
+    axes.set(title="Modulus at each depth", yscale="log", ylabel=f"E [{prefix}Pa]")
+    _measured(axes, x[positive], found.modulus_at_depth[positive] / factor)
+    axes.axhline(found.youngs_modulus / factor, color=BLUE)
+    order = np.flatnonzero(pressed)[np.argsort(x[pressed])]
+    for one, colour in zip(found.formulas, COLOURS, strict=False):
+        moduli = (found.fitted - found.background)[order] / one.formula.per_modulus(shifted[order])
+        axes.plot(x[order], moduli / factor, "--", color=colour, linewidth=1.0)
+    mark_decades(axes.yaxis)
+
+
+def map_figure(found: MapFit) -> Figure:
+    """Histogram of the moduli, and the moduli in x and y where the places are known."""
+    moduli, places = found.youngs_modulus[found.converged], found.positions[found.converged]
+    factor, prefix = prefix_for(moduli.tolist())
+    placed = bool(moduli.size) and bool(np.isfinite(places).all())
+    drawing, (histogram, *maps) = panels(2 if placed else 1, size=(4.6, 3.6))
+    if moduli.size:
+        histogram.hist(moduli / factor, bins=min(40, 4 + round(np.sqrt(moduli.size))), color=BLUE)
+    failed = found.converged.size - moduli.size
+    title = f"Histogram of {moduli.size} curves" + f", {failed} more have no fit" * bool(failed)
+    histogram.set(title=title, xlabel=f"E [{prefix}Pa]", ylabel="number of curves")
+    for axes in maps:
+        size, unit = prefix_for(np.ravel(places).tolist())
+        x, y = places.T[:2] / size
+        shown = axes.scatter(x, y, c=moduli / factor, cmap="cividis", s=18.0)
+        drawing.colorbar(shown, label=f"E [{prefix}Pa]")
+        axes.set(title="Map", xlabel=f"x [{unit}m]", ylabel=f"y [{unit}m]", aspect="equal")
+    return drawing
