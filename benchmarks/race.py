@@ -24,8 +24,8 @@ from pathlib import Path
 import numpy as np
 
 from cases.gate.write_permission import SOURCE, git
-from cases.results.status import ExitCode, Status
 from cases.run.timing import SAMPLES
+from cases.verdicts import ExitCode, Status
 from contact import InvalidInput
 
 # Resampled medians for the 95 % interval: with half as many its ends scatter by 2 % of its width, with twice by 1 %.

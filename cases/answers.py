@@ -2,16 +2,15 @@
 
 import json
 from collections.abc import Iterable, Iterator
-from dataclasses import field, replace
+from dataclasses import field
 from pathlib import Path
 from typing import Self, TypeAlias
 
-from pydantic import TypeAdapter, ValidationError, model_validator
+from pydantic import TypeAdapter, model_validator
 from pydantic.dataclasses import dataclass
 
-from cases.results.records.field_types import Mapping, NotNegative, Positive, Vector
-from cases.verdicts import RECORD, Status
-from contact import InvalidInput
+from cases.files import validated
+from cases.verdicts import RECORD, Mapping, NotNegative, Positive, Status, Vector
 
 NAME = "answers.jsonl"
 # Case, scene, method, variant: unique within a run.
@@ -142,23 +141,13 @@ class Table:
                     yield {**place, "quantity": name, "step": step, "value": value, "unit": q.unit, "error": error}
 
 
-def read_answers(path: Path) -> Iterator[Answer]:
-    """Yield the answers of a file; a torn last line is left out, its writer was killed.
+def read_answers(path: Path, skip: int = 0) -> Iterator[Answer]:
+    """Yield the answers of a file after ``skip`` lines; a torn last line is left out, its writer was killed.
 
     Raises:
         InvalidInput: naming the file and the line that holds no answer.
     """
-    for number, line in enumerate(path.read_bytes().splitlines(keepends=True), 1):
+    for number, line in enumerate(path.read_bytes().splitlines(keepends=True)[skip:], skip + 1):
         if not line.endswith(b"\n"):
             return
-        try:
-            yield _ANSWER.validate_json(line)
-        except (ValidationError, ValueError) as error:
-            words = str(error.errors()[0]["msg"]) if isinstance(error, ValidationError) else str(error)
-            raise InvalidInput(f"{path}, line {number}, is no answer ({words:.200}); delete it and resume") from None
-
-
-def without_fields(answer: Answer) -> Answer:
-    """Return the answer with quantities alone, and of fields their stated errors: what a baseline keeps."""
-    kept = {name: replace(q, values=(), at=(0.0,)) if q.at else q for name, q in answer.quantities.items()}
-    return replace(answer, quantities=kept)
+        yield validated(_ANSWER, line, place=f"{path}, line {number}", remedy="delete the line and resume")

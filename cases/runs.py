@@ -3,24 +3,51 @@
 On disk a folder: ``answers.jsonl`` holds the answers, one per line (`cases.answers`), ``run.json`` all the rest.
 """
 
+from collections.abc import Iterable
 from dataclasses import dataclass as plain
-from dataclasses import field
+from dataclasses import field, replace
 from pathlib import Path
 
 from pydantic import TypeAdapter
 from pydantic.dataclasses import dataclass
 
 from cases.answers import NAME, Table, read_answers
-from cases.results.files import write_whole
-from cases.results.records.field_types import Mapping
-from cases.results.records.run import Stamp
-from cases.results.strict_json import json_text, read_json, validated
+from cases.files import read_record, write_whole
 from cases.studies import Convergence, CostOfAccuracy, Effect, StressTest
-from cases.verdicts import RECORD, Kind, Status, Verdict
+from cases.verdicts import RECORD, Kind, Mapping, NotNegative, Status, Verdict
 from contact import InvalidInput
 
 RUN = "run.json"
 REMEDY = "run the cases again (with --resume finished solutions are kept)"
+
+
+@dataclass(frozen=True, kw_only=True, config=RECORD)
+class Stamp:
+    """Where and with what a run was made.
+
+    Attributes:
+        started: UTC, ISO 8601.
+        wall_seconds: duration of the run.
+        revision: commit of the source; "unknown" outside a repository.
+        dirty: whether the working tree had changes.
+        python: version.
+        platform: operating system and machine.
+        processor: model name.
+        cores: processors this run could use.
+        threads: threads of each numerical library really loaded, by name ("openblas 0.3.27 Haswell": 1).
+        versions: of the packages computed with.
+    """
+
+    started: str
+    wall_seconds: NotNegative
+    revision: str
+    dirty: bool
+    python: str
+    platform: str
+    processor: str
+    cores: int
+    threads: dict[str, int]
+    versions: dict[str, str]
 
 
 @dataclass(frozen=True, kw_only=True, config=RECORD)
@@ -53,6 +80,29 @@ class Judged:
     stress_tests: tuple[StressTest, ...] = ()
     effects: tuple[Effect, ...] = ()
 
+    def joined(self, parts: Iterable["Part"]) -> "Judged":
+        """Return the run with more studies."""
+        whole = self
+        for part in parts:
+            whole = replace(
+                whole,
+                cases=(*whole.cases, part.text),
+                verdicts=(*whole.verdicts, *part.verdicts),
+                convergence=(*whole.convergence, *part.convergence),
+                stress_tests=(*whole.stress_tests, *part.stress_tests),
+            )
+        return whole
+
+
+@plain(frozen=True, kw_only=True)
+class Part:
+    """What a study that is no case of the library adds to a run."""
+
+    text: CaseText
+    verdicts: tuple[Verdict, ...]
+    convergence: tuple[Convergence, ...] = ()
+    stress_tests: tuple[StressTest, ...] = ()
+
 
 _JUDGED: TypeAdapter[Judged] = TypeAdapter(Judged)
 
@@ -73,10 +123,15 @@ class Run:
     @property
     def unjudged(self) -> tuple[str, ...]:
         """The chosen methods about which no claim was judged; numbers accepted earlier are no claim."""
+        return self.unjudged_in("")
+
+    def unjudged_in(self, case: str) -> tuple[str, ...]:
+        """Return the chosen methods about which no claim of a case (of any, if none is named) was judged."""
         seen = {
             label
             for verdict in self.judged.verdicts
             if verdict.kind is not Kind.REGRESSION and verdict.status is not Status.SKIP
+            if not case or verdict.case == case
             for label in verdict.methods
         }
         return tuple(label for label in self.judged.methods if label not in seen)
@@ -85,7 +140,7 @@ class Run:
 def write_run(run: Judged, folder: Path) -> None:
     """Write ``run.json``, whole or not at all; the answers lie beside it already."""
     folder.mkdir(parents=True, exist_ok=True)
-    write_whole(folder / RUN, json_text(_JUDGED.dump_python(run, mode="json", exclude_defaults=True)))
+    write_whole(folder / RUN, _JUDGED.dump_json(run, indent=1, exclude_defaults=True))
 
 
 def read_run(folder: Path) -> Run:
@@ -96,6 +151,6 @@ def read_run(folder: Path) -> Run:
     """
     if not (folder / RUN).is_file():
         raise InvalidInput(f"no {RUN} in {folder}; give the directory of a finished run")
-    judged = validated(_JUDGED, read_json(folder / RUN, remedy=REMEDY), place=str(folder / RUN), remedy=REMEDY)
     answers = folder / NAME
-    return Run(judged=judged, answers=Table(read_answers(answers) if answers.is_file() else ()))
+    table = Table(read_answers(answers) if answers.is_file() else ())
+    return Run(judged=read_record(_JUDGED, folder / RUN, remedy=REMEDY), answers=table)

@@ -4,8 +4,7 @@ from dataclasses import field
 
 from pydantic.dataclasses import dataclass
 
-from cases.results.records.field_types import Finite, Mapping, NotNegative, Positive
-from cases.verdicts import RECORD
+from cases.verdicts import RECORD, Finite, Mapping, NotNegative, Positive, Status
 
 
 @dataclass(frozen=True, kw_only=True, config=RECORD)
@@ -105,7 +104,7 @@ class Step:
     """One step of a stress test: value of the parameter, digits that repeats share (None if refused), the reason."""
 
     value: Positive
-    status: str
+    status: Status
     digits: NotNegative | None
     reason: str = ""
     residuals: dict[str, NotNegative] = field(default_factory=dict)
@@ -143,3 +142,28 @@ class Effect:
     seconds_without: NotNegative | None = None
     changes: dict[str, NotNegative] = field(default_factory=dict)
     remark: str = ""
+
+    @property
+    def share_of_time(self) -> float:
+        """How much of the time goes into the part, not below zero; all of it where nothing is left without it."""
+        if self.seconds_without is None:
+            return 1.0
+        return max(0.0, 1.0 - self.seconds_without / self.seconds) if self.seconds else 0.0
+
+    @property
+    def largest_change(self) -> float:
+        """Over all quantities; infinite where nothing is left without the part."""
+        return max(self.changes.values(), default=float("inf"))
+
+    def may_be_dropped(self, accuracy: float) -> bool:
+        """Whether leaving the part out changes no quantity by more than the accuracy."""
+        return self.largest_change <= accuracy
+
+    @property
+    def line(self) -> str:
+        """In words: "viscosity: 61 % of the time, changes peak force by 0.02 %"."""
+        if not self.changes:
+            return f"{self.part}: {self.remark}"
+        quantity = max(self.changes, key=lambda name: self.changes[name])
+        changed = f"changes {quantity.replace('_', ' ')} by {100 * self.changes[quantity]:.2g} %"
+        return f"{self.part}: {100 * self.share_of_time:.0f} % of the time, {changed}"

@@ -1,15 +1,22 @@
 """A verdict is a claim on one scene, judged; how it can end, and the exit codes of the command line (as pytest's)."""
 
 from collections.abc import Iterable
+from dataclasses import dataclass as plain
 from dataclasses import field
 from enum import IntEnum, StrEnum
+from typing import Annotated
 
-from pydantic import ConfigDict
+from pydantic import ConfigDict, Field
 from pydantic.dataclasses import dataclass
 
-from cases.results.records.field_types import Finite, NotNegative, Positive
 from contact import InvalidInput
 
+Finite = Annotated[float, Field(allow_inf_nan=False)]
+Positive = Annotated[float, Field(allow_inf_nan=False, gt=0)]
+NotNegative = Annotated[float, Field(allow_inf_nan=False, ge=0)]
+Vector = tuple[Finite, ...]
+Scalar = bool | int | Finite | str
+Mapping = dict[str, Scalar]
 # A record refuses a field that it does not know: a misspelt name in a file is an error.
 RECORD = ConfigDict(extra="forbid")
 
@@ -107,7 +114,7 @@ class Origin(StrEnum):
     OWN_EARLIER_OUTPUT = "own earlier output"
 
 
-@dataclass(frozen=True, config=RECORD)
+@plain(frozen=True)
 class Why:
     """Why a claim should hold; it stands beside the claim, before anything is computed.
 

@@ -4,8 +4,9 @@ import re
 from collections.abc import Iterable
 from pathlib import Path
 
-from cases.declare.case import Case, CaseScene, ClaimOfCase
-from cases.results.files import write_whole
+from cases.case import Case, CaseScene
+from cases.claims import Claim
+from cases.files import write_whole
 from reports.words import Table, display_name, file_name, small
 
 SOLVERS = ("contact", "bem", "mdr", "fem_reference")
@@ -98,8 +99,7 @@ def claim_table(case: Case) -> Table:
     return Table(title="Claims", note="", heads=heads, rows=tuple(_claim_row(c) for c in case.claims), words=7)
 
 
-def _claim_row(claim: ClaimOfCase) -> tuple[str, ...]:
-    reason = claim.reason
-    origin = f"{reason.origin}: {reason.source}"
+def _claim_row(claim: Claim) -> tuple[str, ...]:
+    why = claim.why
     names = (str(claim.kind), claim.name, claim.quantity, small(claim.tolerance))
-    return *names, reason.because, reason.derived_from, origin
+    return *names, why.because, why.tolerance, f"{why.origin}: {why.source}"

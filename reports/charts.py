@@ -7,7 +7,7 @@ from functools import partial
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from cases.measurements.cost.cost_of_accuracy import pareto_front
+from cases.cost import pareto_front
 from cases.runs import CaseText, Run
 from cases.studies import CostOfAccuracy, StressTest
 from cases.verdicts import Status, Verdict

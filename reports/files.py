@@ -32,7 +32,7 @@ def check_outputs(paths: Sequence[Path], endings: Mapping[str, str]) -> None:
 
 def write_picture(path: Path, draw: Callable[[], "Figure"], *, key: str) -> None:
     """Draw a figure in the style of all figures and write it in the format of the ending of `path`."""
-    from cases.results.files import write_whole  # noqa: PLC0415 - as below
+    from cases.files import write_whole  # noqa: PLC0415 - as below
     from reports.style import figure_bytes, figure_style  # noqa: PLC0415 - Matplotlib only where it is asked for
 
     with figure_style():

@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from cases.files import csv_text
 from cases.measurements.uncertain_fit import UncertainFit
-from cases.results.csv_table import csv_text
 from mdr.curves import CurveFit, MapFit
 from mdr.curves.families import unit_of_parameter
 from reports.words import Table, measured, scaled_unit, small, with_prefix

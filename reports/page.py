@@ -12,9 +12,8 @@ from typing import Any
 import jinja2
 from markupsafe import Markup, escape
 
-from cases.measurements.cost.cost_of_accuracy import cheapest
-from cases.results.csv_table import csv_text
-from cases.results.files import write_whole
+from cases.cost import cheapest
+from cases.files import csv_text, write_whole
 from cases.runs import Run
 from cases.verdicts import Kind, Status, Verdict, worst
 from reports import findings, tables

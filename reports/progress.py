@@ -8,8 +8,8 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 from rich.text import Text
 
-from cases.results.status import Status
 from cases.run.progress import ProgressEvent
+from cases.verdicts import Status
 from reports.findings import in_words, tone_of
 from reports.terminal import STYLES
 

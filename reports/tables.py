@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from statistics import median
 
 from cases.answers import Answer, Values
+from cases.cost import bound_of, cheapest, price_of_a_digit
 from cases.declare.shared import EVERY, SHARED, Sharing
-from cases.measurements.cost.cost_of_accuracy import bound_of, cheapest, price_of_a_digit
 from cases.runs import Run
 from cases.studies import Convergence, CostOfAccuracy, Effect, Point, StressTest
 from cases.verdicts import Kind, Status, Verdict

@@ -5,8 +5,7 @@ import pkgutil
 from collections.abc import Iterable
 
 from cases import library
-from cases.declare.case import SUITES, Case
-from cases.declare.selection import in_suite
+from cases.case import SUITES, Case
 from contact import InvalidInput
 
 
@@ -47,7 +46,7 @@ def select(cases: dict[str, Case], *, names: Iterable[str] = (), suite: str = ""
     for name in wanted:
         if name not in cases:
             raise InvalidInput(f"no case {name!r}; there are {', '.join(cases)}")
-    return tuple(in_suite(cases[name], suite) for name in wanted if not suite or suite in cases[name].suites)
+    return tuple(cases[name].in_suite(suite) for name in wanted if not suite or suite in cases[name].suites)
 
 
 def _last(module: str) -> str:

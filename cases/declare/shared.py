@@ -156,20 +156,20 @@ SHARED: tuple[Shared, ...] = (
     Shared(
         name="record of an answer",
         kind=Sharing.RECORD,
-        place="cases.run.recording",
+        place="cases.recording",
         guard="closed forms and tabulated values",
     ),
     Shared(
         name="rings on which pressures are compared",
         kind=Sharing.RECORD,
-        place="cases.judgement.rules.norms",
+        place="cases.norms",
         guard="the sampled pressure carries the force",
         quantities=("pressure",),
     ),
     Shared(
         name="laws and points of fields inside",
         kind=Sharing.RECORD,
-        place="cases.run.inside",
+        place="cases.inside_laws",
         guard="closed forms of Huber and Sneddon; each law fails for a wrong field",
         cases=("inside_half_space", "inside_layer"),
     ),

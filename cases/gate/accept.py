@@ -1,19 +1,192 @@
-"""The only writer of baselines, and everything it refuses."""
+"""The only writer of baselines: what accepting a case would change, and everything that is refused."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
 from pathlib import Path
 
-from cases.gate.baseline import write_baseline
-from cases.gate.proposal import BaselineChange, Proposal
+from cases.answers import Answer, Values
+from cases.gate.baseline import (
+    OF_SPREAD,
+    Accepted,
+    Baseline,
+    kept,
+    permitted_change,
+    read_baselines,
+    relative_tolerance,
+    write_baseline,
+)
+from cases.gate.gate import judged_claims
+from cases.gate.spread import Spreads
 from cases.gate.write_permission import WriteConditions
-from cases.results.records.claim import Kind
-from cases.results.records.run import CaseResult, RunResult
+from cases.measurements.ladders.ladder_study import worse_than
+from cases.rules import SMALLEST_RELATIVE
+from cases.runs import Run
+from cases.verdicts import Kind, Verdict
 from contact import InvalidInput
 
 
-def accept(folder: Path, proposal: Proposal, run: RunResult, now: WriteConditions, *, loosen: bool = False) -> None:
-    """Write the proposed baselines into ``folder``.
+@dataclass(frozen=True, kw_only=True)
+class Change:
+    """One quantity before and after; ``old`` is None for a new one, ``new`` for one that would be withdrawn."""
+
+    method: str
+    scene: str
+    quantity: str
+    old: Values | None
+    new: Values | None
+
+    @property
+    def comparable(self) -> bool:
+        """Whether both exist with equal unit and number of steps."""
+        old, new = self.old, self.new
+        return old is not None and new is not None and old.unit == new.unit and len(old.values) == len(new.values)
+
+    @property
+    def step(self) -> int:
+        """The step that changed most, 0 where nothing can be subtracted."""
+        if self.old is None or self.new is None or not self.comparable:
+            return 0
+        changes = [abs(x - b) for x, b in zip(self.new.values, self.old.values, strict=True)]
+        return changes.index(max(changes)) if changes else 0
+
+    @property
+    def values(self) -> tuple[float | None, float | None]:
+        """Old and new value at that step."""
+        return tuple(q.values[self.step] if q is not None and q.values else None for q in (self.old, self.new))  # type: ignore[return-value]  # two
+
+    @property
+    def in_tolerances(self) -> float | None:
+        """New minus old over the permitted change; None where nothing can be subtracted."""
+        old, new = self.values
+        if self.old is None or old is None or new is None or not self.comparable:
+            return None
+        return (new - old) / permitted_change(self.old, self.step)
+
+    @property
+    def in_stated_errors(self) -> float | None:
+        """New minus old over the error stated now; None where the method states none, or zero."""
+        old, new = self.values
+        stated = self.new.error[self.step] if self.new and self.new.error else 0.0
+        return (new - old) / stated if stated and self.comparable and old is not None and new is not None else None
+
+    @property
+    def loosens(self) -> bool:
+        """Whether later runs may differ more than before, or differ unseen."""
+        if self.old is None or self.new is None:
+            return self.old is not None
+        wider = _relative_width(self.new) > (1 + 1e-9) * _relative_width(self.old)
+        grown = relative_tolerance(self.new) > relative_tolerance(self.old)
+        return grown or (self.new.scale > self.old.scale and wider)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Proposal:
+    """The baseline a case would have, every change this makes, and counters and claims no longer watched."""
+
+    baseline: Baseline
+    changes: tuple[Change, ...]
+    lost: tuple[str, ...]
+
+    @property
+    def case(self) -> str:
+        """Name of the case."""
+        return self.baseline.accepted.case
+
+
+def propose(
+    run: Run, case: str, *, suites: tuple[str, ...], before: Baseline | None, spreads: Spreads, reason: str
+) -> Proposal:
+    """Return what accepting a case as it ran would change.
+
+    Args:
+        run: with the case's answers and verdicts that are watched.
+        case: its name.
+        suites: suites the case belongs to.
+        before: what was accepted so far.
+        spreads: measured relative spread by method, scene and quantity.
+        reason: why, in the user's words.
+
+    Raises:
+        InvalidInput: if the spread of a quantity was not measured.
+    """
+    old = {(a.scene, a.method): a for a in before.answers} if before else {}
+    solved = sorted((one for one in run.answers.of_case(case) if one.solved), key=lambda one: one.identity)
+    answers = tuple(_with_spreads(one, old.get((one.scene, one.method)), spreads) for one in solved)
+    judged = run.judged
+    accepted = Accepted(
+        case=case,
+        suites=suites,
+        reason=reason,
+        claims=judged_claims(verdict for verdict in judged.verdicts if verdict.case == case),
+        stress_tests=tuple(test for test in judged.stress_tests if test.case == case),
+    )
+    if before is not None and answers == before.answers:
+        # Where nothing changes the reason stays, too.
+        kept_reason = replace(accepted, reason=before.accepted.reason)
+        accepted = before.accepted if kept_reason == before.accepted else accepted
+    after = Baseline(accepted=accepted, answers=answers)
+    return Proposal(baseline=after, changes=tuple(_changes(before, after)), lost=tuple(_lost(before, after)))
+
+
+def _with_spreads(answer: Answer, old: Answer | None, spreads: Spreads) -> Answer:
+    """What is kept of an answer; the widest spread measured so far counts.
+
+    A repetition that agrees by chance tightens nothing.
+    """
+    before: Mapping[str, Values] = old.quantities if old is not None else {}
+    quantities = {}
+    for name, q in kept(answer).quantities.items():
+        place = answer.method, answer.scene, name
+        if not q.at and place not in spreads:
+            raise InvalidInput(f"the spread of {' / '.join(place)} was not measured; a tolerance needs one")
+        spread = 0.0 if q.at else spreads[place]
+        if not (math.isfinite(spread) and spread >= 0):
+            raise InvalidInput(f"the spread of {' / '.join(place)} is {spread}: it must be finite; measure it again")
+        known = before[name].spread if name in before else 0.0
+        quantities[name] = replace(
+            q, spread=known if OF_SPREAD * spread <= max(OF_SPREAD * known, SMALLEST_RELATIVE) else spread
+        )
+    return replace(kept(answer), quantities=quantities)
+
+
+def _changes(before: Baseline | None, after: Baseline) -> Iterator[Change]:
+    places: dict[tuple[str, str, str], list[Values | None]] = {}
+    for side, baseline in enumerate((before, after)):
+        for answer in baseline.answers if baseline else ():
+            for name, q in answer.quantities.items():
+                if not q.at:
+                    places.setdefault((answer.method, answer.scene, name), [None, None])[side] = q
+    for (method, scene, name), (old, new) in places.items():
+        if old != new:
+            yield Change(method=method, scene=scene, quantity=name, old=old, new=new)
+
+
+def _lost(before: Baseline | None, after: Baseline) -> Iterator[str]:
+    if before is None:
+        return
+    counters = {answer.identity: answer.counters for answer in after.answers}
+    for answer in before.answers:
+        lost = answer.counters.keys() - counters.get(answer.identity, {}).keys()
+        yield from (f"counter {name} of {answer.scene} by {answer.method}" for name in sorted(lost))
+    judged = {claim.identity: claim.judged for claim in after.accepted.claims}
+    for claim in before.accepted.claims:
+        if judged.get(claim.identity, 0) < claim.judged:
+            yield f"claim {claim.name!r} about {claim.quantity} by {' and '.join(claim.methods)}"
+    tests = {(test.name, test.method): test for test in after.accepted.stress_tests}
+    for test in before.accepted.stress_tests:
+        if (test.name, test.method) in tests:
+            yield from worse_than(tests[test.name, test.method], test)
+
+
+def _relative_width(values: Values) -> float:
+    """The widest permitted change over the largest value: what a tolerance and a declared scale allow together."""
+    largest = max(map(abs, values.values), default=0.0)
+    return relative_tolerance(values) * max(1.0, values.scale / largest if largest > 0 else 1.0)
+
+
+def accept(folder: Path, proposal: Proposal, run: Run, now: WriteConditions, *, loosen: bool = False) -> None:
+    """Write the proposed baseline into ``folder``.
 
     Raises:
         InvalidInput: naming every reason why this may not be accepted; nothing is written then.
@@ -21,52 +194,59 @@ def accept(folder: Path, proposal: Proposal, run: RunResult, now: WriteCondition
     refused = refusals(proposal, run, now, loosen=loosen)
     if refused:
         raise InvalidInput(f"{proposal.case} is not accepted: " + "; ".join(refused))
-    for baseline in proposal.baselines:
-        write_baseline(folder, baseline)
+    write_baseline(folder, proposal.baseline)
 
 
-def refusals(proposal: Proposal, run: RunResult, now: WriteConditions, *, loosen: bool = False) -> tuple[str, ...]:
+def accepted_before(folder: Path, case: str) -> Baseline | None:
+    """Return the baseline of a case; None if there is none."""
+    return next((one for one in read_baselines(folder) if one.accepted.case == case), None)
+
+
+def refusals(proposal: Proposal, run: Run, now: WriteConditions, *, loosen: bool = False) -> tuple[str, ...]:
     """Return every reason why ``proposal`` may not be accepted, each with its remedy."""
+    reason = proposal.baseline.accepted.reason.strip()
     return (
         *refusals_beforehand(proposal.case, run, now),
-        *_refused_numbers(proposal),
+        *_not_finite(proposal.baseline.answers),
         *(() if loosen else _loosenings(proposal)),
-        *(() if proposal.reason.strip() else ("no reason is given; say why with --reason",)),
+        *(() if reason else ("no reason is given; say why with --reason",)),
     )
 
 
-def refusals_beforehand(case: str, run: RunResult, now: WriteConditions) -> tuple[str, ...]:
+def refusals_beforehand(case: str, run: Run, now: WriteConditions) -> tuple[str, ...]:
     """Return every reason that is known before the spread is measured."""
-    return *_refused_circumstances(run, now), *_refused_run(run, run.case(case))
+    own = (verdict for verdict in run.judged.verdicts if verdict.case == case)
+    return *_refused_circumstances(run, now), *_refused_run(run.answers.of_case(case), own)
 
 
-def _refused_circumstances(run: RunResult, now: WriteConditions) -> Iterator[str]:
+def _refused_circumstances(run: Run, now: WriteConditions) -> Iterator[str]:
+    stamp = run.judged.stamp
     if now.in_ci:
         yield "continuous integration must not accept its own numbers; accept them by hand and commit the files"
     if now.changed:
         yield f"uncommitted changes ({', '.join(now.changed[:3])}); a baseline belongs to a commit, so commit first"
-    if run.stamp.dirty:
+    if stamp.dirty:
         yield "the run was made with uncommitted changes; run again on a clean tree"
-    if run.stamp.revision != now.revision:
-        yield f"the run belongs to {run.stamp.revision[:12]}, the source is at {now.revision[:12]}; run again"
-
-
-def _refused_run(run: RunResult, case: CaseResult) -> Iterator[str]:
-    if not run.complete:
+    if stamp.revision != now.revision:
+        yield f"the run belongs to {stamp.revision[:12]}, the source is at {now.revision[:12]}; run again"
+    if not run.judged.complete:
         yield "the run was interrupted; resume it first"
-    for solution in case.runs:
-        if solution.status.is_failure:
-            yield f"{solution.method} on {solution.scene!r} ended with {solution.status}: {solution.reason}"
-    for claim in case.claims:
-        if claim.kind in (Kind.EXACT, Kind.ORDER) and claim.status.is_failure:
-            yield f"the {claim.kind} claim {claim.name!r} ended with {claim.status}: {claim.message}"
 
 
-def _refused_numbers(proposal: Proposal) -> Iterator[str]:
-    for baseline in proposal.baselines:
-        for record in baseline.records:
-            if not all(map(math.isfinite, (*record.values, *record.uncertainty, record.spread, record.scale))):
-                yield f"{record.quantity} of {record.scene!r} by {baseline.method} is not finite"
+def _refused_run(answers: Iterable[Answer], verdicts: Iterable[Verdict]) -> Iterator[str]:
+    for answer in answers:
+        if answer.status.is_failure:
+            yield f"{answer.method} on {answer.scene!r} ended with {answer.status}: {answer.reason}"
+    for verdict in verdicts:
+        if verdict.kind in (Kind.EXACT, Kind.ORDER) and verdict.status.is_failure:
+            yield f"the {verdict.kind} claim {verdict.claim!r} ended with {verdict.status}: {verdict.message}"
+
+
+def _not_finite(answers: Iterable[Answer]) -> Iterator[str]:
+    for answer in answers:
+        for name, q in answer.quantities.items():
+            if not all(map(math.isfinite, (*q.values, *q.error, q.spread, q.scale))):
+                yield f"{name} of {answer.scene!r} by {answer.method} is not finite"
 
 
 def _loosenings(proposal: Proposal) -> Iterator[str]:
@@ -74,11 +254,12 @@ def _loosenings(proposal: Proposal) -> Iterator[str]:
         if change.loosens:
             yield f"{_loosening(change)}; find out why, then say --loosen"
     for name in proposal.lost:
-        yield f"the {name} would no longer be watched; say --loosen if that is meant"
+        yield f"{name} would no longer be watched, or is worse; say --loosen if that is meant"
 
 
-def _loosening(change: BaselineChange) -> str:
-    name = f"{change.record.quantity} of {change.record.scene!r} by {change.method}"
+def _loosening(change: Change) -> str:
+    name = f"{change.quantity} of {change.scene!r} by {change.method}"
     if change.old is None or change.new is None:
         return f"{name} would no longer be watched"
-    return f"the tolerance of {name} would grow from {change.old.tolerance:.1e} to {change.new.tolerance:.1e}"
+    old, new = (relative_tolerance(q) for q in (change.old, change.new))
+    return f"the tolerance of {name} would grow from {old:.1e} to {new:.1e}"

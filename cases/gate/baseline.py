@@ -1,100 +1,33 @@
-"""What was accepted: one file a case and method, ``baselines/<case>/<method>.json``, every float with all its digits.
+"""What was accepted: one file per case, ``baselines/<case>.jsonl``, written by ``accept`` alone.
 
-A file is written by ``accept`` alone.
+Its first line says what was accepted; every other one is an answer (`cases.answers`) with the measured spread of its
+quantities. Fields are not kept, only their stated errors.
 """
 
-import math
+from dataclasses import replace
 from pathlib import Path
-from typing import Any, Self
 
-from pydantic import ConfigDict, TypeAdapter, model_validator
+from pydantic import TypeAdapter
 from pydantic.dataclasses import dataclass
 
-from cases.judgement.rules.tolerance import relative_tolerance
-from cases.results.files import write_whole
-from cases.results.records.claim import Kind
-from cases.results.records.field_types import Finite, NotNegative, Positive, Vector
-from cases.results.strict_json import json_text, read_json, validated
+from cases.answers import Answer, Values, read_answers
+from cases.files import validated, write_whole
+from cases.rules import SMALLEST_RELATIVE
+from cases.studies import StressTest
+from cases.verdicts import RECORD, Kind
 from contact import InvalidInput
 
-# Files of another version are refused.
-BASELINE_VERSION = 2
 REMEDY = "restore it from the repository, or accept the case anew"
-_ENTRY = "baseline"
-
-_RECORD = ConfigDict(extra="forbid")
-
-
-@dataclass(frozen=True, kw_only=True, config=_RECORD)
-class AcceptedQuantity:
-    """An accepted quantity of one scene at one choice of settings.
-
-    Attributes:
-        scene: name of the scene within its case.
-        specification: hash of the scene and of the settings asked for; another hash means another problem.
-        quantity: its name.
-        unit: SI unit.
-        scale: size that differences are relative to where the value is smaller, same unit.
-        values: shape (n,).
-        uncertainty: the method's own numerical uncertainty U, same unit, shape (n,); empty where it states none.
-        spread: largest relative difference measured between solutions that should be equal.
-        tolerance: relative, max(10 x spread, 1e-12).
-        reason: why these values were accepted.
-    """
-
-    scene: str
-    specification: str
-    quantity: str
-    unit: str
-    scale: Positive
-    values: Vector
-    uncertainty: tuple[NotNegative, ...]
-    spread: NotNegative
-    tolerance: Finite
-    reason: str
-
-    @model_validator(mode="after")
-    def _tolerance_follows_from_spread(self) -> Self:
-        expected = relative_tolerance(self.spread)
-        if not math.isclose(self.tolerance, expected, rel_tol=1e-15):
-            raise ValueError(f"tolerance {self.tolerance} is not max(10 x spread, 1e-12) = {expected}; {REMEDY}")
-        return self
-
-    @property
-    def place(self) -> tuple[str, str]:
-        """Scene and quantity: unique within a file."""
-        return self.scene, self.quantity
+# Fraction of the accepted stated error by which a value may move. Processors round differently, and a searched radius
+# or a mesh amplifies that to 3e-9. Half of it is not enough for finite elements, twice is still far below any error.
+OF_STATED_ERROR = 0.01
+# Times the measured spread: three repetitions see about a third of it; with half of that a gate would fail by chance.
+OF_SPREAD = 10.0
 
 
-@dataclass(frozen=True, kw_only=True, config=_RECORD)
-class AcceptedCounters:
-    """What a solution costs in counts that repeat: unknowns, factorisations, iterations, transforms, steps.
-
-    Attributes:
-        scene: name of the scene within its case.
-        specification: hash of the scene and of the settings asked for.
-        counters: by name.
-        curves: relative uncertainty that the method states of a field or history, by its name; None where the case was
-            accepted before these were watched.
-    """
-
-    scene: str
-    specification: str
-    counters: dict[str, int]
-    curves: dict[str, NotNegative] | None = None
-
-
-@dataclass(frozen=True, kw_only=True, config=_RECORD)
+@dataclass(frozen=True, kw_only=True, config=RECORD)
 class AcceptedClaim:
-    """A claim that was judged when its case was accepted.
-
-    Attributes:
-        name: of the claim.
-        kind: what it compares with.
-        quantity: what is compared.
-        methods: the method, or the two methods compared.
-        judged: on how many scenes, or groups of them.
-    """
+    """A claim that was judged when its case was accepted, and on how many scenes or groups of them."""
 
     name: str
     kind: Kind
@@ -108,57 +41,83 @@ class AcceptedClaim:
         return self.name, self.kind, self.quantity, self.methods
 
 
-@dataclass(frozen=True, kw_only=True, config=_RECORD)
-class Baseline:
-    """All that was accepted of one method on one case.
+@dataclass(frozen=True, kw_only=True, config=RECORD)
+class Accepted:
+    """What was accepted of a case, beside its answers.
 
-    ``suites`` are the runs that must contain it; ``claims`` speak of the method, alone or beside another one, and are
-    None where the case was accepted before claims were watched.
+    Attributes:
+        case: its name.
+        suites: runs that must contain it.
+        reason: why it was accepted, the last time that something changed.
+        claims: that were judged.
+        stress_tests: of the study of stability.
     """
 
-    version: int = BASELINE_VERSION
     case: str
-    method: str
     suites: tuple[str, ...]
-    records: tuple[AcceptedQuantity, ...]
-    counters: tuple[AcceptedCounters, ...]
-    claims: tuple[AcceptedClaim, ...] | None = None
+    reason: str
+    claims: tuple[AcceptedClaim, ...] = ()
+    stress_tests: tuple[StressTest, ...] = ()
 
 
-_BASELINE: TypeAdapter[Baseline] = TypeAdapter(Baseline)
+@dataclass(frozen=True, kw_only=True, config=RECORD)
+class Baseline:
+    """All that was accepted of one case."""
+
+    accepted: Accepted
+    answers: tuple[Answer, ...]
 
 
-def baseline_path(folder: Path, case: str, method: str) -> Path:
-    """Return where the baseline of ``method`` on ``case`` lies."""
-    return folder / case / f"{method}.json"
+_ACCEPTED: TypeAdapter[Accepted] = TypeAdapter(Accepted)
+
+
+def kept(answer: Answer) -> Answer:
+    """Return what a baseline keeps of an answer: its question, quantities and counters, of fields the stated errors."""
+    quantities = {name: replace(q, values=(), at=(0.0,)) if q.at else q for name, q in answer.quantities.items()}
+    return Answer(
+        case=answer.case,
+        scene=answer.scene,
+        method=answer.method,
+        question=answer.question,
+        quantities=quantities,
+        unknowns=answer.unknowns,
+        counters=answer.counters,
+    )
+
+
+def relative_tolerance(values: Values) -> float:
+    """Return max(10 x measured relative spread, 1e-12)."""
+    return max(OF_SPREAD * values.spread, SMALLEST_RELATIVE)
+
+
+def permitted_change(values: Values, step: int) -> float:
+    """Return the largest change of an accepted value that counts as equal, in its unit."""
+    stated = values.error[step] if values.error else 0.0
+    size = max(abs(values.values[step]), values.scale)
+    return max(relative_tolerance(values) * size, OF_STATED_ERROR * stated)
 
 
 def write_baseline(folder: Path, baseline: Baseline) -> None:
     """Write the file of ``baseline``, whole or not at all; only ``accept`` calls this."""
-    path = baseline_path(folder, baseline.case, baseline.method)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    write_whole(path, json_text({_ENTRY: _BASELINE.dump_python(baseline, mode="json")}))
+    folder.mkdir(parents=True, exist_ok=True)
+    first = _ACCEPTED.dump_json(baseline.accepted, exclude_defaults=True).decode() + "\n"
+    lines = (answer.line() for answer in sorted(baseline.answers, key=lambda answer: answer.identity))
+    write_whole(folder / f"{baseline.accepted.case}.jsonl", first + "".join(lines))
 
 
 def read_baselines(folder: Path) -> tuple[Baseline, ...]:
-    """Return every baseline below ``folder``, ordered by case and method; none if there is no folder.
+    """Return every baseline in ``folder``, ordered by case; none if there is no folder.
 
     Raises:
-        InvalidInput: if a file is damaged, non-finite or of another version.
+        InvalidInput: if a file is damaged, or lies under another name than that of its case.
     """
-    return tuple(_read(path) for path in sorted(folder.glob("*/*.json")))
+    return tuple(_read(path) for path in sorted(folder.glob("*.jsonl")))
 
 
 def _read(path: Path) -> Baseline:
-    tree: Any = read_json(path, remedy=REMEDY).get(_ENTRY)
-    version = tree.get("version") if isinstance(tree, dict) else None
-    if version != BASELINE_VERSION:
-        raise InvalidInput(f"{path} has version {version!r}, this program reads {BASELINE_VERSION}; accept it anew")
-    return _validated(tree, path)
-
-
-def _validated(tree: dict[str, Any], path: Path) -> Baseline:
-    baseline = validated(_BASELINE, tree, place=str(path), remedy=REMEDY)
-    if path.parts[-2:] != (baseline.case, f"{baseline.method}.json"):
-        raise InvalidInput(f"{path} holds {baseline.method} on {baseline.case}; move it to where it belongs")
-    return baseline
+    first = path.read_bytes().partition(b"\n")[0]
+    accepted = validated(_ACCEPTED, first, place=f"{path}, line 1", remedy=REMEDY)
+    answers = tuple(read_answers(path, skip=1))
+    if wrong := {accepted.case, *(answer.case for answer in answers)} - {path.stem}:
+        raise InvalidInput(f"{path} has answers of {wrong.pop()}; {REMEDY}")
+    return Baseline(accepted=accepted, answers=answers)

@@ -8,17 +8,16 @@ machine may differ by as much.
 import math
 import os
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from functools import partial
 
 import numpy as np
 
-from cases.declare.case import Case
-from cases.declare.task import Task
-from cases.judgement.rules.tolerance import relative_spread
-from cases.results.records.scene_run import Quantity, SceneRun
+from cases.answers import Answer, Table
+from cases.case import Case, Task
+from cases.rules import relative_spread
 from cases.run.executors import ahead, closing, process_pool
-from cases.run.solve_task import solve
+from cases.run.solve_task import job_of, solve
 from cases.run.window import Window
 from contact import (
     ContactRadii,
@@ -48,48 +47,49 @@ PLAIN_KERNEL = "Prescott"  # every x86-64 processor has it; a library other than
 Spreads = Mapping[tuple[str, str, str], float]
 
 
-def measured_spreads(case: Case, runs: Mapping[tuple[str, str], SceneRun], *, jobs: int = 2) -> Spreads:
-    """Return the relative spread of every quantity of ``runs`` (by scene and method), measured by repeating them.
+def measured_spreads(case: Case, answers: Table, *, jobs: int = 2) -> Spreads:
+    """Return the relative spread of every quantity of the case's ``answers``, measured by repeating them.
 
     Raises:
         InvalidInput: if a repetition breaks down or gives another number of steps: such an answer cannot be accepted.
     """
-    # Only methods of the run are built: others may not be installed.
-    uses = ((scene, use) for scene in case.scenes for use in case.methods_of(scene) if (scene.name, use.label) in runs)
-    tasks = [case.task(scene, use) for scene, use in uses]
-    solved = [task for task in tasks if (task.scene, task.method) in runs and runs[task.scene, task.method].solved]
-    answers = {task.identity: [runs[task.scene, task.method]] for task in solved}
-    repeated = _repeated(solved, math.inf, jobs)
-    with _plain_kernel():
-        repeated += _repeated(solved, 0.0, jobs)
-    for task, row in repeated:
-        answers[task.identity].append(row)
-    return {place: spread for task in solved for place, spread in _spreads(task, answers[task.identity])}
+    tasks = [case.task(scene, use) for scene in case.scenes for use in case.methods_of(scene)]
+    solved = [(task, answer) for task in tasks if (answer := answers.get(task.identity)) is not None and answer.solved]
+    repeated = {task.identity: [answer] for task, answer in solved}
+    for towards in (math.inf, 0.0):
+        with _plain_kernel() if towards == 0.0 else nullcontext():
+            for task, answer in _repeated([task for task, _ in solved], towards, jobs):
+                repeated[task.identity].append(answer)
+    return {place: spread for task, _ in solved for place, spread in _spreads(task, repeated[task.identity])}
 
 
-def _repeated(tasks: list[Task], towards: float, jobs: int) -> list[tuple[Task, SceneRun]]:
+def _repeated(tasks: list[Task], towards: float, jobs: int) -> Iterator[tuple[Task, Answer]]:
     """Solve each task's nudged scene, in fresh processes."""
-    nudged = [(task, task.changed("one ulp away", nudged_scene(task.problem, towards))) for task in tasks]
+    nudged = {task.identity: task.changed("one ulp away", nudged_scene(task.problem, towards)) for task in tasks}
     with closing(process_pool(jobs)) as executor:
-        window: Window[tuple[Task, Task], SceneRun] = Window(
-            lambda pair: executor.submit(solve, pair[1], "", estimates=False), partial(ahead, executor, jobs)
+        window: Window[Task, Answer] = Window(
+            lambda task: executor.submit(solve, job_of(nudged[task.identity], estimates=False)),
+            partial(ahead, executor, jobs),
         )
-        rows = {task.identity: row for (task, _), row in window.results(nudged)}
-    for _, repetition in window.broken:
-        raise InvalidInput(f"{repetition.label}: the process that repeated it died; accept nothing from such a run")
-    return [(task, _numbers(repetition, rows[task.identity])) for task, repetition in nudged]
+        for task, answer in window.results(tasks):
+            if not answer.solved:
+                raise InvalidInput(
+                    f"{task.label}: this repetition should change nothing, but {answer.status}: {answer.reason}"
+                )
+            yield task, answer
+    for task in window.broken:
+        raise InvalidInput(f"{task.label}: the process that repeated it died; accept nothing from such a run")
 
 
-def _numbers(repetition: Task, row: SceneRun) -> SceneRun:
-    if row.solved:
-        return row
-    raise InvalidInput(f"{repetition.label}: this repetition should change nothing, but {row.status}: {row.reason}")
-
-
-def _spreads(task: Task, answers: list[SceneRun]) -> Iterator[tuple[tuple[str, str, str], float]]:
-    for quantity in answers[0].quantities:
-        place = task.method, task.scene, quantity.name
-        yield place, _spread(place, [answer.quantity(quantity.name) for answer in answers])
+def _spreads(task: Task, answers: list[Answer]) -> Iterator[tuple[tuple[str, str, str], float]]:
+    for name, q in answers[0].quantities.items():
+        if not q.at:
+            place = task.use.label, task.scene, name
+            repeated = [answer.quantities[name].values for answer in answers]
+            if len({len(values) for values in repeated}) > 1:
+                raise InvalidInput(f"{' / '.join(place)}: repetitions give other numbers of steps; they must not vary")
+            steps = zip(*repeated, strict=True)
+            yield place, max((relative_spread(step, q.scale) for step in steps), default=0.0)
 
 
 def nudged_scene(scene: Scene, towards: float) -> Scene:
@@ -119,14 +119,6 @@ def _nudged_layer(layer: ElasticLayer, towards: float) -> ElasticLayer:
         return layer.stretched(math.nextafter(1.0, towards))
     layer = layer.replace(youngs_modulus=math.nextafter(layer.youngs_modulus, towards))
     return layer if layer.is_half_space else layer.replace(thickness=math.nextafter(layer.thickness, towards))
-
-
-def _spread(place: tuple[str, str, str], repeated: list[Quantity]) -> float:
-    lengths = {len(quantity.values) for quantity in repeated}
-    if len(lengths) > 1:
-        raise InvalidInput(f"{' / '.join(place)}: repetitions give {sorted(lengths)} steps; the steps must not vary")
-    steps = zip(*(quantity.values for quantity in repeated), strict=True)
-    return max((relative_spread(step, repeated[0].scale) for step in steps), default=0.0)
 
 
 @contextmanager

@@ -1,18 +1,20 @@
 """Claims that most cases make: agreement of methods, closed forms, energy balances, independence of the unit system."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from functools import partial
 
-from cases.declare.case import CaseScene
-from cases.judgement.claims.agreement import Agreement
-from cases.judgement.claims.changed_scenes import ScalingLaw
-from cases.judgement.claims.declared import Reason
-from cases.judgement.claims.exact import Exact, Expected
-from cases.judgement.claims.field_agreement import FieldAgreement, Norm
-from cases.judgement.claims.own_laws import CarriedForce, Residual
+import numpy as np
+from numpy.polynomial import chebyshev
+
+from cases.answers import Answer
+from cases.case import CaseScene
+from cases.claims import Agree, Equal, Expected, Law, Norm, Zero
 from cases.library._layers import in_millimetres
 from cases.library._reasons import SHARED, with_tolerance
 from cases.library._requirements import REFERENCE
+from cases.verdicts import Why
 from contact import Scene
+from contact.records.validation import FloatArray
 
 PATH_QUANTITIES = ("indentation_depth", "normal_force", "contact_stiffness")
 
@@ -27,36 +29,36 @@ def agreements(
     tolerances: Mapping[str, float | Mapping[str, float]],
     quantities: Iterable[str] = PATH_QUANTITIES,
     *,
-    reason: Reason | None = None,
+    why: Why | None = None,
     derived_from: str = "",
     suffix: str = "",
-) -> Iterator[Agreement]:
+) -> Iterator[Agree]:
     """Yield the agreement of MDR with each method of ``tolerances`` (or those of its quantities) in ``quantities``.
 
     Args:
         scenes: what they answer.
         tolerances: by label, or by label and quantity.
         quantities: what is compared.
-        reason: in place of the usual one of the method, which holds for ``PATH_QUANTITIES``.
+        why: in place of the usual one of the method, which holds for ``PATH_QUANTITIES``.
         derived_from: how these tolerances were chosen, where that is not what the reason says.
         suffix: of the names of the claims.
     """
     names, quantities = names_of(scenes), tuple(quantities)
     for label, tolerance in tolerances.items():
-        why = reason or SHARED[label]
+        whole = why or SHARED[label]
         for quantity in quantities:
-            yield Agreement(
+            yield Agree(
                 name=f"{quantity.replace('_', ' ')}: MDR and {label}{suffix}",
                 quantity=quantity,
                 scenes=names,
                 fast="mdr",
                 reference=label,
                 tolerance=tolerance[quantity] if isinstance(tolerance, Mapping) else tolerance,
-                reason=with_tolerance(why, derived_from) if derived_from else why,
+                why=with_tolerance(whole, derived_from) if derived_from else whole,
             )
 
 
-def pressure_agreements(scenes: Iterable[CaseScene], norms: Mapping[str, Norm], limit: str) -> Iterator[FieldAgreement]:
+def pressure_agreements(scenes: Iterable[CaseScene], norms: Mapping[str, Norm], limit: str) -> Iterator[Agree]:
     """Yield the agreement of the pressures of MDR and finite elements, one claim for each name and norm of ``norms``.
 
     Args:
@@ -65,7 +67,7 @@ def pressure_agreements(scenes: Iterable[CaseScene], norms: Mapping[str, Norm], 
         limit: what limits finite elements to about 2e-5, far inside the requirement.
     """
     for name, norm in norms.items():
-        yield FieldAgreement(
+        yield Agree(
             name=name,
             quantity="pressure",
             norm=norm,
@@ -74,24 +76,49 @@ def pressure_agreements(scenes: Iterable[CaseScene], norms: Mapping[str, Norm], 
             reference="fem",
             refined=("mdr",),
             tolerance=REFERENCE["fem"]["pressure"],
-            reason=with_tolerance(SHARED["fem"], f"a requirement: 2e-4; {limit} finite elements to about 2e-5"),
+            why=with_tolerance(SHARED["fem"], f"a requirement: 2e-4; {limit} finite elements to about 2e-5"),
         )
 
 
-def carried_force(scenes: Iterable[CaseScene], methods: tuple[str, ...], tolerance: float) -> CarriedForce:
+def carried_force(scenes: Iterable[CaseScene], methods: tuple[str, ...], tolerance: float) -> Zero:
     """Return the claim that sampled pressures add up to the force; the rings must reach the contact's edge."""
-    return CarriedForce(
+    return Zero(
         name="the pressure carries the force",
         quantity="pressure",
         scenes=names_of(scenes),
         methods=methods,
         tolerance=tolerance,
-        reason=SHARED["equilibrium"],
+        why=SHARED["equilibrium"],
+        derive=lacking_force,
     )
 
 
+def lacking_force(scene: CaseScene, answer: Answer) -> list[float]:
+    """Return what the loads of rings out to the contact's edge lack of the normal force of the last step."""
+    load = float(np.sum(scene.sampling.rings.loads(np.array(answer.quantities["pressure"].values))))
+    return [load / answer.quantities["normal_force"].values[-1] - 1]
+
+
+def incremental_stiffness(scene: CaseScene, answer: Answer) -> FloatArray:
+    """Return dF/(k_N d delta) - 1 along a loading path: one more step presses like a flat punch, whatever the profile.
+
+    With F = int c (g(a) - g(x)) dx and k_N the stiffness of the flat punch of radius a, this vanishes exactly where the
+    spring stiffness is the derivative c = dk_N/da, Eq. (10), which for the data of a layer reads
+    c_bar = d(xi k_bar)/dxi. The radii of the path are `chebyshev_radii`.
+    """
+    names = ("contact_radius", "indentation_depth", "normal_force", "contact_stiffness")
+    a, depth, force, stiffness = (np.array(answer.quantities[name].values) for name in names)
+    fit = partial(chebyshev.Chebyshev.fit, a, deg=len(a) - 1)
+    return np.asarray(fit(force).deriv()(a) / (stiffness * fit(depth).deriv()(a)) - 1)
+
+
+def chebyshev_radii(lowest: float, highest: float, count: int) -> FloatArray:
+    """Increasing Chebyshev-Lobatto points of [lowest, highest], where a polynomial through smooth values converges."""
+    return lowest + (highest - lowest) * np.sin(np.linspace(0, np.pi / 2, count)) ** 2
+
+
 def exact(
-    reason: Reason,
+    why: Why,
     expected: Mapping[str, tuple[str, Expected]],
     *,
     tolerance: float,
@@ -99,11 +126,11 @@ def exact(
     scenes: Iterable[CaseScene] = (),
     methods: tuple[str, ...] = (),
     identities: Mapping[str, str] | None = None,
-) -> Iterator[Exact]:
+) -> Iterator[Equal]:
     """Yield a claim for each name of ``expected``: its quantity and the numbers that the scenes must give.
 
     Args:
-        reason: where the numbers come from.
+        why: where the numbers come from.
         expected: by name of the claim.
         tolerance: relative.
         tolerances: of methods that need another one.
@@ -112,20 +139,20 @@ def exact(
         identities: of methods for which it holds by construction: why.
     """
     for name, (quantity, values) in expected.items():
-        yield Exact(
+        yield Equal(
             name=name,
             quantity=quantity,
-            expected=values,
+            to=values,
             scenes=names_of(scenes),
             methods=methods,
             tolerance=tolerance,
             tolerances=tolerances or {},
             identities=identities or {},
-            reason=reason,
+            why=why,
         )
 
 
-def energy_balance(scenes: Iterable[CaseScene], tolerances: Mapping[str, float], time_steps: int) -> Residual:
+def energy_balance(scenes: Iterable[CaseScene], tolerances: Mapping[str, float], time_steps: int) -> Zero:
     """Return the claim that the energies of an impact add up.
 
     Args:
@@ -133,13 +160,13 @@ def energy_balance(scenes: Iterable[CaseScene], tolerances: Mapping[str, float],
         tolerances: of methods other than MDR.
         time_steps: of finite elements.
     """
-    return Residual(
+    return Zero(
         name="energy balance",
         quantity="energy_residual",
         scenes=names_of(scenes),
         tolerance=1e-7,
         tolerances=tolerances,
-        reason=with_tolerance(
+        why=with_tolerance(
             SHARED["energy balance"],
             f"MDR: tolerance of its time integration; finite elements: 1e-5 by {time_steps} time steps, ten times",
         ),
@@ -151,12 +178,12 @@ def scaling_law(
     scenes: Iterable[str],
     change: Callable[[Scene], Scene],
     factors: tuple[float, ...],
-    reason: Reason,
+    why: Why,
     *,
     tolerance: float = 1e-12,
     tolerances: Mapping[str, float] | None = None,
     identities: Mapping[str, str] | None = None,
-) -> ScalingLaw:
+) -> Law:
     """Return the claim that a changed scene gives known multiples of depth, force and (if named) stiffness.
 
     Args:
@@ -164,12 +191,12 @@ def scaling_law(
         scenes: their names.
         change: of the scene.
         factors: of ``PATH_QUANTITIES``, the last may be left out.
-        reason: why they are known.
+        why: why they are known.
         tolerance: relative.
         tolerances: of methods that need another one.
         identities: of methods for which it holds by construction: why.
     """
-    return ScalingLaw(
+    return Law(
         name=name,
         quantity="normal_force",
         scenes=tuple(scenes),
@@ -178,11 +205,11 @@ def scaling_law(
         tolerance=tolerance,
         tolerances=tolerances or {},
         identities=identities or {},
-        reason=reason,
+        why=why,
     )
 
 
-def same_in_millimetres(scenes: Iterable[str], factors: tuple[float, ...] = (1e3, 1.0, 1e-3)) -> ScalingLaw:
+def same_in_millimetres(scenes: Iterable[str], factors: tuple[float, ...] = (1e3, 1.0, 1e-3)) -> Law:
     """Return the claim that the unit system does not matter; ``factors`` as of `scaling_law`."""
     name, tolerances = "the unit system does not matter", {"bem": 1e-7}
     return scaling_law(name, scenes, in_millimetres, factors, SHARED["units"], tolerance=1e-9, tolerances=tolerances)

@@ -4,12 +4,12 @@ import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 
-from cases.declare.case import CaseScene
+from cases.case import CaseScene
+from cases.convergence import Grids, Order
 from cases.declare.methods import MethodUse
-from cases.judgement.claims.declared import Reason
-from cases.judgement.claims.order import Grids, Order
 from cases.library._claims import names_of
 from cases.library._reasons import reasons
+from cases.verdicts import Why
 
 WHY = reasons("convergence")
 
@@ -26,7 +26,7 @@ class Refinement:
         name: what is refined, as tables say it.
         method: label of the method.
         ladder: settings of each refinement, coarsest first.
-        reason: why errors fall at the formal rate.
+        why: why errors fall at the formal rate.
         ratio: of neighbouring lengths.
         digits: gained per refinement where convergence is exponential; formal orders are then not asked for.
         floor: relative error below which rounding or another error decides.
@@ -35,7 +35,7 @@ class Refinement:
     name: str
     method: str
     ladder: tuple[Grids, ...]
-    reason: Reason
+    why: Why
     ratio: float = 2.0
     digits: float = 0.0
     floor: float = 1e-14
@@ -76,7 +76,7 @@ def studies(
             reference_uncertainty=uncertainty,
             floor=refinement.floor,
             tolerance=0.2,
-            reason=refinement.reason,
+            why=refinement.why,
             nightly=nightly,
         )
 
@@ -96,7 +96,7 @@ def fem_cells(degree: int, *, thin: bool = False) -> Refinement:
     growths = lengths if thin else map(math.expm1, lengths)
     ladder = in_turn("growth", growths, order=degree, edge_cell=1e-11, truncation=1e-12)
     name = f"P{degree} largest cells" if thin else f"P{degree} cells"
-    return Refinement(name=name, method="fem", ladder=ladder, reason=WHY["cells"], ratio=ROOT_TWO)
+    return Refinement(name=name, method="fem", ladder=ladder, why=WHY["cells"], ratio=ROOT_TWO)
 
 
 def in_turn(name: str, values: Iterable[float], **fixed: float | str) -> tuple[Mapping[str, float | str], ...]:
@@ -113,13 +113,13 @@ EDGE_CELL = Refinement(
     name="edge cell",
     method="fem",
     ladder=in_turn("edge_cell", (0.1, 0.05, 0.025, 0.0125), order=4, growth=0.35, truncation=1e-10),
-    reason=WHY["edge cell"],
+    why=WHY["edge cell"],
 )
 OUTER_RADIUS = Refinement(
     name="outer radius, two thicknesses a step",
     method="fem",
     ladder=in_turn("outer_distance", (2.0, 4.0, 6.0), order=3, growth=0.4, edge_cell=1e-7),
-    reason=WHY["outer radius"],
+    why=WHY["outer radius"],
     digits=1.15,
     floor=1e-7,
 )
@@ -127,7 +127,7 @@ HALF_SPACE = Refinement(
     name="thickness that stands for a half-space",
     method="fem",
     ladder=in_turn("half_space_thickness", (20.0, 40.0, 80.0), order=3, growth=0.4, edge_cell=1e-8),
-    reason=WHY["half-space"],
+    why=WHY["half-space"],
 )
 # The third order of forces is seen on finer meshes only.
 HALF_SPACE_FORCE = replace(
@@ -137,41 +137,41 @@ TIME_STEP = Refinement(
     name="time step",
     method="fem",
     ladder=in_turn("growth", (0.5, 0.5 / ROOT_TWO, 0.25), edge_cell=1e-7),
-    reason=WHY["time step"],
+    why=WHY["time step"],
     ratio=ROOT_TWO,
 )
 CELLS_AND_STEPS = Refinement(
     name="cells and time steps",
     method="fem",
     ladder=in_turn("growth", (1.0, 0.5, 0.25)),
-    reason=WHY["time step"],
+    why=WHY["time step"],
 )
 POINTS = Refinement(
     name="points, four grids a refinement",
     method="bem",
     ladder=neighbours("points", ([n * m for m in (16, 18, 20, 22)] for n in (8, 16, 32))),
-    reason=WHY["points"],
+    why=WHY["points"],
 )
 EIGHT = (8, 9, 10, 11, 12, 13, 14, 15)
 PUNCH_POINTS = Refinement(
     name="points, eight grids a refinement",
     method="bem",
     ladder=neighbours("points", ([n * m for m in EIGHT] for n in (16, 24, 36))),
-    reason=WHY["discs of cells"],
+    why=WHY["discs of cells"],
     ratio=1.5,
 )
 DISCS = Refinement(
     name="points, all grids of a refinement",
     method="bem",
     ladder=neighbours("points", (range(n, 15 * n // 8, 4) for n in (96, 144, 216))),
-    reason=WHY["discs"],
+    why=WHY["discs"],
     ratio=1.5,
 )
 NODES = Refinement(
     name="Gauss nodes, two a step",
     method="mdr",
     ladder=in_turn("nodes", (6, 8, 10, 12)),
-    reason=WHY["nodes"],
+    why=WHY["nodes"],
     digits=0.5,
     floor=1e-13,
 )
@@ -179,7 +179,7 @@ EQUATION_NODES = Refinement(
     name="Gauss nodes, two a step",
     method="integral_equation",
     ladder=in_turn("nodes", (6, 8, 10)),
-    reason=WHY["nodes"],
+    why=WHY["nodes"],
     digits=0.5,
     floor=1e-13,
 )
@@ -187,7 +187,7 @@ TIME_ACCURACY = Refinement(
     name="accuracy in time, two digits a step",
     method="mdr",
     ladder=in_turn("accuracy", (1e-4, 1e-6, 1e-8, 1e-10), nodes=32),
-    reason=WHY["accuracy in time"],
+    why=WHY["accuracy in time"],
     digits=1.5,
     floor=1e-13,
 )
@@ -195,7 +195,7 @@ FEM_ACCURACY = Refinement(
     name="accuracy, one digit a step",
     method="fem",
     ladder=in_turn("accuracy", (1e-2, 1e-3, 1e-4)),
-    reason=WHY["accuracy"],
+    why=WHY["accuracy"],
     digits=0.5,
     floor=1e-9,
 )
@@ -204,7 +204,7 @@ FEM_ACCURACY = Refinement(
 RECEDING_ACCURACY = replace(
     TIME_ACCURACY,
     ladder=in_turn("accuracy", (1e-6, 1e-8, 1e-10), nodes=32),
-    reason=WHY["accuracy of receding fronts"],
+    why=WHY["accuracy of receding fronts"],
     digits=1.2,
 )
 # So many rows more each put a/h = 2 at each eighth of the way between two rows; fewer rows than these are no smooth
@@ -214,7 +214,7 @@ FINE_ROWS = Refinement(
     name="rows, eight tables a refinement",
     method="mdr_table",
     ladder=neighbours("ratios", ([n + m for m in EIGHTHS] for n in (112, 172, 262)), cells=64, radii=100),
-    reason=WHY["rows"],
+    why=WHY["rows"],
     ratio=1.5,
     floor=1e-13,
 )
@@ -236,7 +236,7 @@ COLUMNS = Refinement(
     name="columns doubled, eight tables a refinement",
     method="mdr_table",
     ladder=neighbours("radii", ([n * m for m in EIGHT] for n in (3, 6, 12)), cells=64, ratios=61),
-    reason=WHY["columns"],
+    why=WHY["columns"],
     digits=0.9,
     floor=1e-12,
 )
@@ -248,5 +248,5 @@ TABLE_CELLS = Refinement(
     name="cells, eight grids a refinement",
     method="mdr_table",
     ladder=neighbours("cells", ([n * m for m in EIGHT] for n in (8, 16, 32)), ratios=61, radii=100),
-    reason=WHY["discs of cells"],
+    why=WHY["discs of cells"],
 )

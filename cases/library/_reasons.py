@@ -5,14 +5,13 @@ from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
-from cases.judgement.claims.declared import Reason
-from cases.results.records.claim import Origin
+from cases.verdicts import Origin, Why
 from contact import InvalidInput
 
 TABLE = tomllib.loads(Path(__file__).with_name("reasons.toml").read_text(encoding="utf-8"))
 
 
-def reasons(case: str) -> dict[str, Reason]:
+def reasons(case: str) -> dict[str, Why]:
     """Return the reasons of a case (or those that several share) by name.
 
     Raises:
@@ -21,17 +20,12 @@ def reasons(case: str) -> dict[str, Reason]:
     return {name: _reason(f"{case}.{name}", entry) for name, entry in TABLE[case].items()}
 
 
-def _reason(place: str, entry: Mapping[str, str]) -> Reason:
+def _reason(place: str, entry: Mapping[str, str]) -> Why:
     """Return an entry, with what the entry that it is like says beside it."""
     case, _, name = entry.get("like", "").partition(".")
     whole = {**TABLE[case][name], **entry} if name else entry
     try:
-        return Reason(
-            because=whole["because"],
-            derived_from=whole["tolerance"],
-            origin=Origin(whole["origin"]),
-            source=whole["source"],
-        )
+        return Why(Origin(whole["origin"]), whole["source"], whole["because"], whole["tolerance"])
     except KeyError as error:
         raise InvalidInput(f"reasons.toml: {place} has no entry {error}; add it") from None
 
@@ -39,6 +33,6 @@ def _reason(place: str, entry: Mapping[str, str]) -> Reason:
 SHARED = reasons("shared")
 
 
-def with_tolerance(reason: Reason, derived_from: str) -> Reason:
-    """Return ``reason`` with another origin of its tolerance."""
-    return replace(reason, derived_from=derived_from)
+def with_tolerance(why: Why, derived_from: str) -> Why:
+    """Return the reason with another origin of its tolerance."""
+    return replace(why, tolerance=derived_from)

@@ -1,4 +1,4 @@
-"""Studies over many scenes and methods that are no cases of the library, as results that a report shows."""
+"""Studies of a whole suite that are no cases of the library: finite elements as a program, stress tests."""
 
 import time
 from collections.abc import Callable, Iterable
@@ -10,21 +10,21 @@ from pathlib import Path
 from types import TracebackType
 from typing import Self
 
-from cases.results.files import write_run
-from cases.results.records.run import CaseResult, RunResult
+from cases.answers import Table
 from cases.run.executors import ClusterLost, ExecutorFactory, closing, serial
 from cases.run.stamp import stamp
+from cases.runs import Judged, Part, Run, write_run
 
 QUICK_LADDERS = ("vanishing flat end", "stability reverses", "damping ratio")
 
 
-def run_of(studies: Iterable[CaseResult], out: Path) -> RunResult:
-    """Carry out studies (an iterator works while it is listed) and write them as a run into ``out``."""
+def run_of(parts: Iterable[Part], out: Path) -> Run:
+    """Write studies as a run into ``out``."""
     started, clock = datetime.now(UTC), time.perf_counter()
-    cases = tuple(studies)
-    run = RunResult(suite="", complete=True, stamp=stamp(started, time.perf_counter() - clock), cases=cases)
-    write_run(run, out)
-    return run
+    judged = Judged(stamp=stamp(started, 0.0)).joined(parts)
+    judged = replace(judged, stamp=replace(judged.stamp, wall_seconds=time.perf_counter() - clock))
+    write_run(judged, out)
+    return Run(judged=judged, answers=Table())
 
 
 class SuiteStudies:
@@ -40,7 +40,7 @@ class SuiteStudies:
         self._studies = NIGHTLY if suite == "nightly" else QUICK
         self._executor, self._jobs = executor, jobs
         self._begun = ExitStack()
-        self._futures: list[Future[CaseResult]] = []
+        self._futures: list[Future[Part]] = []
 
     def begin(self) -> None:
         """Hand them over; in this process they would not let anything else be done, so they wait until `join`."""
@@ -51,20 +51,20 @@ class SuiteStudies:
         pool = self._begun.enter_context(closing(self._executor(self._jobs)))
         self._futures = [pool.submit(study) for study in self._studies]
 
-    def join(self, run: RunResult, out: Path) -> RunResult:
+    def join(self, run: Run, out: Path) -> Run:
         """Add them to the finished run and write it again; an interrupt or a lost cluster leaves it incomplete."""
-        clock = time.perf_counter()
+        clock, judged = time.perf_counter(), run.judged
         try:
             with self._begun:
                 if not self._futures:
                     self._hand_over()
-                studies = tuple(future.result() for future in self._futures)
+                judged = judged.joined(future.result() for future in self._futures)
         except (KeyboardInterrupt, ClusterLost):
-            run, studies = replace(run, complete=False), ()
-        seconds = run.stamp.wall_seconds + time.perf_counter() - clock
-        whole = replace(run, cases=(*run.cases, *studies), stamp=replace(run.stamp, wall_seconds=seconds))
+            judged = replace(judged, complete=False)
+        seconds = judged.stamp.wall_seconds + time.perf_counter() - clock
+        whole = replace(judged, stamp=replace(judged.stamp, wall_seconds=seconds))
         write_run(whole, out)
-        return whole
+        return replace(run, judged=whole)
 
     def __enter__(self) -> Self:
         return self
@@ -76,28 +76,28 @@ class SuiteStudies:
         self._begun.__exit__(kind, error, trace)
 
 
-def quick_ladders() -> CaseResult:
-    """Some ladders of the fast method."""
+def quick_ladders() -> Part:
+    """Some stress tests of the fast method."""
     from cases.measurements.ladders.ladder_study import chosen, ladder_case  # noqa: PLC0415 - imported where it is carried out
     from cases.measurements.ladders.ladder_table import LADDERS  # noqa: PLC0415
 
     return ladder_case(chosen(LADDERS, QUICK_LADDERS), {"mdr": {}})
 
 
-def all_ladders() -> CaseResult:
-    """All ladders by every method that climbs them."""
+def all_ladders() -> Part:
+    """All stress tests by every method that supports them."""
     from cases.measurements.ladders.ladder_study import ladder_case  # noqa: PLC0415 - imported where it is carried out
     from cases.measurements.ladders.ladder_table import LADDERS  # noqa: PLC0415
 
     return ladder_case(LADDERS)
 
 
-def code_verification() -> CaseResult:
+def code_verification() -> Part:
     """Orders, stability and locking of the finite elements."""
     from cases.library._code_verification.finite_elements import finite_element_case  # noqa: PLC0415
 
     return finite_element_case()
 
 
-QUICK: tuple[Callable[[], CaseResult], ...] = (code_verification, quick_ladders)
-NIGHTLY: tuple[Callable[[], CaseResult], ...] = (code_verification, all_ladders)
+QUICK: tuple[Callable[[], Part], ...] = (code_verification, quick_ladders)
+NIGHTLY: tuple[Callable[[], Part], ...] = (code_verification, all_ladders)

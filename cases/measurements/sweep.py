@@ -11,7 +11,7 @@ import numpy as np
 
 from cases.declare.quantities import single_numbers
 from cases.declare.uncertain_inputs import part_of, place_of, range_ends
-from cases.results.csv_table import csv_text
+from cases.files import csv_text
 from contact import UNITS, ContactError, InvalidInput, Method, Scene, Solution
 from contact.records.errors import shown
 from contact.records.record import unit_of

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
 
-from cases.results.status import Status
+from cases.verdicts import Status
 
 
 @dataclass(frozen=True, kw_only=True)

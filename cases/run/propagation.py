@@ -7,16 +7,19 @@ the two sides differ much the quantity bends, and samples are the better answer:
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 
-from cases.declare.task import Sampling
+from cases.answers import Values
+from cases.case import Sampling
 from cases.declare.uncertain_inputs import UncertainInputs, read_inputs
-from cases.results.records.scene_run import Quantity
-from cases.run.recording import quantities
+from cases.recording import quantities
 from contact import UNITS, DetachmentPath, InvalidInput, Method, Scene, Solution
 from contact.records.validation import FloatArray
 
+# Quantities by name.
+Named: TypeAlias = tuple[tuple[str, Values], ...]
 # The seed of the samples: an answer repeats digit by digit.
 SEED = 20261122
 # Beyond this share of the change, a difference of the two sides is said: samples are then the better answer.
@@ -100,7 +103,7 @@ def propagate(
 
     place = inputs.drawn if samples else inputs.moved
 
-    def solved(numbers: FloatArray) -> tuple[Quantity, ...]:
+    def solved(numbers: FloatArray) -> Named:
         return _physical(solver.solve(place(scene, numbers)))
 
     middle = inputs.moved(scene, np.zeros(len(inputs.inputs)))
@@ -116,69 +119,71 @@ def propagate(
     )
 
 
-def _physical(answer: Solution) -> tuple[Quantity, ...]:
-    """What has a unit; of a detachment what sums it up, because its branch has as many states as it needs."""
+def _physical(answer: Solution) -> Named:
+    """Quantities with a unit. Of a detachment only its scalars: the number of states varies."""
     left = answer.SCALARS if isinstance(answer, DetachmentPath) else tuple(UNITS)
-    return tuple(one for one in quantities(answer, Sampling()) if one.name in left)
+    return tuple((name, q) for name, q in quantities(answer, Sampling()).items() if name in left)
 
 
-Solve = Callable[[FloatArray], tuple[Quantity, ...]]
+Solve = Callable[[FloatArray], Named]
 Found = tuple[tuple[PropagatedQuantity, ...], FloatArray]
 
 
-def _differences(inputs: UncertainInputs, middle: tuple[Quantity, ...], solved: Solve, _: int) -> Found:
+def _differences(inputs: UncertainInputs, middle: Named, solved: Solve, _: int) -> Found:
     """By central differences; rows of the second result are independent contributions to the last steps."""
     units = np.eye(len(inputs.inputs))
     above, below = ([_values(solved(sign * unit), middle) for unit in units] for sign in (1.0, -1.0))
     root = _root(inputs.correlation)
     found, last = [], []
-    for number, one in enumerate(middle):
+    for number, (name, one) in enumerate(middle):
         changes = np.array([(up[number] - down[number]) / 2 for up, down in zip(above, below, strict=True)])
         bend = np.array(
             [up[number] + down[number] - 2 * np.array(one.values) for up, down in zip(above, below, strict=True)]
         )
         shares = root.T @ changes
         spread = np.sqrt(np.sum(shares**2, axis=0))
-        names = [entry.name for entry in inputs.inputs]
+        inputs_named = [entry.name for entry in inputs.inputs]
         bends = bool(np.any(np.abs(bend).max(axis=0) / 2 > BENT * spread + 1e-9 * one.scale))
-        found.append(_quantity(one, spread, dict(zip(names, changes, strict=True)), bends=bends))
+        found.append(_quantity(name, one, spread, dict(zip(inputs_named, changes, strict=True)), bends=bends))
         last.append(shares[:, -1])
     return tuple(found), np.array(last).T
 
 
-def _sampled(inputs: UncertainInputs, middle: tuple[Quantity, ...], solved: Solve, count: int) -> Found:
+def _sampled(inputs: UncertainInputs, middle: Named, solved: Solve, count: int) -> Found:
     """By samples; rows of the second result are the last steps of each sample, without their mean."""
     normal = np.random.default_rng(SEED).standard_normal((count, len(inputs.inputs)))
     drawn = [_values(solved(row), middle) for row in normal @ _root(inputs.correlation).T]
     found, last = [], []
-    for number, one in enumerate(middle):
+    for number, (name, one) in enumerate(middle):
         values = np.array([sample[number] for sample in drawn])
-        found.append(_quantity(one, np.std(values, axis=0, ddof=1), {}, bends=False))
+        found.append(_quantity(name, one, np.std(values, axis=0, ddof=1), {}, bends=False))
         last.append(values[:, -1] - values[:, -1].mean())
     return tuple(found), np.array(last).T
 
 
-def _values(found: tuple[Quantity, ...], middle: tuple[Quantity, ...]) -> list[FloatArray]:
+def _values(found: Named, middle: Named) -> list[FloatArray]:
     """Values of each quantity along the steps.
 
     Raises:
         InvalidInput: if the number of steps changes with the inputs.
     """
-    for one, other in zip(found, middle, strict=True):
+    for (name, one), (_, other) in zip(found, middle, strict=True):
         if len(one.values) != len(other.values):
             raise InvalidInput(
-                f"{one.name} has {len(one.values)} steps in place of {len(other.values)}: its instants follow the "
+                f"{name} has {len(one.values)} steps in place of {len(other.values)}: its instants follow the "
                 "inputs; prescribe the states, or an impact"
             )
-    return [np.array(one.values) for one in found]
+    return [np.array(one.values) for _, one in found]
 
 
-def _quantity(one: Quantity, spread: FloatArray, by_input: dict[str, FloatArray], *, bends: bool) -> PropagatedQuantity:
+def _quantity(
+    name: str, one: Values, spread: FloatArray, by_input: dict[str, FloatArray], *, bends: bool
+) -> PropagatedQuantity:
     return PropagatedQuantity(
-        name=one.name,
+        name=name,
         unit=one.unit,
         values=np.array(one.values),
-        numerical=np.array(one.uncertainty) if one.uncertainty else None,
+        numerical=np.array(one.error) if one.error else None,
         inputs=spread,
         by_input=by_input,
         bends=bends,

@@ -1,7 +1,7 @@
 """Carry out cases: plan their tasks, solve each once, keep every finished one, judge the claims.
 
-Results stream to disk as they finish; a failed task is a row; an interrupted run is valid and says that it is
-incomplete; timing tasks run after all others, one by one, so that they never share the machine.
+Answers are appended to ``answers.jsonl`` as they come; a failed task is an answer; an interrupted run is valid and says
+that it is incomplete; timed tasks run after all others, one by one, so that they never share the machine.
 """
 
 import time
@@ -11,28 +11,25 @@ from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
+from typing import IO
 
-from cases.declare.case import Case
+from cases.answers import NAME, Answer, Identity, Table, read_answers
+from cases.case import Case, Task
+from cases.convergence import Order
 from cases.declare.methods import registered
-from cases.declare.task import Answers, Task
-from cases.judgement.judge import case_result
-from cases.results.files import write_run
-from cases.results.records.run import CaseResult, RunResult
-from cases.results.records.scene_run import SceneRun
-from cases.results.status import Status
+from cases.files import write_whole
 from cases.run.executors import ClusterLost, ExecutorFactory, ahead, closing, fresh_processes, process_pool, serial
-from cases.run.keys import content_key, key_parts
 from cases.run.lock import locked
 from cases.run.progress import Progress, ProgressEvent, silent
-from cases.run.solve_task import solve, without_numbers
-from cases.run.specification import specification
+from cases.run.solve_task import Job, job_of, solve
 from cases.run.stamp import stamp
-from cases.run.store import TaskStore
 from cases.run.window import Window
+from cases.runs import CaseText, Judged, Run, Stamp, write_run
+from cases.verdicts import Status, worst
 from contact import InvalidInput
 
-# Seconds that one solution by a method of an installed package may take unless told otherwise: nobody here knows
-# whether it ends.  The value is that of the command `cost`, which allows as much for all repetitions of a setting.
+# Seconds that one solution by a method of an installed package may take unless another limit is given: nobody here
+# knows whether it ends. Half would kill honest three-dimensional meshes, twice only lets a hang wait.
 FOREIGN_TIME_LIMIT = 300.0
 
 
@@ -41,16 +38,16 @@ class RunOptions:
     """How a run is carried out.
 
     Attributes:
-        out: folder of results; finished tasks lie in ``out/tasks``.
+        out: folder of results.
         suite: name of the suite, for the record.
         methods: that were chosen, for the record; empty for those of the cases.
         jobs: tasks at a time; on a cluster as many as it has threads if that is more.
         executor: where they run.
-        resume: use finished tasks of an earlier run in the same folder whose keys are equal.
+        resume: use answers of an earlier run of the same code in the same folder.
         time_limit: seconds a task may take, zero for no limit; by default only methods of installed packages have one.
-        timing: whether timing tasks run; without them there are no work-precision records.
-        only_costs: whether only the tasks of work studies run; no claim is then judged.
-        progress: told of every event.
+        timing: whether timed tasks run; without them there are no studies of cost.
+        only_costs: whether only the tasks of studies of cost run; no claim is then judged.
+        progress: called with every event.
         solved: called once all tasks have run, before claims are judged.
     """
 
@@ -72,17 +69,21 @@ class _Run:
     """A run under way."""
 
     options: RunOptions
-    store: TaskStore
+    stream: IO[str]
     total: int
-    rows: dict[tuple[str, str, str, str], SceneRun] = field(default_factory=dict)
+    answers: dict[Identity, Answer] = field(default_factory=dict)
 
-    def finish(self, planned: "_Planned", row: SceneRun, *, reused: bool = False) -> None:
-        """Keep a finished task and tell of it."""
-        self.rows[planned.task.identity] = row
+    def finish(self, job: Job, answer: Answer, *, reused: bool = False) -> None:
+        """Keep a finished task."""
+        self.answers[answer.identity] = answer
         if not reused:
-            self.store.put(planned.key, planned.parts, row)
-        kind = "reused" if reused else "finished"
-        self.tell(kind, planned.task.label, row.status, row.reason)
+            try:
+                self.stream.write(answer.line())
+                self.stream.flush()
+            except OSError as error:
+                place = self.options.out / NAME
+                raise InvalidInput(f"{place}: cannot be written ({error.strerror}); make room and resume") from None
+        self.tell("reused" if reused else "finished", job.task.label, answer.status, answer.reason)
 
     def tell(self, kind: str, label: str, status: Status | None = None, reason: str = "") -> None:
         """Report an event."""
@@ -90,7 +91,7 @@ class _Run:
             # Its callers pass one of the permitted words.
             kind=kind,  # type: ignore[arg-type]
             label=label,
-            done=len(self.rows),
+            done=len(self.answers),
             total=self.total,
             status=status,
             reason=reason,
@@ -98,124 +99,134 @@ class _Run:
         self.options.progress(event)
 
 
-@dataclass(frozen=True)
-class _Planned:
-    """A task with its key."""
-
-    task: Task
-    key: str
-    parts: dict[str, object]
-
-
-def run_cases(cases: Sequence[Case], options: RunOptions) -> RunResult:
-    """Run ``cases`` and return the result, which also lies in ``options.out`` as results.json and results.h5.
+def run_cases(cases: Sequence[Case], options: RunOptions) -> Run:
+    """Run ``cases`` and return the judged run, which also lies in ``options.out``.
 
     An interrupt (Ctrl-C) and a lost cluster end the run early with ``complete`` False; every finished task is kept.
 
     Raises:
-        InvalidInput: if another run works in the folder, or its disk is full.
+        InvalidInput: if another run works in the folder, its disk is full, or a kept answer is damaged.
     """
     with locked(options.out):
         return _run(cases, options)
 
 
-def _run(cases: Sequence[Case], options: RunOptions) -> RunResult:
+def _run(cases: Sequence[Case], options: RunOptions) -> Run:
     started, clock = datetime.now(UTC), time.perf_counter()
-    planned = plan(cases, timing=options.timing, only_costs=options.only_costs)
-    run = _Run(options, TaskStore(options.out / "tasks"), total=len(planned))
-    run.tell("planned", f"{len(cases)} cases")
+    jobs = [job_of(task) for task in plan(cases, timing=options.timing, only_costs=options.only_costs)]
+    kept = _kept(options, jobs)
     complete = True
-    try:
-        _carry_out(run, planned)
-        options.solved()
-    except KeyboardInterrupt:
-        complete = False
-    except ClusterLost as error:
-        complete = False
-        run.tell("stopped", "run", reason=f"{error}; finished solutions are kept, go on with --resume")
-    answers = Answers(run.rows)
-    results = tuple(_judged(run, case, answers, complete=complete) for case in cases)
-    result = RunResult(
-        suite=options.suite,
-        methods=options.methods,
-        complete=complete,
-        stamp=stamp(started, time.perf_counter() - clock),
-        cases=results,
-    )
-    write_run(result, options.out)
-    return result
+    with (options.out / NAME).open("a", encoding="utf-8") as stream:
+        run = _Run(options, stream, total=len(jobs))
+        run.tell("planned", f"{len(cases)} cases")
+        for job, answer in kept:
+            run.finish(job, answer, reused=True)
+        try:
+            _carry_out(run, [job for job in jobs if job.task.identity not in run.answers])
+            options.solved()
+        except KeyboardInterrupt:
+            complete = False
+        except ClusterLost as error:
+            complete = False
+            run.tell("stopped", "run", reason=f"{error}; finished solutions are kept, go on with --resume")
+    table = Table(run.answers.values())
+    made = stamp(started, time.perf_counter() - clock)
+    judged = judge(cases, table, made, claims=not options.only_costs)
+    judged = replace(judged, suite=options.suite, methods=options.methods, complete=complete)
+    _tell_judged(run, judged, table)
+    write_run(judged, options.out)
+    return Run(judged=judged, answers=table)
 
 
-def plan(cases: Iterable[Case], *, timing: bool = True, only_costs: bool = False) -> list[_Planned]:
-    """Return every task of ``cases`` once, with its key; timing tasks last."""
-    tasks: dict[tuple[str, str, str, str], Task] = {}
+def plan(cases: Iterable[Case], *, timing: bool = True, only_costs: bool = False) -> list[Task]:
+    """Return every task of ``cases`` once; timed tasks last."""
+    tasks: dict[Identity, Task] = {}
     for case in cases:
         for task in case.cost_tasks() if only_costs else case.tasks():
             tasks.setdefault(task.identity, task)
     wanted = [task for task in tasks.values() if timing or not task.timed]
-    return [_planned(task) for task in sorted(wanted, key=lambda task: task.timed)]
+    return sorted(wanted, key=lambda task: task.timed)
 
 
-def _planned(task: Task) -> _Planned:
-    parts = key_parts(task)
-    return _Planned(task, content_key(parts), parts)
+def judge(cases: Iterable[Case], answers: Table, made: Stamp, *, claims: bool = True) -> Judged:
+    """Return what the answers that are there say of the claims and studies of cases.
+
+    Args:
+        cases: as they were run.
+        answers: of their tasks; a claim or study without all its answers is left out.
+        made: where and when.
+        claims: whether claims are judged.
+    """
+    cases = tuple(cases)
+    studied = [(case, claim) for case in cases if claims for claim in case.claims if isinstance(claim, Order)]
+    return Judged(
+        stamp=made,
+        cases=tuple(words_of(case) for case in cases),
+        verdicts=tuple(verdict for case in cases if claims for verdict in case.verdicts(answers)),
+        convergence=tuple(study for case, claim in studied for study in claim.studies(case, answers)),
+        costs=tuple(record for case in cases for study in case.work for record in study.records(case, answers)),
+        effects=tuple(record for case in cases for study in case.ablations for record in study.records(case, answers)),
+    )
 
 
-def _judged(run: _Run, case: Case, answers: Answers, *, complete: bool) -> CaseResult:
-    whole = run.options.timing and not run.options.only_costs
-    result = case_result(case, answers, complete=complete and whole)
-    skipped = whole and not result.status.is_failure and result.unjudged(run.options.methods)
-    run.tell("judged", case.name, Status.SKIP if skipped else result.status)
-    return result
+def words_of(case: Case) -> CaseText:
+    """Return a case in words."""
+    return CaseText(
+        name=case.name,
+        title=case.title,
+        question=case.question,
+        equations=", ".join(case.equations),
+        text=case.text,
+        scenes={scene.name: scene.parameters for scene in case.scenes},
+    )
 
 
-def _carry_out(run: _Run, planned: list[_Planned]) -> None:
-    waiting = [p for p in planned if not _reused(run, p)]
-    _solve_in(run, run.options.executor, run.options.jobs, [p for p in waiting if not p.task.timed])
+def _kept(options: RunOptions, jobs: list[Job]) -> list[tuple[Job, Answer]]:
+    """Answers of an earlier run that are used again; the file is written anew with them alone."""
+    file = options.out / NAME
+    earlier = Table(read_answers(file)) if options.resume and file.is_file() else Table()
+    found = [(job, earlier.get(job.task.identity)) for job in jobs]
+    kept = [(job, answer) for job, answer in found if answer is not None and _same(job, answer)]
+    write_whole(file, "".join(answer.line() for _, answer in kept))
+    return kept
+
+
+def _same(job: Job, answer: Answer) -> bool:
+    """Whether an answer is to this question by this code, and final."""
+    final = answer.status not in (Status.TIMEOUT, Status.INVALID)
+    return final and (answer.question, answer.code) == (job.question, job.code)
+
+
+def _tell_judged(run: _Run, judged: Judged, table: Table) -> None:
+    whole = Run(judged=judged, answers=table)
+    for case in judged.cases:
+        statuses = [verdict.status for verdict in judged.verdicts if verdict.case == case.name]
+        status = worst([*statuses, *(answer.status for answer in table.of_case(case.name) if answer.status.is_failure)])
+        skipped = not status.is_failure and bool(whole.unjudged_in(case.name))
+        run.tell("judged", case.name, Status.SKIP if skipped else status)
+
+
+def _carry_out(run: _Run, jobs: list[Job]) -> None:
+    _solve_in(run, run.options.executor, run.options.jobs, [job for job in jobs if not job.task.timed])
     alone = serial if run.options.executor is serial else fresh_processes
-    _solve_in(run, alone, 1, [p for p in waiting if p.task.timed])
+    _solve_in(run, alone, 1, [job for job in jobs if job.task.timed])
 
 
-def _reused(run: _Run, planned: _Planned) -> bool:
-    row = _stored(run, planned) if run.options.resume else None
-    if row is None or row.status in (Status.TIMEOUT, Status.INVALID):
-        return False
-    # Another case may have stored the same scene and settings under names of its own.
-    task = planned.task
-    own = replace(row, scene=task.scene, method=task.method, specification=specification(task))
-    run.finish(planned, own, reused=True)
-    return True
-
-
-def _stored(run: _Run, planned: _Planned) -> SceneRun | None:
-    """Return the finished task; one whose file is damaged or changed is refused in words and solved again."""
-    try:
-        return run.store.get(planned.key)
-    except InvalidInput as error:
-        run.tell("refused", planned.task.label, reason=str(error))
-        return None
-
-
-def _solve_in(run: _Run, factory: ExecutorFactory, jobs: int, planned: list[_Planned]) -> None:
-    """Solve in an executor; when a process dies, the tasks it may have held are repeated one by one, apart."""
-    while planned:
-        suspects = _solve_until_broken(run, factory, jobs, planned)
-        for suspect in suspects:
+def _solve_in(run: _Run, factory: ExecutorFactory, count: int, jobs: list[Job]) -> None:
+    """Solve in an executor; when a process dies, the tasks it may have computed are repeated one by one, apart."""
+    while jobs:
+        with closing(factory(count)) as executor:
+            window = Window(partial(_submit, executor, run), partial(ahead, executor, count))
+            for job, answer in window.results(jobs):
+                run.finish(job, answer)
+        for suspect in window.broken:
             _solve_apart(run, factory, suspect)
-        planned = [p for p in planned if p.task.identity not in run.rows]
+        jobs = [job for job in jobs if job.task.identity not in run.answers]
 
 
-def _solve_until_broken(run: _Run, factory: ExecutorFactory, jobs: int, planned: list[_Planned]) -> list[_Planned]:
-    """Return the tasks that were under way when the executor broke; none if it did not."""
-    with closing(factory(jobs)) as executor:
-        window = Window(partial(_submit, executor, run), partial(ahead, executor, jobs))
-        for solved, row in window.results(planned):
-            run.finish(solved, row)
-    return window.broken
-
-
-def _submit(executor: Executor, run: _Run, planned: _Planned) -> Future[SceneRun]:
-    return executor.submit(solve, planned.task, planned.key, _limit(run.options, planned.task.method))
+def _submit(executor: Executor, run: _Run, job: Job) -> Future[Answer]:
+    use = job.task.use
+    return executor.submit(solve, job, _limit(run.options, use.method or use.label))
 
 
 def _limit(options: RunOptions, method: str) -> float:
@@ -225,12 +236,10 @@ def _limit(options: RunOptions, method: str) -> float:
     return FOREIGN_TIME_LIMIT if method in registered() else 0.0
 
 
-def _solve_apart(run: _Run, factory: ExecutorFactory, planned: _Planned) -> None:
+def _solve_apart(run: _Run, factory: ExecutorFactory, job: Job) -> None:
     with closing(factory(1)) as executor:
         try:
-            row = _submit(executor, run, planned).result()
+            answer = _submit(executor, run, job).result()
         except BrokenExecutor as error:
-            row = without_numbers(
-                planned.task, planned.key, Status.INVALID, f"the process that solved it died: {error}"
-            )
-    run.finish(planned, row)
+            answer = job.answer(Status.INVALID, f"the process that solved it died: {error}")
+    run.finish(job, answer)

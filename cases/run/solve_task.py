@@ -1,118 +1,142 @@
-"""Carry out one task.  Whatever happens becomes a row: a failed task never ends a run."""
+"""Carry out one task.  Whatever happens becomes an answer: a failed task never ends a run."""
 
 import time
 from collections import deque
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 # This package ships no types.
 from threadpoolctl import threadpool_limits  # type: ignore[import-untyped]
 
+from cases.answers import Answer
+from cases.case import Task
 from cases.declare.methods import registered, shared_inputs
-from cases.declare.task import Task
-from cases.judgement.convergence.from_refinement import with_estimated_errors
-from cases.results.records.field_types import Scalar
-from cases.results.records.scene_run import SceneRun
-from cases.results.status import Status
+from cases.recording import fields_at, recorded
+from cases.run.apart import ProcessDied, TimeLimitReached, apart
 from cases.run.empty_caches import forget
-from cases.run.inside.points import fields_at
-from cases.run.recording import cost_record, curves, quantities, stage_records
-from cases.run.specification import specification
-from cases.run.time_limit import TimeLimitReached, time_limited
+from cases.run.from_refinement import with_estimated_errors
+from cases.run.keys import code, question
 from cases.run.timing import timed_warm
-from contact import ContactPath, NotConvergedError, Solution, UnsupportedSceneError
+from cases.verdicts import Status
+from contact import ContactPath, Method, NotConvergedError, Solution, UnsupportedSceneError
 from contact.records.errors import printable
 
 
-def solve(task: Task, key: str, time_limit: float = 0.0, *, estimates: bool = True) -> SceneRun:
-    """Return the row of ``task``: its numbers, or the status and the reason why there are none.
+@dataclass(frozen=True)
+class Job:
+    """A task with all that answers it: built where the run was started, solved anywhere.
+
+    Attributes:
+        task: what to solve.
+        method: with its settings.
+        question: hash of the scene and of the settings asked for.
+        code: hash of all else that the answer depends on.
+        estimated: whether a method that states no errors is refined for them, which takes many times its own time.
+    """
+
+    task: Task
+    method: Method
+    question: str
+    code: str
+    estimated: bool = False
+
+    def answer(self, status: Status = Status.PASS, reason: str = "") -> Answer:
+        """Return an answer without numbers, and why there are none."""
+        task = self.task
+        return Answer(
+            case=task.case,
+            scene=task.scene,
+            method=task.use.label,
+            variant=task.variant,
+            question=self.question,
+            code=self.code,
+            status=status,
+            reason="" if status is Status.PASS else printable(" ".join(reason.split())) or status.value,
+            shared=shared_inputs(self.method),
+        )
+
+
+def job_of(task: Task, *, estimates: bool = True) -> Job:
+    """Return the job of a task.
+
+    Raises:
+        InvalidInput: if there is no such method, or if it does not take its settings.
+    """
+    method = task.use.build()
+    for _ in range(task.refined):
+        method = method.refined()
+    foreign = (task.use.method or task.use.label) in registered()
+    return Job(task, method, question(task), code(task), estimates and foreign and not task.timed)
+
+
+def solve(job: Job, time_limit: float = 0.0) -> Answer:
+    """Return the answer of a job: its numbers, or the status and the reason why there are none.
 
     Args:
-        task: what to solve.
-        key: content key that the row carries.
-        time_limit: seconds; zero for no limit.
-        estimates: whether a method that states no errors is refined for them, which takes many times its own time.
+        job: what to solve.
+        time_limit: seconds, after which the process that solves is killed; zero solves in this process.
     """
+    if not time_limit:
+        return answered(job)
+    try:
+        answer: Answer = apart(answered, job, seconds=time_limit)
+    except TimeLimitReached:
+        return job.answer(Status.TIMEOUT, f"{job.task.use.label}: not finished after {time_limit:g} s")
+    except ProcessDied as error:
+        return job.answer(Status.INVALID, f"the process that solved it died: {error}")
+    return answer
+
+
+def answered(job: Job) -> Answer:
+    """Return the answer of a job, computed in this process."""
     try:
         # With one thread, times can be compared and sums repeat bit by bit.
-        with time_limited(time_limit), threadpool_limits(limits=1):
-            support = task.solver.supports(task.problem)
+        with threadpool_limits(limits=1):
+            support = job.method.supports(job.task.problem)
             if not support:
-                return without_numbers(task, key, Status.SKIP, getattr(support, "reason", "not supported"))
-            return _solved(task, key, estimates=estimates)
-    except TimeLimitReached:
-        return without_numbers(task, key, Status.TIMEOUT, f"{task.method}: not finished after {time_limit:g} s")
+                return job.answer(Status.SKIP, getattr(support, "reason", "not supported"))
+            return _solved(job)
     except UnsupportedSceneError as error:
-        return without_numbers(task, key, Status.SKIP, str(error))
+        return job.answer(Status.SKIP, str(error))
     except NotConvergedError as error:
-        return without_numbers(task, key, Status.INVALID, f"NotConvergedError: {error}")
+        return job.answer(Status.INVALID, f"NotConvergedError: {error}")
     except (Exception, SystemExit) as error:
-        # A solver that breaks in its own way becomes a row, too.
-        return without_numbers(task, key, Status.INVALID, f"{task.method} crashed: {type(error).__name__}: {error}")
+        # A solver that breaks in its own way becomes an answer, too.
+        return job.answer(Status.INVALID, f"{job.task.use.label} crashed: {type(error).__name__}: {error}")
 
 
-def _solved(task: Task, key: str, *, estimates: bool) -> SceneRun:
-    if task.timed or task.forgetful:
+def _solved(job: Job) -> Answer:
+    task, method = job.task, job.method
+    if task.timed or task.first:
         # This loads what the method imports on demand.
-        task.solver.solve(task.problem)
+        method.solve(task.problem)
         forget()
     start = time.perf_counter()
-    solutions = deque([_answer(task)], maxlen=1)
+    solutions = deque([_solution(task, method)], maxlen=1)
     cold = time.perf_counter() - start
-    samples = timed_warm(lambda: solutions.append(_answer(task))).samples if task.timed else ()
-    # The row of a timing run shows the stages of a warm solve.
+    samples = timed_warm(lambda: solutions.append(_solution(task, method))).samples if task.timed else ()
     solution = solutions[0]
-    if estimates and not task.timed and task.method in registered():
-        solution = _estimated(task, solution)
-    return SceneRun(
-        key=key,
-        scene=task.scene,
-        method=task.method,
-        settings=_settings(solution),
-        specification=specification(task),
-        status=Status.PASS,
-        reason="",
-        quantities=quantities(solution, task.sampling),
-        curves=curves(solution, task.sampling),
-        cost=cost_record(solution.cost),
-        stages=stage_records(solution.stages),
-        shared_inputs=shared_inputs(task.solver),
+    if job.estimated:
+        solution = with_estimated_errors(method, task.problem, solution)
+    settings = {k: v if isinstance(v, bool | int | float | str) else str(v) for k, v in solution.settings.items()}
+    cost = solution.cost
+    return replace(
+        job.answer(),
+        settings=settings,
+        quantities=recorded(solution, task.sampling),
+        seconds=cost.cpu_seconds,
+        wall_seconds=cost.wall_seconds,
+        memory=cost.peak_memory_bytes,
+        unknowns=cost.unknowns,
+        counters=dict(cost.counters),
         samples=samples,
-        cold_seconds=cold if task.timed else None,
+        cold_seconds=cold if task.timed else 0.0,
         notes=tuple(solution.notes),
     )
 
 
-def _answer(task: Task) -> Solution:
-    """The answer; where its time counts, the fields inside that are kept of it count too."""
-    solution = task.solver.solve(task.problem)
+def _solution(task: Task, method: Method) -> Solution:
+    """The solution; where its time counts, the fields inside that are kept of it count too."""
+    solution = method.solve(task.problem)
     if task.timed and task.sampling.inside and isinstance(solution, ContactPath):
         fields_at(solution, task.sampling)
     return solution
-
-
-def _estimated(task: Task, solution: Solution) -> Solution:
-    """The answer with errors from its own refinement; without, where that does not end within the time limit."""
-    try:
-        return with_estimated_errors(task.solver, task.problem, solution)
-    except TimeLimitReached:
-        note = "no errors stated; its own refinement did not end within the time limit"
-        return replace(solution, notes=(*solution.notes, note))
-
-
-def _settings(solution: Solution) -> dict[str, Scalar]:
-    plain = bool | int | float | str
-    return {name: value if isinstance(value, plain) else str(value) for name, value in solution.settings.items()}
-
-
-def without_numbers(task: Task, key: str, status: Status, reason: str) -> SceneRun:
-    """Return the row of a task that has no answer, and why."""
-    return SceneRun(
-        key=key,
-        scene=task.scene,
-        method=task.method,
-        settings={},
-        status=status,
-        reason=printable(" ".join(reason.split())) or status.value,
-        cost=None,
-        shared_inputs=shared_inputs(task.solver),
-    )

@@ -10,7 +10,7 @@ from pathlib import Path
 # This package ships no types.
 from threadpoolctl import threadpool_info  # type: ignore[import-untyped]
 
-from cases.results.records.run import Stamp
+from cases.runs import Stamp
 
 _PACKAGES = ("numpy", "scipy", "scikit-fem", "gmsh", "pyfftw", "h5py", "pydantic", "contact-verification")
 _SOURCE = Path(__file__).resolve().parent.parent

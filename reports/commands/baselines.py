@@ -4,29 +4,31 @@ from collections.abc import Collection
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from cases.declare.case import Case
-from cases.declare.foreign_methods import with_registered
+from cases.answers import Answer, Table
+from cases.case import Case
 from cases.declare.registry import load_cases, select
-from cases.declare.selection import nightly_only
-from cases.gate.accept import accept, refusals, refusals_beforehand
-from cases.gate.baseline import Baseline, read_baselines
+from cases.foreign import with_registered
+from cases.gate.accept import (
+    Change,
+    Proposal,
+    accept,
+    accepted_before,
+    propose,
+    refusals,
+    refusals_beforehand,
+)
+from cases.gate.baseline import read_baselines, relative_tolerance
 from cases.gate.gate import gate
-from cases.gate.ladders import accept_ladders, ladder_claims, read_ladders
-from cases.gate.proposal import BaselineChange, Proposal, propose
 from cases.gate.spread import measured_spreads
 from cases.gate.write_permission import write_conditions
-from cases.results.as_run import as_run
-from cases.results.files import read_run, require_run, write_verdicts
-from cases.results.records.claim import Kind
-from cases.results.records.run import CaseResult, RunResult
-from cases.results.records.scene_run import SceneRun
-from cases.results.status import ExitCode, exit_code
 from cases.run.lock import locked
 from cases.run.stamp import repository
+from cases.runs import Run, read_run, write_run
+from cases.verdicts import ExitCode, exit_code
 from contact import InvalidInput
+from reports import words
 from reports.commands.runs import show_verdict, write_summaries
 from reports.terminal import STYLES, console, show_table
-from reports.words import Table, small
 
 
 def run_gate(directory: Path, baselines: Path, *, methods: Collection[str], strict: bool, quiet: bool) -> int:
@@ -44,39 +46,27 @@ def run_gate(directory: Path, baselines: Path, *, methods: Collection[str], stri
     Raises:
         InvalidInput: if there is no run or no baseline.
     """
-    require_run(directory)
+    read_run(directory)
     with locked(directory):
         run = read_run(directory)
-        result = _gated(run, baselines, methods or run.methods)
-        write_verdicts(result, directory)
-        write_summaries(as_run(result), directory)
-    show_verdict(as_run(result), directory / "summary.md", quiet=quiet)
-    return exit_code(result.statuses, strict=strict) if result.complete else ExitCode.INTERRUPTED
+        result = _gated(run, baselines, methods or run.judged.methods)
+        write_run(result.judged, directory)
+        write_summaries(result, directory)
+    show_verdict(result, directory / "summary.md", quiet=quiet)
+    return exit_code(result.statuses, strict=strict) if result.judged.complete else ExitCode.INTERRUPTED
 
 
-def _gated(run: RunResult, baselines: Path, methods: Collection[str]) -> RunResult:
-    accepted = [_of_methods(b, methods) for b in read_baselines(baselines) if not methods or b.method in methods]
-    ladders = read_ladders(baselines)
-    if not accepted and not ladders:
+def _gated(run: Run, baselines: Path, methods: Collection[str]) -> Run:
+    accepted = read_baselines(baselines)
+    if not accepted:
         raise InvalidInput(f"no baselines in {baselines}; name their folder, or accept a case first")
-    library = load_cases() if run.suite != "ci" else {}
-    unwatched = {(case.name, *place) for case in library.values() for place in nightly_only(case)}
+    library = load_cases() if run.judged.suite != "ci" else {}
+    unwatched = {(case.name, *place) for case in library.values() for place in case.nightly_only()}
 
-    def watched(case: str, row: SceneRun) -> bool:
-        return (case, row.scene, row.method) not in unwatched and (not methods or row.method in methods)
+    def watched(answer: Answer) -> bool:
+        return (answer.case, answer.scene, answer.method) not in unwatched
 
-    return gate(run, accepted, ladders, watched)
-
-
-def _of_methods(baseline: Baseline, methods: Collection[str]) -> Baseline:
-    """The baseline without claims that need other methods than these; the whole of it if none is named.
-
-    An order may be measured against the answer of another method, which an accepted claim does not name.
-    """
-    if not methods or baseline.claims is None:
-        return baseline
-    own = (claim for claim in baseline.claims if set(claim.methods) <= set(methods) and claim.kind is not Kind.ORDER)
-    return replace(baseline, claims=tuple(own))
+    return gate(run, accepted, methods=methods, watched=watched)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -106,81 +96,65 @@ def accept_cases(names: list[str], request: AcceptRequest) -> None:
     Raises:
         InvalidInput: naming every case that may not be accepted and why; the others are written all the same.
     """
-    result = read_run(request.run)
-    solved_by = {row.method for case in result.cases for row in case.runs}
+    run = read_run(request.run)
+    solved_by = {answer.method for answer in run.answers}
     library = {name: with_registered(case, solved_by) for name, case in load_cases().items()}
-    ran = [case.name for case in result.cases]
+    ran = [case.name for case in run.judged.cases]
+    # Stress tests are accepted with their study; the code verification has no accepted numbers.
+    studies = [name for name in ran if name not in library and any(t.case == name for t in run.judged.stress_tests)]
     refused: list[str] = []
-    studies = [case for case in result.cases if case.ladders and case.name not in library]
-    for study in studies:
-        if not names or study.name in names:
-            _accept_ladders(study, result, request)
-    known = [name for name in names or ran if name not in {study.name for study in result.cases} - set(library)]
-    for case in select(library, names=known) if known else ():
-        if case.name not in ran:
-            raise InvalidInput(f"the run in {request.run} does not have {case.name}; run it first")
+    for name in names or [name for name in ran if name in library or name in studies]:
+        if name not in ran:
+            raise InvalidInput(f"the run in {request.run} does not have {name}; run it first")
         try:
-            _accept_case(case, result, request)
+            _accept(name, select(library, names=[name])[0] if name not in studies else None, run, request)
         except InvalidInput as error:
             refused.append(str(error))
     if refused:
         raise InvalidInput("\n".join(refused))
 
 
-def _accept_case(case: Case, result: RunResult, request: AcceptRequest) -> None:
-    ran, now, terminal = _watched(case, result), write_conditions(repository(), request.baselines), console()
-    reasons_against = refusals_beforehand(case.name, result, now)
-    if reasons_against:
-        raise InvalidInput(f"{case.name} is not accepted: {'; '.join(reasons_against)}")
-    terminal.print(f"{case.name}: repeating every solution with inputs one unit in the last place away ...")
-    spreads = measured_spreads(case, {(row.scene, row.method): row for row in ran.runs}, jobs=request.jobs)
-    proposal = propose(
-        ran, suites=case.suites, accepted=read_baselines(request.baselines), spreads=spreads, reason=request.reason
-    )
+def _accept(name: str, case: Case | None, run: Run, request: AcceptRequest) -> None:
+    """Accept a case, or a study of stress tests, which has no case."""
+    now, terminal = write_conditions(repository(), request.baselines), console()
+    if reasons_against := refusals_beforehand(name, run, now):
+        raise InvalidInput(f"{name} is not accepted: {'; '.join(reasons_against)}")
+    watched, spreads = run, dict[tuple[str, str, str], float]()
+    suites: tuple[str, ...] = ()
+    if case is not None:
+        terminal.print(f"{name}: repeating every solution with inputs one unit in the last place away ...")
+        watched, suites = _watched(case, run), case.suites
+        spreads = dict(measured_spreads(case, watched.answers, jobs=request.jobs))
+    before = accepted_before(request.baselines, name)
+    proposal = propose(watched, name, suites=suites, before=before, spreads=spreads, reason=request.reason)
     show_table(change_table(proposal), on=terminal)
-    refused = refusals(proposal, result, now, loosen=request.loosen)
-    for reason in refused:
+    for reason in refusals(proposal, run, now, loosen=request.loosen):
         terminal.print(f"refused: {reason}", style=STYLES["bad"])
     if request.write:
-        accept(request.baselines, proposal, result, now, loosen=request.loosen)
-        terminal.print(f"{case.name}: written to {request.baselines / case.name}", style=STYLES["good"])
+        accept(request.baselines, proposal, run, now, loosen=request.loosen)
+        terminal.print(f"{name}: written to {request.baselines}", style=STYLES["good"])
     else:
-        terminal.print(f"{case.name}: nothing written; say --write to write it", style=STYLES["warn"])
+        terminal.print(f"{name}: nothing written; say --write to write it", style=STYLES["warn"])
 
 
-def _accept_ladders(study: CaseResult, result: RunResult, request: AcceptRequest) -> None:
-    """Accept the ladders of a study, or say which rungs would be lost."""
-    now = write_conditions(repository(), request.baselines)
-    reasons_against = refusals_beforehand(study.name, result, now)
-    if reasons_against:
-        raise InvalidInput(f"{study.name} is not accepted: {'; '.join(reasons_against)}")
-    terminal = console()
-    for claim in ladder_claims(study, read_ladders(request.baselines)):
-        terminal.print(f"{claim.scene}, {claim.methods[0]}: {claim.message}", markup=False)
-    if request.write:
-        accept_ladders(request.baselines, study.ladders, loosen=request.loosen)
-        terminal.print(f"{study.name}: {len(study.ladders)} ladders written", style=STYLES["good"])
-    else:
-        terminal.print(f"{study.name}: nothing written; say --write to write it", style=STYLES["warn"])
-
-
-def _watched(case: Case, result: RunResult) -> CaseResult:
+def _watched(case: Case, run: Run) -> Run:
     """The case as it ran, without what only the nightly suite solves: what is accepted is that of the suite ci."""
-    ran, unwatched = result.case(case.name), nightly_only(case)
+    unwatched = case.nightly_only()
     at_night = {claim.name for claim in case.claims if claim.nightly}
-    claims = (claim for claim in ran.claims if claim.name not in at_night)
-    return replace(
-        ran,
-        runs=tuple(row for row in ran.runs if (row.scene, row.method) not in unwatched),
-        claims=tuple(c for c in claims if not any((c.scene, method) in unwatched for method in c.methods)),
+    verdicts = tuple(
+        verdict
+        for verdict in run.judged.verdicts
+        if verdict.claim not in at_night and not any((verdict.scene, m) in unwatched for m in verdict.methods)
     )
+    answers = Table(a for a in run.answers.of_case(case.name) if (a.scene, a.method) not in unwatched)
+    return Run(judged=replace(run.judged, verdicts=verdicts), answers=answers)
 
 
-def change_table(proposal: Proposal) -> Table:
+def change_table(proposal: Proposal) -> words.Table:
     """Old, new, the change in units of the tolerance and of U; new records are only counted."""
     changed = [change for change in proposal.changes if change.old is not None]
     new = len(proposal.changes) - len(changed)
-    return Table(
+    return words.Table(
         title=f"{proposal.case}: {len(changed)} changed, {new} new records",
         note="A tolerance is relative: max(10 x measured spread, 1e-12). U is the method's own numerical uncertainty.",
         heads=("method", "scene", "quantity", "old", "new", "unit", "in tolerances", "in U", "tolerance", "was"),
@@ -189,19 +163,20 @@ def change_table(proposal: Proposal) -> Table:
     )
 
 
-def _row(change: BaselineChange) -> tuple[str, ...]:
-    record, (old, new) = change.record, change.values
+def _row(change: Change) -> tuple[str, ...]:
+    (shown, *_), (old, new) = [q for q in (change.new, change.old) if q is not None], change.values
+    now, was = ("" if q is None else words.small(relative_tolerance(q)) for q in (change.new, change.old))
     return (
         change.method,
-        record.scene,
-        record.quantity,
+        change.scene,
+        change.quantity,
         "" if old is None else f"{old:.17g}",
         "withdrawn" if change.new is None else "" if new is None else f"{new:.17g}",
-        record.unit,
+        shown.unit,
         _ratio(change.in_tolerances),
-        _ratio(change.in_uncertainty),
-        f"{small(change.new.tolerance)}{' LOOSENED' if change.loosens else ''}" if change.new else "",
-        small(change.old.tolerance) if change.old else "",
+        _ratio(change.in_stated_errors),
+        f"{now}{' LOOSENED' if change.loosens else ''}" if now else "",
+        was,
     )
 
 

@@ -8,23 +8,20 @@ from pathlib import Path
 from rich.padding import Padding
 from rich.text import Text
 
-from cases.declare.against import against, beside
-from cases.declare.case import USUAL_SUITES, Case
-from cases.declare.foreign.settings import Settings, ladder, read_settings, with_settings
-from cases.declare.foreign_methods import with_registered
+from cases.case import USUAL_SUITES, Case
 from cases.declare.methods import check_known, registered
 from cases.declare.registry import load_cases, select
-from cases.declare.selection import only_methods
+from cases.declare.settings import Settings, ladder, read_settings, with_settings
+from cases.files import write_whole
+from cases.foreign import against, beside, with_registered
 from cases.measurements.ladders.ladder_study import CLIMBERS, chosen, ladder_case
 from cases.measurements.ladders.ladder_table import LADDERS
 from cases.measurements.suites import SuiteStudies, run_of
-from cases.results.as_run import as_run
-from cases.results.files import read_run, require_run, write_whole
-from cases.results.status import ExitCode, Status, exit_code
 from cases.run.executors import by_name
 from cases.run.lock import locked
 from cases.run.runner import RunOptions, run_cases
-from cases.runs import Run
+from cases.runs import Run, read_run
+from cases.verdicts import ExitCode, Status, exit_code
 from contact import InvalidInput
 from contact.records.extras import missing_extra
 from reports import comparison
@@ -89,7 +86,7 @@ def _cases(asked: Asked, suite: str) -> Sequence[Case]:
         return [beside(case, methods, REFEREE) for case in cases]
     # Of a suite those cases run that have one of the methods.
     solved = [case for case in cases if not methods or any(use.label in methods for use in case.methods)]
-    return [only_methods(case, methods) for case in ((not asked.names and solved) or cases)]
+    return [case.only_methods(methods) for case in ((not asked.names and solved) or cases)]
 
 
 def _carried_out(cases: Sequence[Case], options: RunOptions, studied: bool, *, quiet: bool) -> Run:
@@ -98,7 +95,7 @@ def _carried_out(cases: Sequence[Case], options: RunOptions, studied: bool, *, q
         solved = studies.begin if studied else options.solved
         with RunDisplay(console(), quiet=quiet) as display:
             result = run_cases(cases, dataclasses.replace(options, progress=display, solved=solved))
-        return as_run(studies.join(result, options.out) if studied and result.complete else result)
+        return studies.join(result, options.out) if studied and result.judged.complete else result
 
 
 def show_verdict(run: Run, page: Path, *, quiet: bool) -> None:
@@ -177,7 +174,7 @@ def cost(names: list[str], options: RunOptions, *, methods: list[str], settings:
     terminal = console()
     with locked(options.out):
         with RunDisplay(terminal, quiet=quiet) as display:
-            result = as_run(run_cases(timed, dataclasses.replace(options, only_costs=True, progress=display)))
+            result = run_cases(timed, dataclasses.replace(options, only_costs=True, progress=display))
         write_pages(result, options.out)
     for table in (shortest_times(result),):
         if table is not None:
@@ -206,7 +203,7 @@ def stress(names: list[str], methods: list[str], options: RunOptions, *, quiet: 
             terminal.print(line, soft_wrap=True)
 
     with locked(options.out):
-        result = as_run(run_of((ladder_case(plans, climbers, progress=say) for _ in range(1)), options.out))
+        result = run_of([ladder_case(plans, climbers, progress=say)], options.out)
         write_pages(result, options.out)
     terminal.print(f"report: {page_of(options.out)}")
     return exit_code(result.statuses)
@@ -214,23 +211,14 @@ def stress(names: list[str], methods: list[str], options: RunOptions, *, quiet: 
 
 def rebuild(directory: Path, *, single_file: bool = False) -> int:
     """Write the pages of the run in `directory` again; return 5 if nothing ran in it, else 0."""
-    require_run(directory)
+    read_run(directory)
     with locked(directory):
-        run = read(directory)
+        run = read_run(directory)
         write_pages(run, directory, single_file=single_file)
     words, tone = headline(run)
     console().print(words, style=STYLES[tone])
     console().print(f"report: {page_of(directory)}")
     return _code(run)
-
-
-def read(directory: Path) -> Run:
-    """The run in a folder.
-
-    Raises:
-        InvalidInput: if there is none, or it cannot be read.
-    """
-    return as_run(read_run(directory))
 
 
 def _code(*runs: Run) -> ExitCode:
@@ -269,7 +257,7 @@ def compare_runs(first: Path, second: Path) -> int:
     """Compare the run in `second` with that in `first`; the page lands beside the second; 5 if nothing ran in one."""
     from reports.page import write_comparison  # noqa: PLC0415 - an extra brings what it draws with
 
-    runs = read(first), read(second)
+    runs = read_run(first), read_run(second)
     claims, numbers = comparison.changed_claims(*runs), comparison.changed_numbers(*runs)
     changes = comparison.worst_first(claims + numbers)
     words, tone = comparison.headline(claims, numbers)

@@ -13,7 +13,7 @@ scene = Scene(layer=layer, indenter=Cone(slope=0.1), loading=ContactRadii([1e-3]
 # What an elastic answer of MDR computes with is numpy and the compiled files of LAPACK and of special functions.
 LAPACK = "scipy.linalg._flapack"
 FEM = ("skfem", "fem_reference")
-FAR = ("matplotlib", "h5py", "typer", "rich", "pyfftw", "numpy.ma", "contact.files.scene_file", *FEM)
+FAR = ("matplotlib", "h5py", "typer", "rich", "pyfftw", "numpy.ma", *FEM)
 
 
 def loaded_after(code):
@@ -51,7 +51,7 @@ def test_scipy_loads_after_its_compiled_file(later):
 
 
 def test_lapack_is_scipys_where_its_file_is_not_found_alone():
-    told = "from contact.answer.compiled_files import lapack; import importlib.util as u; u.find_spec = lambda *_: None"
+    told = "from bem.compiled_files import lapack; import importlib.util as u; u.find_spec = lambda *_: None"
     assert "scipy.linalg" in loaded_after(f"{told}; assert lapack().dpotrf([[4.0]])[0][0, 0] == 2.0")
 
 
@@ -59,7 +59,7 @@ def test_a_command_that_solves_loads_neither_storage_nor_scipys_linear_algebra()
     run = "from typer.testing import CliRunner; from reports.command_line import app; "
     run += "assert CliRunner().invoke(app, ['solve', 'examples/cartilage.toml']).exit_code == 0"
     loaded = loaded_after(run)
-    assert not loaded & {"h5py", "matplotlib", "skfem", "numpy.ma", "cases.results.records.scene_run"}
+    assert not loaded & {"h5py", "matplotlib", "skfem", "numpy.ma", "cases.answers"}
     assert not loaded & {"scipy.linalg", "scipy.sparse", "scipy.optimize", "scipy.special"}
 
 

@@ -5,8 +5,7 @@ import dataclasses
 import pytest
 
 from cases.answers import NAME, Table, read_answers
-from cases.results.as_run import as_run
-from cases.runs import Run, read_run, write_run
+from cases.runs import RUN, Run, read_run, write_run
 from cases.verdicts import Status
 from contact import InvalidInput
 from tests.cases.example_run import example_run
@@ -14,7 +13,7 @@ from tests.cases.example_run import example_run
 
 @pytest.fixture
 def run() -> Run:
-    return as_run(example_run())
+    return example_run()
 
 
 def written(run, folder):
@@ -41,7 +40,7 @@ def test_a_torn_last_line_is_left_out(run, tmp_path):
 def test_a_damaged_line_is_refused_by_its_place(run, tmp_path, damage):
     path = written(run, tmp_path) / NAME
     path.write_text(damage + "\n" + path.read_text())
-    with pytest.raises(InvalidInput, match="line 1, is no answer"):
+    with pytest.raises(InvalidInput, match="line 1: "):
         list(read_answers(path))
 
 
@@ -58,3 +57,15 @@ def test_a_later_answer_takes_the_place_of_an_earlier_one(run):
     table = Table([first, dataclasses.replace(first, status=Status.TIMEOUT, reason="late")])
     assert len(table) == 1
     assert table.get(first.identity).status is Status.TIMEOUT
+
+
+def test_a_damaged_run_is_refused_with_its_place_and_remedy(run, tmp_path):
+    path = written(run, tmp_path) / RUN
+    path.write_text(path.read_text().replace('"PASS"', '"SURE"', 1))
+    with pytest.raises(InvalidInput, match=r"run.json: .*SURE.*run the cases again"):
+        read_run(tmp_path)
+
+
+def test_a_folder_without_a_run_is_refused(tmp_path):
+    with pytest.raises(InvalidInput, match=r"no run.json in .*; give the directory of a finished run"):
+        read_run(tmp_path)

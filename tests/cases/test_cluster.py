@@ -11,15 +11,15 @@ from pathlib import Path
 
 import pytest
 
-from cases.results.files import read_run
-from cases.results.status import Status
+from cases.run import runner
 from cases.run.executors import by_name, serial
 from cases.run.runner import RunOptions, run_cases
-from cases.run.store import TaskStore
+from cases.runs import read_run
+from cases.verdicts import Status
 from contact import InvalidInput
 from reports import command_line
 from tests.cases.fake_case import SLOW, fake_case, spoiled
-from tests.cases.test_runner import strip_times
+from tests.cases.test_runner import numbers
 
 distributed = pytest.importorskip("distributed", reason="the optional extra 'cluster' is not installed")
 
@@ -48,16 +48,16 @@ def test_a_killed_worker_loses_nothing(cluster, tmp_path):
     result = run_cases([fake_case()], options)
     alone = run_cases([fake_case()], RunOptions(out=tmp_path / "alone", executor=serial))
     assert not victims
-    assert result.complete
-    assert strip_times(alone, result).cases == alone.cases
+    assert result.judged.complete
+    assert numbers(result) == numbers(alone)
 
 
 def test_a_task_beyond_its_time_is_a_timeout_and_its_worker_goes_on(cluster, tmp_path):
     slow = spoiled(SLOW, plant="compute")
     options = RunOptions(out=tmp_path, executor=by_name(cluster.scheduler_address), time_limit=0.3)
     result = run_cases([fake_case(slow=slow, ladder={"cell": 0.1})], options)
-    assert {row.status for row in result.cases[0].runs if row.method == "slow"} == {Status.TIMEOUT}
-    assert {row.status for row in result.cases[0].runs if row.method == "fast"} == {Status.PASS}
+    assert {row.status for row in result.answers if not row.variant and row.method == "slow"} == {Status.TIMEOUT}
+    assert {row.status for row in result.answers if not row.variant and row.method == "fast"} == {Status.PASS}
 
 
 def test_both_workers_take_part(cluster, tmp_path):
@@ -108,8 +108,8 @@ def test_a_killed_scheduler_is_one_line_and_a_run_that_can_go_on(scheduler, tmp_
     listen = killing(process, after=3)
     options = RunOptions(out=tmp_path / "out", executor=by_name(address), progress=listen)
     stopped = run_cases([fake_case()], options)
-    assert not stopped.complete
-    assert read_run(tmp_path / "out") == stopped
+    assert not stopped.judged.complete
+    assert read_run(tmp_path / "out").judged == stopped.judged
     (line,) = (event.reason for event in listen.events if event.kind == "stopped")
     assert (
         line
@@ -117,23 +117,23 @@ def test_a_killed_scheduler_is_one_line_and_a_run_that_can_go_on(scheduler, tmp_
     )
     again = []
     whole = run_cases([fake_case()], replace(options, executor=serial, resume=True, progress=again.append))
-    assert whole.complete
+    assert whole.judged.complete
     assert [event.kind for event in again].count("reused") >= 3
     alone = run_cases([fake_case()], RunOptions(out=tmp_path / "alone", executor=serial))
-    assert strip_times(alone, whole).cases == alone.cases
+    assert numbers(whole) == numbers(alone)
 
 
 def test_the_command_ends_as_interrupted_without_a_traceback(scheduler, tmp_path, monkeypatch, capfd):
     address, process = scheduler
     case = fake_case()
     monkeypatch.setattr("reports.commands.runs.load_cases", lambda: {case.name: case})
-    put = TaskStore.put
+    finish = runner._Run.finish
 
-    def put_and_kill(*arguments):
-        put(*arguments)
+    def finish_and_kill(*arguments, **more):
+        finish(*arguments, **more)
         process.kill()
 
-    monkeypatch.setattr(TaskStore, "put", put_and_kill)
+    monkeypatch.setattr(runner._Run, "finish", finish_and_kill)
     assert command_line.run(["run", "--executor", address, "--out", str(tmp_path / "out")]) == 2
     printed = "".join(capfd.readouterr())
     assert "Traceback" not in printed
@@ -145,12 +145,3 @@ def test_no_scheduler_at_an_address_is_one_line(tmp_path, monkeypatch):
     with pytest.raises(InvalidInput, match=r"no Dask scheduler answers at tcp://127\.0\.0\.1:9") as error:
         run_cases([fake_case()], RunOptions(out=tmp_path, executor=by_name("tcp://127.0.0.1:9")))
     assert str(error.value).isprintable()
-
-
-# -- campaigns -------------------------------------------------------------------------------------------------------
-
-
-def slowly(numbers):
-    """Numbers that take a while."""
-    time.sleep(0.01 * len(numbers))
-    return list(numbers)

@@ -9,7 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cases.results.files import write_run, write_whole
+from cases.files import write_whole
+from cases.runs import write_run
 from contact import InvalidInput
 from contact.files.storage import read_tree, write_tree
 from tests.cases.example_run import example_run
@@ -34,7 +35,7 @@ def full_disk(monkeypatch):
         ("page.html", lambda folder: write_whole(folder / "page.html", "x" * 1000)),
         ("picture.png", lambda folder: write_whole(folder / "picture.png", b"x" * 1000)),
         ("tree.h5", lambda folder: write_tree(folder / "tree.h5", {"a": np.zeros(100)})),
-        ("results.json", lambda folder: write_run(example_run(), folder)),
+        ("run.json", lambda folder: write_run(example_run().judged, folder)),
     ],
 )
 def test_a_full_disk_is_one_line_with_the_path_and_leaves_nothing(name, write, tmp_path):
@@ -64,7 +65,7 @@ LIMITED = """
 import resource, signal, sys
 from pathlib import Path
 import numpy as np
-from cases.results.files import write_whole
+from cases.files import write_whole
 from contact import InvalidInput
 from contact.files.storage import write_tree
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)

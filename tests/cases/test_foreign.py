@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from cases.declare import methods
-from cases.declare.foreign_methods import LARGEST_CLAIM, claimed_accuracy, with_registered
 from cases.declare.guarded_method import BrokenMethodError, GuardedMethod, build_guarded
+from cases.foreign import LARGEST_CLAIM, claimed_accuracy, with_registered
 from contact import (
     Cone,
     ContactRadii,

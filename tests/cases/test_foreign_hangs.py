@@ -5,11 +5,11 @@ from importlib.metadata import EntryPoint
 import pytest
 
 from cases.declare import methods
-from cases.declare.against import against
-from cases.results.status import Status
+from cases.foreign import against
 from cases.run import runner
 from cases.run.executors import serial
 from cases.run.runner import FOREIGN_TIME_LIMIT, RunOptions, run_cases
+from cases.verdicts import Status
 from tests.cases.fake_case import fake_case
 from tests.cases.fake_method import FakeHertz
 
@@ -32,21 +32,22 @@ class Leaving(FakeHertz):
 @pytest.fixture
 def rows(monkeypatch, tmp_path):
     """Rows of a registered class beside the case's fast method."""
-    monkeypatch.setattr(runner, "FOREIGN_TIME_LIMIT", 0.2)
 
-    def rows(kind, **options):
+    def rows(kind, default=0.5, **options):
+        monkeypatch.setattr(runner, "FOREIGN_TIME_LIMIT", default)
         entry = EntryPoint(name="mine", value=f"{__name__}:{kind.__name__}", group=methods.ENTRY_POINT_GROUP)
         monkeypatch.setattr(methods, "entry_points", lambda group: [entry])
         cases = against([fake_case()], ["mine"], ["fast"])
         result = run_cases(cases, RunOptions(out=tmp_path, executor=serial, **options))
-        return {method: [r for r in result.cases[0].runs if r.method == method] for method in ("mine", "fast")}
+        own = result.answers.of_case("fake_hertz")
+        return {method: [answer for answer in own if answer.method == method] for method in ("mine", "fast")}
 
     return rows
 
 
 def test_a_hang_ends_by_default_and_is_named(rows):
     found = rows(Hanging)
-    assert {(row.status, row.reason) for row in found["mine"]} == {(Status.TIMEOUT, "mine: not finished after 0.2 s")}
+    assert {(row.status, row.reason) for row in found["mine"]} == {(Status.TIMEOUT, "mine: not finished after 0.5 s")}
     assert {row.status for row in found["fast"]} == {Status.PASS}
 
 
@@ -56,7 +57,7 @@ def test_the_limit_is_five_minutes_and_another_one_may_be_told(rows):
 
 
 def test_leaving_the_program_is_a_crash_that_is_named(rows):
-    found = rows(Leaving)
+    found = rows(Leaving, default=60.0)
     assert {(row.status, row.reason) for row in found["mine"]} == {
         (Status.INVALID, "mine crashed: SystemExit: licence not found")
     }

@@ -7,17 +7,14 @@ from importlib.metadata import EntryPoint
 
 import pytest
 
+from cases.claims import Agree
 from cases.declare import methods
-from cases.declare.foreign_methods import with_registered
 from cases.declare.registry import load_cases
-from cases.declare.selection import in_suite, only_methods
-from cases.judgement.claims.agreement import Agreement
-from cases.judgement.claims.declared import PerMethod
-from cases.judgement.claims.field_agreement import FieldAgreement
+from cases.foreign import with_registered
 
 NAMES = ("stranger_a", "stranger_b", "stranger_c", "stranger_d")
 LIBRARY = sorted(load_cases())
-COMPARISONS = (Agreement, FieldAgreement)
+COMPARISONS = (Agree,)
 
 
 @pytest.fixture
@@ -98,25 +95,24 @@ def test_a_chosen_method_is_asked_the_same_whatever_else_is_installed(install, n
     case = load_cases()[name]
     chosen = ["mdr", "stranger_b"]
     install(4)
-    among_four = only_methods(in_suite(with_registered(case), suite), chosen)
-    assert {task.method for task in among_four.tasks() if task.method in NAMES} <= {"stranger_b"}
-    alone = only_methods(in_suite(with_registered(case, chosen), suite), chosen)
-    assert [stranger for stranger in NAMES if stranger in repr(alone)] == ["stranger_b"]
+    among_four = with_registered(case).in_suite(suite).only_methods(chosen)
+    assert {task.use.label for task in among_four.tasks() if task.use.label in NAMES} <= {"stranger_b"}
+    alone = with_registered(case, chosen).in_suite(suite).only_methods(chosen)
+    assert {use.label for use in alone.methods} & set(NAMES) == {"stranger_b"}
     assert asked_of(among_four) == asked_of(alone)
 
 
 def asked_of(case):
     """Claims with what they ask of the methods that are left."""
-    labels = [use.label for use in case.methods]
     return {
         (
             claim.name,
-            claim.scenes,
-            label,
-            claim.tolerance_of(label) if isinstance(claim, PerMethod) else claim.tolerance,
+            scene.name,
+            use.label,
+            claim.tolerance_of(use.label),
         )
         for claim in case.claims
-        for label in labels
+        for scene, use in claim.places(case)
     }
 
 

@@ -4,9 +4,8 @@ import dataclasses
 
 import pytest
 
+from cases.claims import Equal
 from cases.declare.registry import load_cases
-from cases.declare.selection import in_suite, nightly_only, only_methods
-from cases.judgement.claims.exact import Exact
 from contact import InvalidInput
 from tests.cases.fake_case import SLOW, fake_case
 
@@ -22,8 +21,8 @@ def places(case, kind=""):
         (claim.name, scene.name, label)
         for claim in case.claims
         if claim.kind == kind or not kind
-        for scene in claim.scenes_of(case)
-        for label in claim.labels(case, scene)
+        for scene, use in claim.places(case)
+        for label in claim.labels(use)
     }
 
 
@@ -31,7 +30,7 @@ def test_a_scene_of_other_methods_alone_is_left_out_with_its_claims():
     case = fake_case()
     only_slow = dataclasses.replace(case.scenes[1], methods=(SLOW,))
     case = dataclasses.replace(case, scenes=(case.scenes[0], only_slow), claims=case.claims[-1:])
-    narrowed = only_methods(case, ["fast"])
+    narrowed = case.only_methods(["fast"])
     assert [scene.name for scene in narrowed.scenes] == [case.scenes[0].name]
     assert [use.label for use in narrowed.methods] == ["fast"]
 
@@ -39,36 +38,36 @@ def test_a_scene_of_other_methods_alone_is_left_out_with_its_claims():
 def test_a_nightly_method_is_missing_in_ci_only_where_it_is_declared():
     case = with_a_nightly_method()
     night = case.scenes[1].name
-    assert in_suite(case, "nightly").scenes == in_suite(case, "").scenes == case.scenes
-    lost = {(task.scene, task.method) for task in case.tasks()} - {
-        (task.scene, task.method) for task in in_suite(case, "ci").tasks()
+    assert case.in_suite("nightly").scenes == case.in_suite("").scenes == case.scenes
+    lost = {(task.scene, task.use.label) for task in case.tasks()} - {
+        (task.scene, task.use.label) for task in case.in_suite("ci").tasks()
     }
-    assert lost == {(night, "slow")} == nightly_only(case)
+    assert lost == {(night, "slow")} == case.nightly_only()
 
 
 def test_a_nightly_claim_is_left_to_the_nightly_suite():
     case = fake_case()
     last = dataclasses.replace(case.claims[-1], nightly=True)
     case = dataclasses.replace(case, claims=(*case.claims[:-1], last))
-    assert last.name not in {claim.name for claim in in_suite(case, "ci").claims}
-    assert in_suite(case, "nightly").claims == case.claims
+    assert last.name not in {claim.name for claim in case.in_suite("ci").claims}
+    assert case.in_suite("nightly").claims == case.claims
 
 
 def test_ci_loses_no_claim_that_its_methods_can_answer():
     case = with_a_nightly_method()
     night = case.scenes[1].name
     exact = {place for place in places(case, "exact") if place[1:] != (night, "slow")}
-    assert places(in_suite(case, "ci"), "exact") == exact
-    assert not {place for place in places(in_suite(case, "ci"), "agreement") if place[1] == night}
+    assert places(case.in_suite("ci"), "exact") == exact
+    assert not {place for place in places(case.in_suite("ci"), "agreement") if place[1] == night}
 
 
 def test_a_claim_that_names_its_methods_keeps_those_that_are_left_somewhere():
     case = with_a_nightly_method()
-    claim = next(claim for claim in case.claims if isinstance(claim, Exact))
+    claim = next(claim for claim in case.claims if isinstance(claim, Equal))
     named = dataclasses.replace(case, claims=(dataclasses.replace(claim, methods=("fast", "slow")),))
-    (left,) = in_suite(named, "ci").claims
-    assert left.methods == ("fast", "slow")
-    assert left.scenes_of(case) == claim.scenes_of(case)
+    small = named.in_suite("ci")
+    expected = places(named) - {(claim.name, case.scenes[1].name, "slow")}
+    assert places(small) == expected
 
 
 def test_an_unknown_nightly_method_is_refused():
@@ -81,7 +80,7 @@ def test_an_unknown_nightly_method_is_refused():
 @pytest.mark.parametrize("name", sorted(load_cases()))
 def test_ci_judges_each_case_of_the_library_by_every_method_the_case_has(name):
     case = load_cases()[name]
-    small = in_suite(case, "ci")
-    everywhere = {task.method for task in small.tasks()}
+    small = case.in_suite("ci")
+    everywhere = {task.use.label for task in small.tasks()}
     assert everywhere >= {use.label for use in case.methods}
     assert {claim.name for claim in small.claims} <= {claim.name for claim in case.claims}

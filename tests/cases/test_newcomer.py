@@ -4,14 +4,11 @@ from importlib.metadata import EntryPoint
 
 import pytest
 
+from cases.claims import Agree, Equal, Law, Zero
+from cases.convergence import Order
 from cases.declare import methods
-from cases.declare.foreign_methods import with_foreign_methods, with_registered
 from cases.declare.registry import load_cases
-from cases.judgement.claims.agreement import Agreement
-from cases.judgement.claims.changed_scenes import ScalingLaw
-from cases.judgement.claims.exact import Exact
-from cases.judgement.claims.order import Order
-from cases.judgement.claims.own_laws import Residual
+from cases.foreign import with_foreign_methods, with_registered
 from contact import InvalidInput
 from tests.cases.fake_case import fake_case
 
@@ -31,46 +28,46 @@ def register(monkeypatch):
 
 def test_claims_about_single_methods_extend_to_the_newcomer():
     case = with_foreign_methods(fake_case(), {"newcomer": 0.0})
-    (exact,), (twin,) = claims_of(case, Exact), claims_of(case, ScalingLaw)
+    (exact,), (twin,) = claims_of(case, Equal), claims_of(case, Law)
     assert exact.methods == ("fast", "newcomer")
-    assert twin.labels(case, case.scenes[0]) == ("fast", "slow", "newcomer")
+    assert [use.label for scene, use in twin.places(case) if scene is case.scenes[0]] == ["fast", "slow", "newcomer"]
 
 
 def test_it_is_compared_with_both_methods_of_the_case():
     case = with_foreign_methods(fake_case(), {"newcomer": 0.0})
-    compared = {(claim.fast, claim.reference) for claim in claims_of(case, Agreement)}
+    compared = {(claim.fast, claim.reference) for claim in claims_of(case, Agree)}
     assert compared == {("fast", "slow"), ("newcomer", "fast"), ("newcomer", "slow")}
 
 
 @pytest.mark.parametrize(("claimed", "exact", "fast"), [(1e-3, 1e-10, 1e-5), (1e-12, 1e-11, 1e-11), (0.0, 1e-10, 1e-5)])
 def test_a_claimed_accuracy_tightens_and_never_loosens(claimed, exact, fast):
     case = with_foreign_methods(fake_case(), {"newcomer": claimed})
-    (closed_form,) = claims_of(case, Exact)
+    (closed_form,) = claims_of(case, Equal)
     assert closed_form.tolerance_of("newcomer") == pytest.approx(exact, rel=1e-12, abs=0.0)
     assert closed_form.tolerance_of("fast") == 1e-10
-    tolerances = {(claim.fast, claim.reference): claim.tolerance for claim in claims_of(case, Agreement)}
+    tolerances = {(claim.fast, claim.reference): claim.tolerance for claim in claims_of(case, Agree)}
     assert tolerances["newcomer", "fast"] == pytest.approx(fast, rel=1e-12, abs=0.0)
     assert tolerances["newcomer", "slow"] == tolerances["fast", "slow"] == 1e-5
 
 
 def test_without_a_claimed_accuracy_it_meets_the_widest_tolerance_of_the_others():
     case = fake_case()
-    (exact,) = claims_of(case, Exact)
+    (exact,) = claims_of(case, Equal)
     from dataclasses import replace
 
     wide = replace(exact, tolerances={"fast": 1e-5})
     case = with_foreign_methods(replace(case, claims=(wide,)), {"newcomer": 0.0})
-    assert claims_of(case, Exact)[0].tolerance_of("newcomer") == 1e-5
+    assert claims_of(case, Equal)[0].tolerance_of("newcomer") == 1e-5
 
 
 def test_orders_and_residuals_stay_with_the_methods_they_belong_to():
     from dataclasses import replace
 
     case = fake_case()
-    (twin,) = claims_of(case, ScalingLaw)
-    residual = Residual(name="energy", quantity="energy_residual", tolerance=1e-8, reason=twin.reason)
+    (twin,) = claims_of(case, Law)
+    residual = Zero(name="energy", quantity="energy_residual", tolerance=1e-8, why=twin.why)
     case = with_foreign_methods(replace(case, claims=(*case.claims, residual)), {"newcomer": 0.0})
-    assert claims_of(case, Residual)[0].methods == ("fast", "slow")
+    assert claims_of(case, Zero)[0].methods == ("fast", "slow")
     assert [order.method for order in claims_of(case, Order)] == ["slow"]
 
 

@@ -3,7 +3,7 @@ import math
 import numpy as np
 import pytest
 
-from cases.judgement.rules.norms import relative_difference, ring_load_difference, ring_quadrature
+from cases.norms import relative_difference, ring_load_difference, ring_quadrature
 from contact import InvalidInput
 
 RINGS = ring_quadrature([0.0, 0.5, 1.0], nodes=12)

@@ -2,34 +2,34 @@ import dataclasses
 
 import pytest
 
-from cases.declare.case import Case
+from cases.case import Case
+from cases.claims import Equal
 from cases.declare.methods import MethodUse, build, method_names
 from cases.declare.registry import by_name, load_cases, select
-from cases.judgement.claims.exact import Exact
-from cases.results.records.claim import Origin
+from cases.verdicts import Origin
 from contact import InvalidInput
 from reports.command_line import run
-from tests.cases.fake_case import FAST, REASON, STATED, case_scene, fake_case, hertz_force
+from tests.cases.fake_case import FAST, STATED, WHY, case_scene, fake_case, hertz_force
 
 
 def claim(**changes):
-    stated = {"name": "c", "quantity": "normal_force", "tolerance": 1e-10, "expected": hertz_force, **STATED}
-    return Exact(**{**stated, **changes})
+    stated = {"name": "c", "quantity": "normal_force", "tolerance": 1e-10, "to": hertz_force, **STATED}
+    return Equal(**{**stated, **changes})
 
 
 def case(**changes):
-    return dataclasses.replace(fake_case(), **{"figures": (), "claims": (claim(),), **changes})
+    return dataclasses.replace(fake_case(), **{"claims": (claim(),), **changes})
 
 
-@pytest.mark.parametrize("what", ["because", "derived_from", "source"])
+@pytest.mark.parametrize("what", ["because", "tolerance", "source"])
 def test_a_claim_without_a_reason_is_refused(what):
     with pytest.raises(InvalidInput, match=f"{what} is empty"):
-        dataclasses.replace(REASON, **{what: "  "})
+        dataclasses.replace(WHY, **{what: "  "})
 
 
 @pytest.mark.parametrize("what", ["name", "quantity"])
 def test_a_claim_about_nothing_is_refused(what):
-    with pytest.raises(InvalidInput, match=f"{what} is empty"):
+    with pytest.raises(InvalidInput, match="say what is claimed of what"):
         claim(**{what: "  "})
 
 

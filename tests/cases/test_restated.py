@@ -5,14 +5,12 @@ from importlib.metadata import EntryPoint
 import numpy as np
 import pytest
 
+from cases.claims import Agree
 from cases.declare import methods
-from cases.declare.against import against, beside
-from cases.declare.foreign.restated import SUFFIX
-from cases.declare.foreign_methods import with_foreign_methods
-from cases.judgement.claims.agreement import Agreement
-from cases.results.status import Status
+from cases.foreign import SUFFIX, against, beside, with_foreign_methods
 from cases.run.executors import serial
 from cases.run.runner import RunOptions, run_cases
+from cases.verdicts import Status
 from contact import ContactPath, IndentationDepths, StageLog, Supported, Unsupported
 from tests.cases.fake_case import RADII, fake_case
 
@@ -73,7 +71,7 @@ def test_twins_prescribe_the_depths_of_the_radii(register):
         assert "MDR" in scene.parameters["restated"]
     asked = [claim for claim in wider.claims if set(claim.scenes) & {scene.name for scene in twins}]
     assert asked
-    assert all(isinstance(claim, Agreement) and "by_depth" in (claim.fast, claim.reference) for claim in asked)
+    assert all(isinstance(claim, Agree) and "by_depth" in (claim.fast, claim.reference) for claim in asked)
     assert {claim.quantity for claim in asked} == {"normal_force"}
 
 
@@ -94,9 +92,9 @@ def test_a_wrong_force_fails_by_its_own_estimated_error(register, tmp_path):
     wider = with_foreign_methods(fake_case(fast=mdr), {"by_depth": 0.0})
     case = beside(wider, ["by_depth"], "fast")
     result = run_cases([case], RunOptions(out=tmp_path / "out", executor=serial, jobs=1, timing=False))
-    judged = [c for c in result.cases[0].claims if c.scene.endswith(SUFFIX) and "by_depth" in c.methods]
+    judged = [c for c in result.judged.verdicts if c.scene.endswith(SUFFIX) and "by_depth" in c.methods]
     assert judged
     assert {claim.status for claim in judged} == {Status.FAIL}
-    assert judged[0].observed == pytest.approx(FORCE_IS_WRONG_BY, rel=1e-3, abs=0.0)
-    run = next(run for run in result.cases[0].runs if run.method == "by_depth" and run.solved)
+    assert judged[0].error == pytest.approx(FORCE_IS_WRONG_BY, rel=1e-3, abs=0.0)
+    run = next(answer for answer in result.answers if answer.method == "by_depth" and answer.solved)
     assert any(note.startswith("errors estimated from its own refinement") for note in run.notes)

@@ -10,10 +10,10 @@ from pathlib import Path
 
 import pytest
 
-from cases.results.files import read_run
 from cases.run.executors import serial
 from cases.run.lock import OWNER_NAME, locked
 from cases.run.runner import RunOptions, run_cases
+from cases.runs import read_run
 from contact import InvalidInput
 from tests.cases.fake_case import fake_case
 
@@ -52,7 +52,7 @@ def test_a_second_run_is_refused_before_anything_is_solved_and_the_first_loses_n
     with other_process(tmp_path), pytest.raises(InvalidInput, match="another run works in"):
         run_cases([fake_case(name="second")], RunOptions(out=tmp_path, executor=serial, progress=events.append))
     assert events == []
-    assert read_run(tmp_path) == first
+    assert read_run(tmp_path).judged == first.judged
 
 
 def test_the_lock_is_free_when_its_owner_has_ended_or_was_killed(tmp_path):

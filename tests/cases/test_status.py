@@ -1,6 +1,6 @@
 import pytest
 
-from cases.results.status import ExitCode, Status, exit_code, worst
+from cases.verdicts import ExitCode, Status, exit_code, worst
 
 
 def test_nothing_ran_is_not_a_pass():

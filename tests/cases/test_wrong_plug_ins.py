@@ -7,9 +7,8 @@ from typing import ClassVar
 import pytest
 
 from cases.declare import methods
-from cases.results.files import read_run
-from cases.results.records.claim import Kind
-from cases.results.status import Status
+from cases.runs import read_run
+from cases.verdicts import Kind, Status
 from contact import Unsupported
 from mdr import Mdr
 from reports.command_line import run
@@ -67,8 +66,7 @@ def comparisons(result):
     """Claims that compare the force of "mine" with another value."""
     return [
         claim
-        for case in result.cases
-        for claim in case.claims
+        for claim in result.judged.verdicts
         if "mine" in claim.methods and claim.quantity == "normal_force" and claim.kind in (Kind.EXACT, Kind.AGREEMENT)
         if claim.status is not Status.SKIP
     ]
@@ -95,4 +93,4 @@ def test_a_method_that_solves_nothing_did_not_run(run_with, beside, capsys):
     told = capsys.readouterr().out
     assert "PASS" not in told
     assert "mine" in told
-    assert {row.status for case in result.cases for row in case.runs if row.method == "mine"} == {Status.SKIP}
+    assert {a.status for a in result.answers if a.method == "mine" and not a.variant} == {Status.SKIP}

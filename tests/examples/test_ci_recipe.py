@@ -9,9 +9,10 @@ from pathlib import Path
 
 import pytest
 
-from cases.results.files import read_run
+from cases.answers import Table
+from cases.runs import read_run
 from reports.command_line import run
-from tests.cases.example_run import example_run
+from tests.cases.example_run import example_stamp
 from tests.cases.gate.example_baselines import accepted, scaled
 
 ROOT = Path(__file__).parents[2]
@@ -76,13 +77,14 @@ def test_recipe_writes_the_report_and_hands_on_the_exit_code(sound, broken_on_gi
     for (folder, done), code in ((sound, 0), (broken_on_github, 1)):
         assert done.returncode == code, done.stderr
         written = {p.name for p in (folder / "out").iterdir()}
-        assert {"report.html", "summary.md", "junit.xml", "results.json"} <= written
+        assert {"report.html", "summary.md", "junit.xml", "run.json", "answers.jsonl"} <= written
 
 
 def test_recipe_gates_where_numbers_are_accepted(tmp_path, sound):
     folder, done = sound
     assert done.returncode == 0
-    result = dataclasses.replace(read_run(folder / "out"), stamp=example_run().stamp)
+    result = read_run(folder / "out")
+    result = dataclasses.replace(result, judged=dataclasses.replace(result.judged, stamp=example_stamp()))
     accepted(tmp_path / "baselines", result, case="fake_hertz")
     done = verify(tmp_path, "out", "--executor", "serial")
     assert (done.returncode, "checks" in done.stdout) == (0, True), done.stdout
@@ -95,11 +97,12 @@ def test_recipe_gates_where_numbers_are_accepted(tmp_path, sound):
 
 def edited(result):
     """The run with every number moved by 1e-7."""
-    (case,) = result.cases
-    rows = [
-        dataclasses.replace(row, quantities=tuple(scaled(1 + 1e-7)(q) for q in row.quantities)) for row in case.runs
-    ]
-    return dataclasses.replace(result, cases=(dataclasses.replace(case, runs=tuple(rows)),))
+
+    def moved(answer):
+        quantities = {n: q if q.at else scaled(1 + 1e-7)(q) for n, q in answer.quantities.items()}
+        return dataclasses.replace(answer, quantities=quantities)
+
+    return dataclasses.replace(result, answers=Table(map(moved, result.answers)))
 
 
 def test_recipe_fills_the_summary_page_and_annotates_on_github(broken_on_github):

@@ -10,9 +10,8 @@ from pathlib import Path
 import pytest
 
 from cases.declare import methods
-from cases.results.files import read_run
-from cases.results.records.claim import Kind
-from cases.results.status import Status
+from cases.runs import read_run
+from cases.verdicts import Kind, Status
 from reports.command_line import run
 
 FOLDER = Path(__file__).parents[2] / "examples" / "hertz_half_space"
@@ -38,12 +37,12 @@ def test_the_mistake_is_caught_and_the_report_shows_where(tmp_path, capsys):
     for text in (told, *pages):
         assert text.count(sentence) == 1
         assert "indentation depth pass: one factor 0.91, such as a modulus" in text[text.index(sentence) :][:160]
-    (case,) = read_run(tmp_path).cases
-    force, depth = ([c for c in case.claims if c.name == f"half-space {what}"] for what in ("force", "depth"))
+    verdicts = read_run(tmp_path).judged.verdicts
+    force, depth = ([v for v in verdicts if v.claim == f"half-space {what}"] for what in ("force", "depth"))
     assert {claim.status for claim in depth} == {Status.PASS}
     assert {claim.status for claim in force} == {Status.FAIL}
     for claim in force:  # E for E*: the relative error is -nu^2, nu = 0.3
-        assert claim.observed == pytest.approx(-0.09, rel=1e-9, abs=0.0)
+        assert claim.error == pytest.approx(-0.09, rel=1e-9, abs=0.0)
     page = (tmp_path / "report.html").read_text(encoding="utf-8")
     worst = page[page.index('id="worst"') : page.index('id="matrix"')]
     assert "half-space force" in worst
@@ -54,8 +53,7 @@ def test_the_mistake_is_caught_and_the_report_shows_where(tmp_path, capsys):
 @pytest.mark.usefixtures("registered")
 def test_what_it_does_not_model_is_skipped_with_its_reason(tmp_path):
     run([*ARGUMENTS, "--out", str(tmp_path)])
-    (case,) = read_run(tmp_path).cases
-    layers = [row for row in case.runs if "half-space" not in row.scene]
+    layers = [row for row in read_run(tmp_path).answers if not row.variant and "half-space" not in row.scene]
     assert layers
     assert {(row.status, row.reason) for row in layers} == {(Status.SKIP, "this code knows the half-space only")}
 
@@ -70,8 +68,9 @@ def test_without_its_mistake_it_passes(tmp_path, monkeypatch):
     namespace = {"__name__": "hertz_half_space"}
     exec(compile(mended, "mended", "exec"), namespace)
     monkeypatch.setattr(hertz_half_space, "HertzHalfSpace", namespace["HertzHalfSpace"])
-    assert run([*ARGUMENTS, "--out", str(tmp_path)]) == 0
-    exact = [c for c in read_run(tmp_path).cases[0].claims if c.kind is Kind.EXACT]
+    # In a process of its own the source on the disk would be read.
+    assert run([*ARGUMENTS, "--time-limit", "0", "--out", str(tmp_path)]) == 0
+    exact = [v for v in read_run(tmp_path).judged.verdicts if v.kind is Kind.EXACT]
     assert {claim.status for claim in exact} == {Status.PASS, Status.SKIP}
 
 
@@ -94,5 +93,5 @@ def test_installed_by_pip_it_is_found_by_the_command_line(tmp_path):
         check=False,
     )
     assert done.returncode == 1, done.stderr
-    (case,) = read_run(tmp_path / "out").cases
-    assert {c.status for c in case.claims if c.name == "half-space force"} == {Status.FAIL}
+    verdicts = read_run(tmp_path / "out").judged.verdicts
+    assert {v.status for v in verdicts if v.claim == "half-space force"} == {Status.FAIL}

@@ -6,11 +6,12 @@ from dataclasses import dataclass, field
 
 import pytest
 
+from cases.answers import Table
+from cases.claims import Agree
+from cases.convergence import Order
 from cases.declare.registry import load_cases
-from cases.declare.task import Answers
-from cases.judgement.judge import case_result
-from cases.results.status import Status, worst
-from cases.run.solve_task import solve
+from cases.run.solve_task import job_of, solve
+from cases.verdicts import Status, worst
 from contact import NotConvergedError
 
 TEMPORARY = object()  # stands for a fresh folder among a test's arguments
@@ -32,8 +33,8 @@ class Claims:
         case = self._slice()
         rows = {}
         for task in case.tasks():
-            rows.setdefault(task.identity, solve(task, ""))
-        return worst(claim.status for claim in case_result(case, Answers(rows)).claims)
+            rows.setdefault(task.identity, solve(job_of(task)))
+        return worst(verdict.status for verdict in case.verdicts(Table(rows.values())))
 
     def _slice(self):
         case = load_cases()[self.case]
@@ -46,14 +47,11 @@ class Claims:
             claims=tuple(self._narrowed(claim) for claim in chosen),
             work=(),
             ablations=(),
-            figures=(),
         )
 
     def _narrowed(self, claim):
-        narrowed = {"scenes": self.scenes}
-        if hasattr(claim, "methods"):
-            narrowed["methods"] = self.methods
-        return dataclasses.replace(claim, **narrowed)
+        own = {} if isinstance(claim, Agree | Order) else {"methods": self.methods}
+        return dataclasses.replace(claim, scenes=self.scenes, **own)
 
 
 @dataclass(frozen=True)

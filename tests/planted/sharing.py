@@ -10,7 +10,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from cases.declare.registry import load_cases
-from cases.declare.selection import only_scenes
 from cases.declare.shared import EVERY, SHARED
 from tests.planted.planting import override, swap
 
@@ -27,9 +26,9 @@ class Probe:
 
     def narrowed(self, case, methods, kinds):
         """The case with these scenes and the claims of some kinds that some methods answer."""
-        left = only_scenes(case, self.scenes, [m for m in self.methods if m in methods])
+        left = case.only(lambda scene, use: scene.name in self.scenes and use.label in {*self.methods} & {*methods})
         claims = tuple(claim for claim in left.claims if claim.kind in kinds)
-        return dataclasses.replace(left, claims=claims, work=(), ablations=(), figures=())
+        return dataclasses.replace(left, claims=claims, work=(), ablations=())
 
 
 @dataclass(frozen=True)
@@ -322,7 +321,7 @@ FAULTS = (
         SharedFault(
             "restitution and duration of an impact",
             what,
-            wrong_property("contact.answer.solution:ImpactHistory", name),
+            wrong_property("contact.answer.paths:ImpactHistory", name),
             ("punch impact", "sphere impact"),
         )
         for what, name in (("restitution", "coefficient_of_restitution"), ("duration", "contact_time"))
@@ -355,7 +354,7 @@ FAULTS = (
     SharedFault(
         "rings on which pressures are compared",
         "places of the samples",
-        swap("cases.judgement.rules.norms:ring_quadrature", shrunk_rings),
+        swap("cases.norms:ring_quadrature", shrunk_rings),
         ("cone",),
     ),
 )
@@ -363,7 +362,7 @@ FAULTS = (
 OWN = SharedFault(
     "nothing: modulus of finite elements",
     "G of finite elements",
-    swap("fem_reference.discrete_layer.material:shear_modulus", times),
+    swap("fem_reference.materials:shear_modulus", times),
     ELASTIC,
 )
 

@@ -8,13 +8,11 @@ from dataclasses import dataclass
 
 import pytest
 
+from cases.answers import Table
 from cases.declare.registry import load_cases
 from cases.declare.shared import EVERY, SHARED, Sharing
-from cases.declare.task import Answers
-from cases.judgement.judge import case_result
-from cases.results.records.claim import Kind
-from cases.results.status import Status
-from cases.run.solve_task import solve
+from cases.run.solve_task import job_of, solve
+from cases.verdicts import Kind, Status
 from tests.planted.planting import forget_computed
 from tests.planted.sharing import FAULTS, OWN, PROBES, cases_under
 
@@ -50,10 +48,10 @@ def answers(case, probe, affected, stored):
     for task in case.tasks():
         place = probe, *task.identity
         if place not in RIGHT and stored:
-            RIGHT[place] = solve(task, "")
-        faulty = not stored and task.method in affected
-        rows.setdefault(task.identity, solve(task, "") if faulty else RIGHT[place])
-    return Answers(rows)
+            RIGHT[place] = solve(job_of(task))
+        faulty = not stored and task.use.label in affected
+        rows.setdefault(task.identity, solve(job_of(task)) if faulty else RIGHT[place])
+    return Table(rows.values())
 
 
 def noticed(fault, patch, *, methods=EVERY, probes=None, kinds=tuple(Kind)):
@@ -62,12 +60,12 @@ def noticed(fault, patch, *, methods=EVERY, probes=None, kinds=tuple(Kind)):
     for name in probes or fault.probes:
         probe = PROBES[name]
         before = probe.narrowed(load_cases()[probe.case], methods, kinds)
-        right = case_result(before, answers(before, name, (), stored=True)).claims
+        right = before.verdicts(answers(before, name, (), stored=True))
         forget_computed()
         with patch.context() as planted:
             fault.plant(planted)
             case = probe.narrowed(cases_under(fault)[probe.case], methods, kinds)
-            wrong = case_result(case, answers(case, name, USERS[fault.shared], stored=False)).claims
+            wrong = case.verdicts(answers(case, name, USERS[fault.shared], stored=False))
         forget_computed()
         cases_under(fault)
         found += zip(right, wrong, strict=True)

@@ -6,15 +6,13 @@ import numpy as np
 import pytest
 
 from bem.kernels import stack
+from cases.answers import Table
 from cases.declare.registry import load_cases
-from cases.declare.selection import only_scenes
-from cases.declare.task import Answers
-from cases.judgement.judge import case_result
-from cases.results.status import Status
-from cases.run.solve_task import solve
+from cases.run.solve_task import job_of, solve
+from cases.verdicts import Status
 from contact import NotConvergedError, UnsupportedSceneError
 from fem_reference import Fem
-from fem_reference.elastic.friction import step, walk
+from fem_reference.friction import step, walk
 from mdr import inside
 from mdr.friction.growth import punches_of
 from mdr.friction.statement import _slip
@@ -27,7 +25,7 @@ CAUGHT = (AssertionError, NotConvergedError, UnsupportedSceneError)
 
 def test_friction_along_the_slip(monkeypatch):
     """Points slide with the traction and not against it: that feeds energy in."""
-    swap("fem_reference.elastic.friction.step:_sliding", lambda right: lambda *args: -right(*args))(monkeypatch)
+    swap("fem_reference.friction.step:_sliding", lambda right: lambda *args: -right(*args))(monkeypatch)
     with pytest.raises(CAUGHT):
         friction.test_coulombs_law_holds_and_slip_goes_against_the_traction()
 
@@ -51,7 +49,7 @@ def test_pressure_that_pushes_the_surface_the_other_way(monkeypatch):
     def turned(surface, *others):
         return right(dataclasses.replace(surface, coupled=-surface.coupled), *others)
 
-    monkeypatch.setattr("fem_reference.elastic.friction.strips.RubbedContact", turned)
+    monkeypatch.setattr("fem_reference.friction.growth.RubbedContact", turned)
     with pytest.raises(CAUGHT):
         friction.test_full_stick_is_that_of_mdr(0.0, "bonded", 1.0, friction.PARABOLOID)
 
@@ -100,8 +98,7 @@ def test_the_layer_pulls_inward_where_it_pushes_outward(monkeypatch):
 
 def test_tractions_with_a_kink_inside_cells_of_the_mesh(monkeypatch):
     """Two cells of the tractions on each cell of the mesh: every second point then moves by another law."""
-    for module in ("surface", "strips"):
-        monkeypatch.setattr(f"fem_reference.elastic.friction.{module}.STRIDE", 2)
+    monkeypatch.setattr("fem_reference.friction.growth.RUBBED_STRIDE", 2)
     with pytest.raises(CAUGHT):
         friction.test_forces_under_stick_converge_to_those_of_mdr_with_second_order("bonded")
 
@@ -132,13 +129,14 @@ def test_a_coefficient_one_per_cent_wrong_in_the_finite_elements(monkeypatch):
 
     case = load_cases()["friction_paraboloid"]
     (claim,) = (claim for claim in case.claims if claim.name == "the first order is that of reciprocity")
-    left = dataclasses.replace(only_scenes(case, claim.scenes, ["fem"]), claims=(claim,), work=(), figures=())
+    left = case.only(lambda scene, use: scene.name in claim.scenes and use.label == "fem")
+    left = dataclasses.replace(left, claims=(claim,), work=())
     tasks = {task.identity: task for task in left.tasks()}
 
     def failing():
-        answers = Answers({identity: solve(task, "") for identity, task in tasks.items()})
-        return [found for found in case_result(left, answers).claims if found.status is Status.FAIL]
+        answers = Table(solve(job_of(task)) for task in tasks.values())
+        return [found for found in left.verdicts(answers) if found.status is Status.FAIL]
 
     assert failing() == []
     monkeypatch.setattr(Fem, "solve", wrong)
-    assert [found.name for found in failing()] == ["the first order is that of reciprocity"]
+    assert [found.claim for found in failing()] == ["the first order is that of reciprocity"]

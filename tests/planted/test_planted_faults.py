@@ -4,7 +4,7 @@ from collections import Counter
 
 import pytest
 
-from cases.results.status import Status
+from cases.verdicts import Status
 from tests.planted.faults import FAULTS
 from tests.planted.planting import forget_computed
 

@@ -8,7 +8,7 @@ import pytest
 from cases.declare.methods import BUILT_IN, build, shared_inputs
 from cases.declare.registry import load_cases
 from cases.declare.shared import NOT_SAID, SHARED, Sharing, in_common, used_by
-from cases.results.records.claim import Kind
+from cases.verdicts import Kind
 from tests.planted.planting import forget_computed
 from tests.planted.sharing import FAULTS, OWN, shared_by_all
 from tests.planted.sharing_table import BOTH, USERS, noticed

@@ -2,7 +2,6 @@
 
 import dataclasses
 
-from cases.results.as_run import as_run
 from cases.runs import Run
 from cases.verdicts import Kind, Status
 from tests.cases.example_run import example_run
@@ -12,7 +11,7 @@ PASSING, FAILING = "example_cone", "example_failures"
 
 def example() -> Run:
     """A run of two cases: one that passes, one with every way to fail."""
-    return as_run(example_run())
+    return example_run()
 
 
 def only(*names, **changes) -> Run:

@@ -4,13 +4,12 @@ import dataclasses
 
 import pytest
 
-from cases.answers import Table
-from cases.results.files import write_run
-from cases.runs import Run
+from cases.answers import NAME, Table
+from cases.runs import RUN, Run, write_run
 from cases.verdicts import Status
 from reports.commands.runs import compare_runs, rebuild
 from reports.comparison import changed_claims, changed_numbers, headline, worst_first
-from tests.cases.example_run import example_run, passing_case
+from tests.cases.example_run import passing_run
 from tests.reports.example import example
 from tests.reports.test_pages import not_a_number, words_of
 
@@ -18,11 +17,12 @@ from tests.reports.test_pages import not_a_number, words_of
 @pytest.fixture
 def runs(tmp_path):
     """A run, and a later one in which a passing claim fails."""
-    case = passing_case()
-    failed = dataclasses.replace(case.claims[0], status=Status.FAIL, fraction=7.0)
-    worse = dataclasses.replace(case, claims=(failed, *case.claims[1:]))
-    for name, cases in (("first", (case,)), ("second", (worse,))):
-        write_run(dataclasses.replace(example_run(), cases=cases), tmp_path / name)
+    run = passing_run()
+    first, *others = run.judged.verdicts
+    failed = dataclasses.replace(first, status=Status.FAIL, fraction=7.0)
+    for name, verdicts in (("first", (first, *others)), ("second", (failed, *others))):
+        write_run(dataclasses.replace(run.judged, verdicts=verdicts), tmp_path / name)
+        (tmp_path / name / NAME).write_text("".join(answer.line() for answer in run.answers), encoding="utf-8")
     return tmp_path / "first", tmp_path / "second"
 
 
@@ -59,5 +59,5 @@ def test_pages_are_rebuilt_from_stored_results_without_a_change(runs, capsys):
     written = {path: path.read_bytes() for path in first.rglob("*") if path.is_file()}
     rebuild(first)
     assert {path: path.read_bytes() for path in first.rglob("*") if path.is_file()} == written
-    assert {"report.html", "summary.md", "junit.xml", "results.json"} <= {path.name for path in written}
+    assert {"report.html", "summary.md", "junit.xml", RUN} <= {path.name for path in written}
     assert "PASSED: all 3 checks" in capsys.readouterr().out

@@ -5,15 +5,12 @@ from pathlib import Path
 
 import pytest
 
+from cases.case import Case
+from cases.claims import Agree
 from cases.declare import methods
-from cases.declare.against import against, beside
-from cases.declare.case import Case
-from cases.declare.foreign_methods import with_registered
 from cases.declare.registry import load_cases
-from cases.declare.selection import in_suite
-from cases.judgement.claims.agreement import Agreement
-from cases.results.files import read_run
-from cases.results.status import Status
+from cases.foreign import against, beside, with_registered
+from cases.runs import RUN, read_run
 from contact import InvalidInput
 from reports.command_line import run
 from tests.cases.fake_case import fake_case
@@ -37,37 +34,36 @@ def solved(*more):
 def test_alone_it_is_compared_with_the_fast_method_where_it_models_the_scene(tmp_path):
     case = with_registered(load_cases()["thin_layer_limits"], ["mine"])
     found = beside(case, ["mine"], "mdr")
-    assert {task.method for task in found.tasks()} == {"mine", "mdr"}
-    assert ("mine", "mdr") in {(claim.fast, claim.reference) for claim in found.claims if isinstance(claim, Agreement)}
+    assert {task.use.label for task in found.tasks()} == {"mine", "mdr"}
+    assert ("mine", "mdr") in {(claim.fast, claim.reference) for claim in found.claims if isinstance(claim, Agree)}
     for scene in found.scenes:
         supported = bool(FakeHertz().supports(scene.scene))
         assert {use.label for use in scene.methods} == ({"mdr", "mine"} if supported else {"mine"})
     _, result = solved("held_indentation", "--method", "mine")
-    assert result.methods == ("mine",)
-    assert "unchosen" not in (tmp_path / "out" / "results.json").read_text(encoding="utf-8")
+    assert result.judged.methods == ("mine",)
+    assert "unchosen" not in (tmp_path / "out" / RUN).read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize("name", sorted(load_cases()))
 @pytest.mark.parametrize("suite", ["", "ci"])
 def test_nothing_is_claimed_of_the_fast_method_itself(name, suite):
-    case = in_suite(with_registered(load_cases()[name], ["mine"]), suite)
+    case = with_registered(load_cases()[name], ["mine"]).in_suite(suite)
     found = beside(case, ["mine"], "mdr")
     for claim in found.claims:
-        for scene in claim.scenes_of(found):
-            assert "mine" in claim.labels(found, scene)
-            assert set(claim.labels(found, scene)) <= {"mine", "mdr"}
+        for _, use in claim.places(found):
+            assert "mine" in claim.labels(use)
+            assert set(claim.labels(use)) <= {"mine", "mdr"}
 
 
 @pytest.mark.usefixtures("library")
 def test_any_method_is_compared_with_any_other():
     for one, other in (("mine", "slow"), ("slow", "fast"), ("mine", "unchosen")):
         code, result = solved("--method", one, "--against", other)
-        (case,) = result.cases
         assert code in (0, 1)
-        assert result.methods == (one, other)
-        assert {row.method for row in case.runs} == {one, other}
-        assert {claim.methods for claim in case.claims} == {(one, other)}
-        assert {claim.quantity for claim in case.claims} == {"normal_force", "pressure"}
+        assert result.judged.methods == (one, other)
+        assert {answer.method for answer in result.answers} == {one, other}
+        assert {verdict.methods for verdict in result.judged.verdicts} == {(one, other)}
+        assert {verdict.quantity for verdict in result.judged.verdicts} == {"normal_force", "pressure"}
 
 
 @pytest.mark.parametrize("name", sorted(load_cases()))
@@ -81,7 +77,7 @@ def test_a_comparison_has_every_scene_that_the_case_compares_whatever_the_suite(
     (found,) = against([case], ["mine"], ["fem"])
     assert isinstance(found, Case)
     assert {scene.name for scene in found.scenes} == compared
-    places = [(task.scene, task.method, task.variant) for task in found.tasks()]
+    places = [(task.scene, task.use.label, task.variant) for task in found.tasks()]
     assert len(places) == len(set(places)) or any("refined" in variant for *_, variant in places)
     assert {method for _, method, _ in places} == {"mine", "fem"}
 
@@ -101,9 +97,8 @@ def test_cost_times_only_the_methods_named(library, capsys, monkeypatch):
     case = fake_case(work=True)
     monkeypatch.setattr(runs, "load_cases", lambda: {case.name: case})
     assert run(["run", "--only", "cost", "--suite", "ci", "--out", "out", "--quiet", "--method", "mine"]) == 0
-    (record,) = read_run(Path("out")).cases[0].work_precision
-    assert [(point.method, point.label, point.status) for point in record.points] == [
-        ("mine", "as it comes", Status.PASS)
-    ]
+    (record,) = read_run(Path("out")).judged.costs
+    assert [(point.method, point.setting) for point in record.points] == [("mine", "as it comes")]
+    assert record.points[0].bound is not None
     assert run(["run", "--only", "cost", "--suite", "ci", "--out", "out", "--quiet", "--method", "bem"]) == 4
     assert "nothing times bem" in capsys.readouterr().err

@@ -6,9 +6,9 @@ from pathlib import Path
 import pytest
 
 from cases.declare import methods
-from cases.declare.foreign.settings import read_settings, with_settings
-from cases.declare.foreign_methods import with_registered
-from cases.results.files import read_run
+from cases.declare.settings import read_settings, with_settings
+from cases.foreign import with_registered
+from cases.runs import read_run
 from contact import InvalidInput
 from reports.command_line import run
 from tests.cases.fake_case import fake_case
@@ -90,8 +90,8 @@ def test_a_setting_that_the_method_has_not_is_told_with_those_it_has(settings):
 def test_a_run_is_made_with_them(capsys):
     words = ["run", "--executor", "serial", "--quiet", "--out", "out", "--method", "mine"]
     run([*words, "--setting", "cell=0.125"])
-    (case,) = read_run(Path("out")).cases
-    assert {row.settings["cell"] for row in case.runs if row.method == "mine" and row.settings} == {0.125}
+    answers = read_run(Path("out")).answers
+    assert {a.settings["cell"] for a in answers if a.method == "mine" and a.settings} == {0.125}
     assert run([*words, "--setting", "cells=1"]) == 4
     assert "it has cell" in capsys.readouterr().err
 
@@ -103,8 +103,8 @@ def test_cost_climbs_a_ladder_of_them(monkeypatch, capsys):
     monkeypatch.setattr(runs, "load_cases", lambda: {case.name: case})
     words = ["run", "--only", "cost", "--suite", "ci", "--out", "out", "--quiet", "--method", "mine"]
     assert run([*words, "--setting", "cell=[0.01, 0.001]", "--setting", "order=2"]) == 0
-    (record,) = read_run(Path("out")).cases[0].work_precision
-    assert [(point.method, point.label) for point in record.points] == [
+    (record,) = read_run(Path("out")).judged.costs
+    assert [(point.method, point.setting) for point in record.points] == [
         ("mine", "cell=0.01, order=2"),
         ("mine", "cell=0.001, order=2"),
     ]

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from cases.judgement.convergence.known_errors import behaviour_of_errors
+from cases.convergence import behaviour_of_errors
 from cases.library._code_verification import finite_elements
 from cases.library._code_verification.finite_elements import (
     MIXED,
@@ -14,10 +14,8 @@ from cases.library._code_verification.finite_elements import (
     order_claim,
     patch_claims,
 )
-from cases.results.records.claim import Kind
-from cases.results.status import Status
-from fem_reference.code_verification import manufactured
-from fem_reference.discrete_layer.problem import LayerProblem
+from cases.verdicts import Kind, Status
+from fem_reference import assembly, verification
 
 LARGEST = {2: 3e-6, 3: 2e-7, 4: 2e-9}
 
@@ -28,9 +26,9 @@ def case():
 
 
 def test_every_claim_of_the_page_passes(case):
-    assert [(claim.name, claim.scene, claim.message) for claim in case.claims if claim.status is not Status.PASS] == []
-    assert {claim.kind for claim in case.claims} == {Kind.ORDER, Kind.INVARIANT}
-    assert max(claim.fraction for claim in case.claims) <= 1.0
+    assert [(v.claim, v.scene, v.message) for v in case.verdicts if v.status is not Status.PASS] == []
+    assert {claim.kind for claim in case.verdicts} == {Kind.ORDER, Kind.INVARIANT}
+    assert max(claim.fraction for claim in case.verdicts) <= 1.0
 
 
 def test_every_pair_has_both_orders_and_mixed_ones_at_both_ratios_of_poisson(case):
@@ -43,20 +41,16 @@ def test_every_pair_has_both_orders_and_mixed_ones_at_both_ratios_of_poisson(cas
 
 
 def test_a_hundredth_of_the_body_force_missing_costs_the_order(monkeypatch):
-    own = manufactured.ManufacturedProblem._force
-    monkeypatch.setattr(manufactured.ManufacturedProblem, "_force", lambda self: 0.99 * own(self))
+    own = verification.ManufacturedProblem.force
+    monkeypatch.setattr(verification.ManufacturedProblem, "force", lambda self, *at: 0.99 * own(self, *at))
     monkeypatch.setattr(finite_elements, "MIXED", ("P2P1",))
     assert {order_claim(study).status for study in manufactured_studies()} == {Status.FAIL}
 
 
 def test_a_wrong_hoop_strain_fails_the_patch_claims(monkeypatch):
-    built = LayerProblem.__init__
-
-    def spoiled(self, *args):
-        built(self, *args)
-        self.space.__dict__["strains"] = self.space.strains * np.array([1, 1, 1 + 1e-6, 1])[:, None]
-
-    monkeypatch.setattr(LayerProblem, "__init__", spoiled)
+    right = assembly.strains
+    spoiled = np.array([1, 1, 1 + 1e-6, 1])[:, None, None]
+    monkeypatch.setattr(assembly, "strains", lambda jacobian: right(jacobian) * spoiled)
     assert {claim.status for claim in patch_claims()} == {Status.FAIL}
 
 

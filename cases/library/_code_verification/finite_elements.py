@@ -1,27 +1,24 @@
 """The finite elements verified as a program: manufactured solutions, inf-sup constants, patch test, locking."""
 
 import time
-from collections.abc import Iterable, Iterator
-from dataclasses import replace
+from collections.abc import Iterator
 from typing import Any, Final
 
-from cases.judgement.convergence.study import Refinements, study_of
-from cases.judgement.rules.judgement import Judgement, decided, passed_or_failed
-from cases.judgement.rules.order import judge_order
+from cases.convergence import behaviour_of_errors, order_of_errors
 from cases.library._code_verification.locking import stiffness_error
-from cases.measurements.study import study_case
-from cases.results.records.claim import Claim, Kind, Origin
-from cases.results.records.convergence import ConvergenceStudy
-from cases.results.records.figure import Figure, Panel, Series
-from cases.results.records.run import CaseResult
-from cases.results.records.scene_run import Quantity
-from fem_reference.code_verification.inf_sup import inf_sup_constant, uniform_mesh, with_compressibility
-from fem_reference.code_verification.manufactured import ManufacturedProblem
-from fem_reference.discrete_layer.elements import PAIRS, ElementPair
-from fem_reference.discrete_layer.grading import Grading
-from fem_reference.discrete_layer.mesh import layer_mesh
-from fem_reference.discrete_layer.problem import LayerProblem
-from fem_reference.elastic.patch_test import patch_defect
+from cases.rules import Judgement, decided, judge_order, judge_residual
+from cases.runs import CaseText, Part
+from cases.studies import Convergence, Grid
+from cases.verdicts import Kind, Origin, Verdict, Why
+from fem_reference.assembly import PAIRS, ElementPair
+from fem_reference.materials import uniform
+from fem_reference.mesh import Section, section_mesh
+from fem_reference.verification import (
+    ManufacturedProblem,
+    inf_sup_constant,
+    uniform_layer,
+    uniform_mesh,
+)
 
 NAME: Final = "finite_element_verification"
 MIXED: Final = ("P2P1", "P3P2", "P4P3")
@@ -32,17 +29,12 @@ UNSTABLE: Final = ("P1P1", "P1P0")
 CELLS: Final = {2: (32, 16, 8), 3: (16, 8, 4), 4: (16, 8, 4)}
 # Cells across the thickness on which inf-sup constants are measured: a dense eigenvalue problem limits them.
 INF_SUP_CELLS: Final = (1, 2, 4)
-# A layer graded towards the edge of a contact, as those that are solved.
-GRADED: Final = Grading(points=((1.0, 0.02),), growth=0.5, max_cell=0.4)
 # Least inf-sup constant of a stable pair, three quarters of the continuous one of about 0.6 on these sections.
 LEAST_CONSTANT: Final = 0.45
 # Relative residual of the patch test: a few roundings of the terms that cancel.
 LARGEST_DEFECT: Final = 1e-12
 # Distances of Poisson's ratio from one half; the last is exactly incompressible.
 COMPRESSIBILITIES: Final = (0.2, 0.05, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 0.0)
-# Where nu = 1/2 stands on a logarithmic axis.
-INCOMPRESSIBLE_AT: Final = 1e-7
-
 TEXT: Final = """
 Before finite elements judge anybody else they are judged themselves, by problems whose answers need no other method.
 
@@ -62,51 +54,59 @@ Mixed pairs keep their error; displacements alone lose it, and are seen to.
 """
 
 
-def finite_element_case() -> CaseResult:
+def graded_section() -> Section:
+    """A layer graded towards the edge of a contact, as those that are solved."""
+    return section_mesh(uniform(0.5), 2.0, ((1.0, 0.02),), 0.5)
+
+
+def finite_element_case() -> Part:
     """Measure everything and judge it."""
     studies = tuple(manufactured_studies())
     constants = {name: measured_constants(PAIRS[name]) for name in (*MIXED, *UNSTABLE)}
     locked = {name: tuple(locking_errors(name)) for name in (*ALONE[:2], *MIXED)}
-    return study_case(
-        NAME,
-        "Code verification of the finite elements",
-        "Do the finite elements solve their own equations, at their formal orders and at every Poisson's ratio?",
-        TEXT,
-        claims=(
-            *map(order_claim, studies),
-            *(claim for name in constants for claim in inf_sup_claims(name, constants[name])),
-            *patch_claims(),
-            *locking_claims(locked),
-        ),
-        convergence=studies,
-        figures=(stability_figure(constants, locked),),
+    text = CaseText(
+        name=NAME,
+        title="Code verification of the finite elements",
+        question="Do the finite elements solve their own equations, at formal orders and at every Poisson's ratio?",
+        text=TEXT.strip(),
     )
+    verdicts = (
+        *map(order_claim, studies),
+        *(claim for name in constants for claim in inf_sup_claims(name, constants[name])),
+        *patch_claims(),
+        *locking_claims(locked),
+    )
+    return Part(text=text, verdicts=verdicts, convergence=studies)
 
 
-def manufactured_studies() -> Iterator[ConvergenceStudy]:
+def manufactured_studies() -> Iterator[Convergence]:
     """Two studies, of displacement and pressure, for each pair and Poisson's ratio."""
     problems = [(name, nu) for name in MIXED for nu in (0.3, 0.5)] + [(name, 0.3) for name in ALONE]
     for name, nu in problems:
         degree = PAIRS[name].degree
         rows = [_solved(PAIRS[name], nu, cells) for cells in CELLS[degree]]
         for at, (quantity, order) in enumerate((("displacement", degree + 1), ("pressure", degree))):
-            errors = tuple(row[at] for row in rows)
-            yield study_of(
-                Refinements(
-                    lengths=tuple(CELLS[degree][-1] / cells for cells in CELLS[degree]),
-                    values=errors,
-                    unknowns=tuple(round(row[3]) for row in rows),
-                    seconds=tuple(row[2] for row in rows),
-                ),
+            errors = [row[at] for row in rows]
+            lengths = [CELLS[degree][-1] / cells for cells in CELLS[degree]]
+            yield Convergence(
+                case=NAME,
                 scene=f"{name}, nu={nu:g}",
                 method="fem",
-                quantity=Quantity(name=f"L2 error of the {quantity}", unit="1", scale=1.0, values=errors[:1]),
+                quantity=f"L2 error of the {quantity}",
+                unit="1",
+                refined="irregular cells",
+                kind=behaviour_of_errors(errors, 1e-14),
+                grids=tuple(
+                    Grid(length=length, unknowns=row[3], seconds=row[2], value=error, error=error)
+                    for length, row, error in zip(lengths, rows, errors, strict=True)
+                ),
+                scale=1.0,
                 formal_order=float(order),
-                mesh_family="irregular cells",
+                observed_order=order_of_errors(errors, lengths),
+                digits=None,
                 reference=0.0,
-                reference_uncertainty=0.0,
-                reference_source="manufactured solution",
-                floor=1e-14,
+                reference_error=0.0,
+                source="manufactured solution",
             )
 
 
@@ -121,7 +121,7 @@ def _solved(pair: ElementPair, nu: float, cells: int) -> tuple[float, float, flo
 def measured_constants(pair: ElementPair) -> tuple[float, ...]:
     """On uniform meshes, coarsest first, and on the graded one."""
     meshes = [uniform_mesh(cells) for cells in INF_SUP_CELLS]
-    return tuple(inf_sup_constant(pair, mesh) for mesh in (*meshes, layer_mesh(1.0, 2.0, GRADED).mesh))
+    return tuple(inf_sup_constant(pair, mesh) for mesh in (*meshes, graded_section().mesh))
 
 
 def locking_errors(name: str) -> Iterator[tuple[float, float]]:
@@ -131,7 +131,7 @@ def locking_errors(name: str) -> Iterator[tuple[float, float]]:
             yield distance, stiffness_error(name, 0.5 - distance)
 
 
-def order_claim(study: ConvergenceStudy) -> Claim:
+def order_claim(study: Convergence) -> Verdict:
     """The observed order is in the band of the formal one."""
     return _claim(
         f"order of the {study.quantity.removeprefix('L2 error of the ')}",
@@ -147,7 +147,7 @@ def order_claim(study: ConvergenceStudy) -> Claim:
     )
 
 
-def inf_sup_claims(name: str, constants: tuple[float, ...]) -> Iterator[Claim]:
+def inf_sup_claims(name: str, constants: tuple[float, ...]) -> Iterator[Verdict]:
     """A stable pair keeps its constant; that of an unstable pair is seen to vanish or to fall with the mesh."""
     uniform, stable = constants[:-1], PAIRS[name].inf_sup_stable
     least = min(constants)
@@ -168,15 +168,15 @@ def inf_sup_claims(name: str, constants: tuple[float, ...]) -> Iterator[Claim]:
     )
 
 
-def patch_claims() -> Iterator[Claim]:
+def patch_claims() -> Iterator[Verdict]:
     """Constant strain on the graded mesh, at every nu that a pair is meant for."""
-    mesh = layer_mesh(1.0, 2.0, GRADED)
+    section = graded_section()
     for name in (*MIXED, *ALONE):
         for nu in (0.0, 0.3, 0.5) if PAIRS[name].is_mixed else (0.0, 0.3):
-            defect = patch_defect(LayerProblem(mesh, PAIRS[name], nu, "bonded"))
+            defect = uniform_layer(section, PAIRS[name], nu).patch_defect
             yield _claim(
                 "patch test",
-                passed_or_failed(defect, LARGEST_DEFECT, f"residual {defect:.1e} of a constant strain"),
+                judge_residual(defect, tolerance=LARGEST_DEFECT),
                 kind=Kind.INVARIANT,
                 scene=f"{name}, nu={nu:g}",
                 quantity="patch_defect",
@@ -188,7 +188,7 @@ def patch_claims() -> Iterator[Claim]:
             )
 
 
-def locking_claims(errors: dict[str, tuple[tuple[float, float], ...]]) -> Iterator[Claim]:
+def locking_claims(errors: dict[str, tuple[tuple[float, float], ...]]) -> Iterator[Verdict]:
     """Mixed pairs are at most three times less exact than at nu = 0.3; displacements lose a digit at least."""
     for name, row in errors.items():
         growth = max(error for _, error in row) / row[0][1]
@@ -208,64 +208,16 @@ def locking_claims(errors: dict[str, tuple[tuple[float, float], ...]]) -> Iterat
         )
 
 
-def _claim(name: str, judged: Judgement, **words: Any) -> Claim:
-    """The claim that ended so, about finite elements and against mathematics; `words` are its other fields."""
-    return judged.claim(name, methods=("fem",), origin=Origin.CLOSED_FORM, **words)
-
-
-def stability_figure(
-    constants: dict[str, tuple[float, ...]], errors: dict[str, tuple[tuple[float, float], ...]]
-) -> Figure:
-    """Inf-sup constants over the mesh and over nu; errors on one mesh over nu."""
-    return Figure(
-        name="stability",
-        title="Stability of element pairs and locking",
-        caption="Left: inf-sup constant on uniform meshes; that of the pair P1P0 falls, that of P1P1 vanishes. Middle: "
-        "constant of the mixed form on a mesh graded towards the contact edge. Right: error of the stiffness at "
-        "a/h = 1 on one mesh, by mixed pairs and by displacements alone (P2, P3). nu = 1/2 exactly stands at 1e-7.",
-        panels=_stability_panels(constants, errors),
+def _claim(name: str, judged: Judgement, *, source: str, because: str, derived_from: str, **words: Any) -> Verdict:
+    """The verdict that ended so, about finite elements and against mathematics; `words` are its other fields."""
+    return Verdict(
+        case=NAME,
+        claim=name,
+        methods=("fem",),
+        status=judged.status,
+        error=judged.error,
+        fraction=judged.fraction,
+        why=Why(Origin.CLOSED_FORM, source, because, derived_from),
+        message=judged.message,
+        **words,
     )
-
-
-def _stability_panels(
-    constants: dict[str, tuple[float, ...]], errors: dict[str, tuple[tuple[float, float], ...]]
-) -> tuple[Panel, ...]:
-    cells = [float(n) for n in INF_SUP_CELLS]
-    ratios = [distance or INCOMPRESSIBLE_AT for distance in COMPRESSIBILITIES]
-    over_nu = {
-        name: [with_compressibility(constants[name][-1], 0.5 - distance) for distance in COMPRESSIBILITIES]
-        for name in MIXED
-    }
-    return (
-        Panel(
-            title="refined meshes",
-            x_label="cells across the thickness",
-            y_label="inf-sup constant",
-            x_scale="log",
-            series=tuple(_series(name, cells, constants[name][:-1]) for name in constants),
-        ),
-        Panel(
-            title="graded mesh",
-            x_label=r"$1/2 - \nu$",
-            y_label="inf-sup constant",
-            x_scale="log",
-            y_range=(0.0, 1.0),
-            series=tuple(_series(name, ratios, over_nu[name]) for name in MIXED),
-        ),
-        Panel(
-            title="one mesh",
-            x_label=r"$1/2 - \nu$",
-            y_label="relative error of $k_N$",
-            x_scale="log",
-            y_scale="log",
-            series=tuple(
-                _series(name, [x or INCOMPRESSIBLE_AT for x, _ in row], [error for _, error in row])
-                for name, row in errors.items()
-            ),
-        ),
-    )
-
-
-def _series(name: str, x: Iterable[float], y: Iterable[float]) -> Series:
-    line = Series(label=name, method="fem", group=name, x=tuple(x), y=tuple(y), style="solid")
-    return line if PAIRS[name].is_mixed else replace(line, style="dashed")

@@ -9,7 +9,7 @@ elements give it. The force converges with about first order in the cell size.
 
 from dataclasses import replace
 
-from cases.declare.case import Case, text_of
+from cases.case import Case, text_of
 from cases.declare.methods import MethodUse
 from cases.library._claims import agreements, exact
 from cases.library._convergence import Refinement, neighbours, studies
@@ -31,7 +31,7 @@ SIZES = Refinement(
     name="cells that let go, three grids a refinement",
     method=CELLS.label,
     ladder=neighbours("points", ([n * m for m in (24, 28, 32)] for n in (4, 6, 9)), adhesion="cells"),
-    reason=WHY["order"],
+    why=WHY["order"],
     ratio=1.5,
 )
 
@@ -51,7 +51,7 @@ CASE = Case(
             tolerance=1e-9,
             tolerances={CELLS.label: REQUIREMENT},
         ),
-        *agreements(LAYER, {CELLS.label: ON_LAYER}, ("pull_off_force",), reason=WHY["layer"]),
+        *agreements(LAYER, {CELLS.label: ON_LAYER}, ("pull_off_force",), why=WHY["layer"]),
         *agreements(LAYER, {"fem": 2e-3}, ("pull_off_force",), derived_from="a requirement: 2e-3 of the pull-off"),
         *studies(CLOSED[:1], SIZES, {"pull_off_force": 1.0}, against="mdr", nightly=True),
     ),

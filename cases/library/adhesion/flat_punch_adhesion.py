@@ -7,12 +7,10 @@ the contact shrinks stably to the radius of the maximum and only then jumps, Eq.
 always abrupt, at F_A = -k_N(a*) Delta l(a*).
 """
 
-from collections.abc import Iterator
-
 import numpy as np
 
-from cases.declare.case import Case, CaseScene, text_of
-from cases.declare.task import Answers
+from cases.case import Case, CaseScene, text_of
+from cases.cost_settings import detachment_costs
 from cases.library._claims import agreements, exact
 from cases.library._convergence import FINEST_MDR, NODES, PUNCH_POINTS, studies
 from cases.library._layers import THICKNESS, contact_modulus, half_space, layer, layer_of
@@ -20,8 +18,6 @@ from cases.library._methods import DETACHING_BEM, DETACHING_FEM, EQUATION, MDR, 
 from cases.library._reasons import reasons
 from cases.library._references import numbers
 from cases.measurements.advice.effects import AblationStudy
-from cases.measurements.cost.settings import detachment_costs
-from cases.results.records.scene_run import SceneRun
 from contact import Adhesion, Detachment, FlatPunch, Layer, Scene
 
 WHY = reasons("flat_punch_adhesion")
@@ -114,14 +110,6 @@ def abrupt_force(scene: Scene) -> list[float]:
     kbar, cbar = (float(numbers(kind)["bonded nu=0.5 a/h=1"][0]) for kind in ("stiffness", "spring"))
     elongation = np.sqrt(2 * np.pi * WORK_OF_ADHESION * a / (contact_modulus(scene.layer) * cbar))
     return [-float(2 * contact_modulus(scene.layer) * a * kbar * elongation)]
-
-
-def _solved(case: Case, answers: Answers, scene: CaseScene) -> Iterator[SceneRun]:
-    """Answers of finite and boundary elements."""
-    for use in (DETACHING_FEM, DETACHING_BEM):
-        task = case.task(scene, use)
-        if answers.has(task) and answers.of(task).solved:
-            yield answers.of(task)
 
 
 OTHERS_LOOSER = dict.fromkeys(("fem", "bem", "mdr_table"), 1e-3)

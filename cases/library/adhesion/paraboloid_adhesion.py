@@ -9,14 +9,14 @@ release rate from the derivative of the strain energy.
 
 import numpy as np
 
-from cases.declare.case import Case, CaseScene, text_of
+from cases.case import Case, CaseScene, text_of
+from cases.cost_settings import detachment_costs
 from cases.library._claims import agreements, exact
 from cases.library._convergence import DISCS, FEM_ACCURACY, FINEST_MDR, NODES, studies
 from cases.library._layers import contact_modulus, half_space, layer
 from cases.library._methods import DETACHING_BEM, DETACHING_FEM, EQUATION, MDR, PEELING_FEM, TABLE
 from cases.library._reasons import reasons
 from cases.measurements.advice.effects import AblationStudy
-from cases.measurements.cost.settings import detachment_costs
 from contact import Adhesion, Detachment, InvalidInput, Layer, Paraboloid, Scene
 
 WHY = reasons("paraboloid_adhesion")

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from cases.declare.case import CaseScene
+from cases.case import CaseScene
 from cases.library._claims import agreements, exact
 from cases.library._layers import THICKNESS, contact_modulus, layer, scene_name
 from cases.library._methods import MDR, QUICK_FEM
@@ -82,7 +82,7 @@ EXPONENT_CLAIMS = (
         EXPONENT_SCENES,
         {"fem": 1e-4},
         ("indentation_depth", "contact_stiffness"),
-        reason=SHARED["fem"],
+        why=SHARED["fem"],
         derived_from="a requirement: 1e-4, the accuracy finite elements are asked for",
         suffix=", m and kappa",
     ),

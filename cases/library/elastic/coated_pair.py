@@ -11,15 +11,15 @@ exact: two Winkler beds in series.
 
 import numpy as np
 
-from cases.declare.case import Case, CaseScene, text_of
-from cases.judgement.claims.approach import Approach
+from cases.case import Case, CaseScene, text_of
+from cases.claims import Approach
+from cases.cost_settings import elastic_costs
 from cases.library._claims import agreements, names_of, scaling_law
 from cases.library._convergence import EDGE_CELL, NODES, fem_cells, studies
 from cases.library._layers import THICKNESS, YOUNGS_MODULUS, confined_modulus, layer_of, prescribed_radii, thinness
 from cases.library._methods import EVERY, FEM, MDR
 from cases.library._reasons import reasons
 from cases.library._requirements import required
-from cases.measurements.cost.settings import elastic_costs
 from contact import CoatedPair, ContactRadii, InvalidInput, Paraboloid, Scene
 
 WHY = reasons("coated_pair")
@@ -124,7 +124,7 @@ CASE = Case(
             parameter=thinness,
             limit=beds_in_series,
             largest=0.05,
-            reason=WHY["series"],
+            why=WHY["series"],
         ),
         *agreements(SYMMETRIC, required("fem", "bem", "integral_equation", "mdr_table")),
         *ORDERS,

@@ -12,8 +12,8 @@ and its depth a^2 / ((1 + m) R), Eq. (34), gives the exponent m of Eq. (33).
 
 import numpy as np
 
-from cases.declare.case import Case, CaseScene, text_of
-from cases.declare.task import Sampling
+from cases.case import Case, CaseScene, Sampling, text_of
+from cases.cost_settings import elastic_costs
 from cases.library._claims import agreements, exact
 from cases.library._convergence import (
     EQUATION_NODES,
@@ -33,7 +33,6 @@ from cases.library._methods import EVERY, MDR
 from cases.library._reasons import SHARED, reasons
 from cases.library._references import numbers
 from cases.library.elastic._stiffness_exponent import EXPONENT_CLAIMS, EXPONENT_SCENES
-from cases.measurements.cost.settings import elastic_costs
 from contact import ContactRadii, FlatPunch, IndentationDepths, Layer, Paraboloid, Scene
 
 WHY = reasons("flat_punch_stiffness")
@@ -165,7 +164,7 @@ CLAIMS = (
         for claim in exact(reason, {name: ("contact_stiffness", expected)}, tolerance=tolerance, methods=("mdr",))
     ),
     *agreements(PUNCHES, {"fem": 3e-6, "integral_equation": 1e-9, "mdr_table": 3e-4}, ("normal_force",)),
-    *agreements(PUNCHES, {"bem": 3e-5}, ("normal_force",), reason=SHARED["bem, flat punches"]),
+    *agreements(PUNCHES, {"bem": 3e-5}, ("normal_force",), why=SHARED["bem, flat punches"]),
 )
 
 

@@ -11,10 +11,9 @@ import math
 
 import numpy as np
 
-from cases.declare.case import Case, CaseScene, text_of
+from cases.case import Case, CaseScene, Sampling, text_of
+from cases.claims import Zero
 from cases.declare.methods import MethodUse
-from cases.declare.task import Sampling
-from cases.judgement.claims.own_laws import Residual
 from cases.library._claims import exact
 from cases.library._layers import contact_modulus, half_space
 from cases.library._methods import MDR
@@ -140,14 +139,14 @@ CASE = Case(
             tolerances=MESH_TOLERANCE,
         ),
         *(
-            Residual(
+            Zero(
                 name=name,
                 quantity=quantity,
                 scenes=tuple(scene.name for scene in HERTZ),
                 methods=("mdr", "fem"),
                 tolerance=1e-11,
                 tolerances={"fem": tolerance},
-                reason=WHY["laws"],
+                why=WHY["laws"],
             )
             for name, (quantity, tolerance) in LAWS.items()
         ),

@@ -17,18 +17,15 @@ from dataclasses import replace
 
 import numpy as np
 
-from cases.declare.case import Case, CaseScene, text_of
+from cases.case import Case, CaseScene, Sampling, text_of
+from cases.claims import Agree, Approach, Norm, Zero
+from cases.cost_settings import inside_costs
 from cases.declare.methods import MethodUse
-from cases.declare.task import Sampling
-from cases.judgement.claims.approach import Approach
-from cases.judgement.claims.field_agreement import FieldAgreement, Norm
-from cases.judgement.claims.own_laws import Residual
 from cases.library._claims import names_of
 from cases.library._convergence import ROOT_TWO, Refinement, neighbours, studies
 from cases.library._layers import LAYERS, THICKNESS, layer, scene_name
 from cases.library._methods import MDR
 from cases.library._reasons import reasons
-from cases.measurements.cost.settings import inside_costs
 from contact import ContactRadii, Layer, Paraboloid, Profile, Scene, TruncatedCone
 
 WHY = reasons("inside_layer")
@@ -128,7 +125,7 @@ CELLS = Refinement(
         edge_cell=1e-9,
         truncation=1e-12,
     ),
-    reason=WHY["order"],
+    why=WHY["order"],
     ratio=ROOT_TWO,
 )
 ORDERS = {"displacement_inside": 4.0, "stress_inside": 3.0, "pressure_inside": 3.0, "gradient_inside": 2.0}
@@ -169,7 +166,7 @@ CASE = Case(
     methods=(MDR, MESH),
     claims=(
         *(
-            FieldAgreement(
+            Agree(
                 name=f"{quantity.replace('_', ' ')}: MDR and fem",
                 quantity=quantity,
                 scenes=names_of((*COMPARED, *LADDER)),
@@ -177,18 +174,18 @@ CASE = Case(
                 fast="mdr",
                 reference="fem",
                 tolerance=tolerance,
-                reason=WHY["two methods"],
+                why=WHY["two methods"],
             )
             for quantity, (norm, tolerance) in FIELDS.items()
         ),
         *(
-            Residual(
+            Zero(
                 name=name,
                 quantity=quantity,
                 scenes=tuple(scene.name for scene in COMPARED),
                 tolerance=2e-10,
                 tolerances={"fem": tolerance},
-                reason=WHY["laws"],
+                why=WHY["laws"],
             )
             for name, (quantity, tolerance) in LAWS.items()
         ),
@@ -201,7 +198,7 @@ CASE = Case(
             parameter=thinness,
             limit=film_pressure,
             largest=0.15,
-            reason=WHY["film"],
+            why=WHY["film"],
         ),
     ),
     work=inside_costs(REFINED[0].name),

@@ -8,7 +8,7 @@ integral equation and boundary elements share, parts the methods.
 
 import numpy as np
 
-from cases.declare.case import Case, CaseScene, text_of
+from cases.case import Case, CaseScene, text_of
 from cases.library._claims import agreements
 from cases.library._layers import THICKNESS, half_space, layer
 from cases.library._methods import EQUATION, MDR, QUICK_FEM
@@ -41,7 +41,7 @@ CASE = Case(
     scenes=SCENES,
     methods=(MDR, QUICK_FEM, EQUATION),
     claims=(
-        *agreements(SCENES, {"fem": 3e-4}, reason=WHY["own cubics"]),
+        *agreements(SCENES, {"fem": 3e-4}, why=WHY["own cubics"]),
         *agreements(SCENES, required("integral_equation")),
     ),
 )

@@ -10,8 +10,8 @@ come back.
 import math
 from collections.abc import Callable
 
-from cases.declare.case import Case, CaseScene, text_of
-from cases.declare.task import Sampling
+from cases.case import Case, CaseScene, Sampling, text_of
+from cases.cost_settings import elastic_costs
 from cases.library._claims import (
     PATH_QUANTITIES,
     agreements,
@@ -39,7 +39,6 @@ from cases.library._reasons import reasons
 from cases.library._references import numbers
 from cases.library._requirements import COARSE as COARSE_REQUIRED
 from cases.library._requirements import required
-from cases.measurements.cost.settings import elastic_costs
 from contact import ContactRadii, IndentationDepths, Loading, NormalForces, Paraboloid, Scene
 
 WHY = reasons("paraboloid")

@@ -12,7 +12,7 @@ from typing import TypeAlias, cast
 import numpy as np
 from numpy.polynomial.legendre import leggauss
 
-from cases.declare.case import Case, CaseScene, text_of
+from cases.case import Case, CaseScene, text_of
 from cases.library._claims import agreements, exact
 from cases.library._layers import THICKNESS, contact_modulus, half_space, layer
 from cases.library._methods import BEM, EQUATION, FEM, MDR

@@ -17,19 +17,22 @@ from dataclasses import replace
 
 import numpy as np
 
-from cases.declare.case import Case, CaseScene, text_of
-from cases.declare.task import Sampling
-from cases.judgement.claims.order import Order
-from cases.judgement.claims.own_laws import IncrementalStiffness, Residual, chebyshev_radii
+from cases.case import Case, CaseScene, Sampling, text_of
+from cases.claims import Zero
+from cases.convergence import Order
+from cases.cost_settings import elastic_costs
 from cases.library._claims import (
     agreements,
     carried_force,
+    chebyshev_radii,
     exact,
+    incremental_stiffness,
     names_of,
     pressure_agreements,
     same_in_millimetres,
     scaling_law,
 )
+from cases.library._convergence import FINEST_MDR
 from cases.library._layers import (
     LAYERS,
     THICKNESS,
@@ -47,7 +50,6 @@ from cases.library._reasons import reasons
 from cases.library._references import numbers
 from cases.library._requirements import VERY_COARSE, required
 from cases.measurements.advice.effects import AblationStudy
-from cases.measurements.cost.settings import elastic_costs
 from contact import ContactRadii, Scene, TruncatedCone
 
 WHY = reasons("truncated_cone")
@@ -215,21 +217,22 @@ ANY_NU = {"fem": 3e-6, "bem": 1e-7}
 
 INVARIANTS = (
     *CARRIED,
-    IncrementalStiffness(
+    Zero(
         name="dF/d(delta) is the stiffness of the flat punch",
         quantity="contact_stiffness",
         scenes=names_of(PATH_SCENES),
         tolerance=1e-9,
-        reason=WHY["spring stiffness"],
+        derive=incremental_stiffness,
+        why=WHY["spring stiffness"],
     ),
     *(
-        Residual(
+        Zero(
             name=name,
             quantity=quantity,
             scenes=names_of((*LAYER_SCENES, *HALF_SPACE_SCENES)),
             methods=("fem",),
             tolerance=tolerance,
-            reason=reason,
+            why=reason,
         )
         for name, (quantity, tolerance, reason) in RESIDUALS.items()
     ),
@@ -258,8 +261,9 @@ ORDERS = (
         ),
         formal_order=1.0,
         mesh_family="cell at the contact edge halved, the rest fixed",
+        against="integral_equation",
         tolerance=0.2,
-        reason=WHY["edge cell"],
+        why=WHY["edge cell"],
     ),
     Order(
         name="MDR: exponential in the Gauss nodes",
@@ -269,9 +273,10 @@ ORDERS = (
         ladder=tuple({"nodes": nodes} for nodes in (8, 12, 16, 24)),
         least_digits=1.0,
         mesh_family="Gauss nodes on panels as wide as the layer",
+        against=FINEST_MDR,
         floor=1e-13,
         tolerance=1.0,
-        reason=WHY["gauss panels"],
+        why=WHY["gauss panels"],
     ),
 )
 

@@ -14,9 +14,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from cases.declare.case import Case, CaseScene, text_of
-from cases.judgement.claims.approach import Approach
-from cases.judgement.claims.changed_scenes import NeverBelow
+from cases.case import Case, CaseScene, text_of
+from cases.claims import Approach, Bound
 from cases.library._claims import agreements, exact
 from cases.library._convergence import EDGE_CELL, fem_cells, studies
 from cases.library._layers import THICKNESS, confined_modulus, contact_modulus, half_space, layer_of, scene_name
@@ -103,18 +102,18 @@ LIMITS = tuple(
         parameter=thinness,
         limit=thin_stiffness,
         largest=2e-2,
-        reason=WHY["thin limit"],
+        why=WHY["thin limit"],
     )
     for label in THIN_LABELS
 )
 STIFFER = tuple(
-    NeverBelow(
+    Bound(
         name=f"stick never softens, {label}",
         quantity="contact_stiffness",
         methods=(label,),
         change=frictionless,
         tolerance=tolerance,
-        reason=WHY["a constraint"],
+        why=WHY["a constraint"],
         nightly=nightly,
     )
     for label, tolerance, nightly in (("mdr", 1e-12, False), ("fem", 1e-6, True))
@@ -134,7 +133,7 @@ CASE = Case(
     scenes=SCENES,
     methods=(MDR, FINER_FEM),
     claims=(
-        *agreements(SCENES, {"fem": 1e-6}, ("normal_force", "contact_stiffness"), reason=WHY["two methods"]),
+        *agreements(SCENES, {"fem": 1e-6}, ("normal_force", "contact_stiffness"), why=WHY["two methods"]),
         *exact(
             WHY["half-space"],
             {"stiffness on the half-space": ("contact_stiffness", stuck_half_space)},

@@ -9,14 +9,14 @@ exp(-(2 D/s) artanh(s/D)), s = sqrt(D^2 - 1), through exp(-2) at D = 1.
 import math
 from dataclasses import dataclass
 
-from cases.declare.case import Case, CaseScene, text_of
+from cases.case import Case, CaseScene, text_of
+from cases.cost_settings import impact_costs
 from cases.library._claims import agreements, energy_balance, exact
 from cases.library._convergence import FINEST_MDR, TIME_ACCURACY, TIME_STEP, studies
 from cases.library._methods import EVERY, FEM, MDR, TABLE
 from cases.library._reasons import reasons
 from cases.library._references import numbers
 from cases.measurements.advice.effects import AblationStudy
-from cases.measurements.cost.settings import impact_costs
 from contact import FlatPunch, Impact, KelvinVoigt, Layer, Scene
 
 WHY = reasons("flat_punch_impact")

@@ -17,7 +17,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.linalg import expm
 
-from cases.declare.case import Case, CaseScene, text_of
+from cases.case import Case, CaseScene, text_of
 from cases.library._claims import agreements, exact
 from cases.library._convergence import CELLS_AND_STEPS, FINEST_MDR, RECEDING_ACCURACY, studies
 from cases.library._methods import MDR

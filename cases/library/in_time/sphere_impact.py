@@ -8,22 +8,17 @@ livelier the rebound. R and v0 enter only as a product. Kinetic, stored and diss
 
 from collections.abc import Iterable
 
-import numpy as np
-
-from cases.declare.case import Case, CaseScene, text_of
+from cases.case import Case, CaseScene, text_of
+from cases.claims import Equal, Law
+from cases.cost_settings import impact_costs
 from cases.declare.methods import MethodUse
-from cases.judgement.claims.changed_scenes import ScalingLaw
-from cases.judgement.claims.printed import Printed
 from cases.library._claims import agreements, energy_balance, exact, names_of
 from cases.library._convergence import CELLS_AND_STEPS, FINEST_MDR, NODES, TIME_ACCURACY, studies
 from cases.library._methods import BEM, EQUATION, MDR, TABLE
 from cases.library._reasons import reasons
 from cases.library._references import numbers
 from cases.measurements.advice.effects import AblationStudy
-from cases.measurements.cost.settings import impact_costs
-from cases.results.records.scene_run import SceneRun
 from contact import Impact, InvalidInput, Layer, Paraboloid, Scene, StandardSolid
-from contact.records.validation import FloatArray
 
 WHY = reasons("sphere_impact")
 
@@ -95,13 +90,6 @@ def twice_the_radius_at_half_the_speed(scene: Scene) -> Scene:
     )
 
 
-def _samples(run: SceneRun, channel: str) -> tuple[FloatArray, FloatArray]:
-    """Return time and values, as many as symbols can show."""
-    curve = run.curve(channel)
-    shown = slice(None, None, max(1, len(curve.x) // 25))
-    return np.array(curve.x)[shown], np.array(curve.y)[shown]
-
-
 # Agreement of MDR and finite elements: by quantities, the tolerance and where it comes from.
 BY_FINITE_ELEMENTS = {
     ("coefficient_of_restitution", "peak_depth", "contact_time"): (
@@ -135,19 +123,19 @@ CLAIMS = (
         tolerances={"fem": 5e-4, "mdr_table": 3e-3},
     ),
     *(
-        Printed(
+        Equal(
             name=f"restitution as printed, {name_of(thickness)}",
             quantity="coefficient_of_restitution",
-            expected={name_of(thickness): (value,)},
+            to={name_of(thickness): (value,)},
             methods=("mdr",),
             uncertain=PRINTED_INPUTS,
             tolerance=tolerance,
-            reason=WHY["printed"],
+            why=WHY["printed"],
         )
         for thickness, value, tolerance in PRINTED
     ),
     energy_balance(ON_LAYERS, {"fem": 1e-4, "mdr_table": 1e-4}, time_steps=400),
-    ScalingLaw(
+    Law(
         name="only R v0 matters",
         quantity="coefficient_of_restitution",
         scenes=names_of(ON_LAYERS),
@@ -156,7 +144,7 @@ CLAIMS = (
         tolerance=1e-7,
         tolerances={"fem": 1e-3},
         methods=("mdr",),
-        reason=WHY["similarity"],
+        why=WHY["similarity"],
     ),
     *(
         claim

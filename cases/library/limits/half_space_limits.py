@@ -10,8 +10,9 @@ from collections.abc import Callable
 
 import numpy as np
 
-from cases.declare.case import Case, CaseScene, text_of
-from cases.judgement.claims.approach import Approach
+from cases.case import Case, CaseScene, text_of
+from cases.claims import Approach
+from cases.cost_settings import elastic_costs
 from cases.library._claims import exact
 from cases.library._convergence import EDGE_CELL, HALF_SPACE, HALF_SPACE_FORCE, studies
 from cases.library._layers import (
@@ -28,7 +29,6 @@ from cases.library._methods import EVERY
 from cases.library._reasons import reasons
 from cases.library._references import numbers
 from cases.measurements.advice.effects import AblationStudy
-from cases.measurements.cost.settings import elastic_costs
 from contact import (
     Cone,
     ContactRadii,
@@ -158,7 +158,7 @@ CLAIMS = (
             limit=thick_limit(label),
             formal_order=2.0,
             largest=1e-3,
-            reason=WHY["first order term"],
+            why=WHY["first order term"],
         )
         for label in LAYERS
     ),

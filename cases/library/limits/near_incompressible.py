@@ -6,17 +6,23 @@ accurate as MDR says they are, and on one and the same mesh as accurate at nu = 
 approach that of the incompressible layer with the first order of 1/2 - nu.
 """
 
-from cases.declare.case import Case, CaseScene, text_of
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import ClassVar
+
+from cases.answers import Answer
+from cases.case import Case, CaseScene, Task, text_of
+from cases.claims import Approach, Claim
+from cases.cost_settings import elastic_costs
 from cases.declare.methods import MethodUse
-from cases.judgement.claims.approach import Approach
-from cases.judgement.claims.even_accuracy import EvenAccuracy
 from cases.library._claims import agreements, exact
 from cases.library._convergence import EDGE_CELL, NODES, OUTER_RADIUS, fem_cells, studies
 from cases.library._layers import THICKNESS, contact_modulus, layer_of
 from cases.library._methods import BEM, EQUATION, FEM, MDR, TABLE
 from cases.library._reasons import SHARED, reasons
 from cases.library._references import numbers
-from cases.measurements.cost.settings import elastic_costs
+from cases.rules import Judgement, judge_residual, nothing_compared
+from cases.verdicts import Kind, Status
 from contact import FlatPunch, IndentationDepths, Scene
 
 WHY = reasons("near_incompressible")
@@ -72,6 +78,34 @@ ORDERS = (
 )
 
 
+@dataclass(frozen=True, kw_only=True)
+class EvenAccuracy(Claim):
+    """On one and the same mesh the error exceeds that of the first scene by no more than the fraction ``tolerance``."""
+
+    kind: ClassVar[Kind] = Kind.INVARIANT
+
+    def places(self, case: Case) -> Iterator[tuple[CaseScene, MethodUse]]:
+        """Yield every scene after the first that the direct equation solves, too."""
+        solved = {scene.name for scene in case.scenes if EQUATION.label in (u.label for u in case.methods_of(scene))}
+        places = [place for place in super().places(case) if place[0].name in solved]
+        yield from places[1:] if places and places[0][0].name == SCENES[0].name else ()
+
+    def needed(self, case: Case, scene: CaseScene, use: MethodUse) -> Iterator[Task]:
+        """Yield the reference of the scene, then both answers of the first scene."""
+        first = case.scene(SCENES[0].name)
+        for one, label in ((scene, EQUATION.label), (first, use.label), (first, EQUATION.label)):
+            yield case.task(one, case.use(one, label))
+
+    def judged(self, scene: CaseScene, label: str, answer: Answer, others: list[Answer]) -> Judgement:
+        """Judge by how much the error is larger than that of the first scene."""
+        meshes = [one.settings.get("mesh") for one in (others[1], answer)]
+        if meshes[0] is None or meshes[0] != meshes[1]:
+            return nothing_compared(Status.INCOMPARABLE, f"not one mesh: {meshes[0]} and {meshes[1]}")
+        own, exact, base, base_exact = (one.quantities[self.quantity].values[-1] for one in (answer, *others))
+        growth = abs(own / exact - 1) / abs(base / base_exact - 1) - 1
+        return judge_residual(growth, tolerance=self.tolerance)
+
+
 CASE = Case(
     name="near_incompressible",
     title="Nearly incompressible layers",
@@ -82,7 +116,7 @@ CASE = Case(
     methods=(MDR, FEM, ONE_MESH, BEM, EQUATION, TABLE),
     claims=(
         *agreements(SCENES, {"fem": 3e-6, "integral_equation": 1e-9, "mdr_table": 3e-4}, ("contact_stiffness",)),
-        *agreements(SCENES, {"bem": 1e-5}, ("contact_stiffness",), reason=SHARED["bem, flat punches"]),
+        *agreements(SCENES, {"bem": 1e-5}, ("contact_stiffness",), why=SHARED["bem, flat punches"]),
         *exact(
             WHY["twelve digits"],
             {"stiffness to ten digits": ("contact_stiffness", tabulated())},
@@ -92,10 +126,9 @@ CASE = Case(
         EvenAccuracy(
             name="as accurate at nu = 1/2 as at nu = 0.3, on one mesh",
             quantity="contact_stiffness",
-            method="fem one mesh",
-            reference="integral_equation",
+            methods=(ONE_MESH.label,),
             tolerance=1.0,
-            reason=WHY["no locking"],
+            why=WHY["no locking"],
         ),
         Approach(
             name="first order in 1/2 - nu",
@@ -105,7 +138,7 @@ CASE = Case(
             limit=incompressible_stiffness,
             largest=1e-2,
             methods=("mdr", "fem", "integral_equation"),
-            reason=WHY["regular limit"],
+            why=WHY["regular limit"],
         ),
         *ORDERS,
     ),

@@ -11,8 +11,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from cases.declare.case import Case, CaseScene, text_of
-from cases.judgement.claims.approach import Approach
+from cases.case import Case, CaseScene, text_of
+from cases.claims import Approach
+from cases.cost_settings import elastic_costs
 from cases.library._claims import agreements
 from cases.library._convergence import EQUATION_NODES, FINEST_MDR, NODES, fem_cells, studies
 from cases.library._layers import (
@@ -27,7 +28,6 @@ from cases.library._layers import (
 from cases.library._methods import BEM, EQUATION, FEM, MDR, TABLE
 from cases.library._reasons import reasons
 from cases.library._requirements import COARSEST, required
-from cases.measurements.cost.settings import elastic_costs
 from contact import ContactRadii, Layer, Paraboloid, Profile, Scene, TruncatedCone
 
 WHY = reasons("thin_layer_limits")
@@ -131,7 +131,7 @@ def approach(
             limit=limit,
             largest=0.1,
             methods=("mdr", "fem"),
-            reason=WHY["table 1"],
+            why=WHY["table 1"],
         )
         for label in LABELS
     )
@@ -165,7 +165,7 @@ CASE = Case(
         *approach("depth of the truncated cone", "indentation_depth", cone, cone_depth),
         *approach("force of the truncated cone", "normal_force", cone, cone_force),
         *agreements(CHECKED, required("fem", "integral_equation")),
-        *agreements(CHECKED, COARSEST, reason=WHY["coarse grids"]),
+        *agreements(CHECKED, COARSEST, why=WHY["coarse grids"]),
         *agreements(FAR, required("fem"), suffix=", far"),
         *ORDERS,
     ),

@@ -18,16 +18,15 @@ from dataclasses import replace
 
 import numpy as np
 
-from cases.declare.case import Case, CaseScene, text_of
+from cases.case import Case, CaseScene, text_of
+from cases.claims import Agree, Equal
+from cases.cost_settings import costs_beside_others
 from cases.declare.methods import MethodUse
-from cases.judgement.claims.agreement import Agreement
-from cases.judgement.claims.exact import Exact
 from cases.library._claims import exact
 from cases.library._layers import THICKNESS, contact_modulus, half_space, layer, scene_name
 from cases.library._methods import BEM, EQUATION, FEM, MDR
 from cases.library._reasons import SHARED, reasons, with_tolerance
 from cases.library._references import numbers
-from cases.measurements.cost.settings import costs_beside_others
 from contact import (
     FlatPunch,
     IndentationDepths,
@@ -143,7 +142,7 @@ COMPARED = (
 )
 
 
-def exactly(quantity: str, *, at_a_half: bool) -> Iterator[Exact]:
+def exactly(quantity: str, *, at_a_half: bool) -> Iterator[Equal]:
     """Return the claim on a quantity, on incompressible layers or on all others."""
     expected = {
         scene.name: EXPECTED[quantity][scene.name]
@@ -171,14 +170,14 @@ CLAIMS = (
         tolerances={**TOLERANCES, "tamaas": 1e-1, "contact_mechanics": 1e-1},
     ),
     *(
-        Agreement(
+        Agree(
             name=f"{quantity.replace('_', ' ')}: CalculiX and {other}{where}",
             quantity=quantity,
             scenes=tuple(scene.name for scene, (label, _) in zip(SCENES, PLACES, strict=True) if label in labels),
             fast="calculix",
             reference=other,
             tolerance=tolerance,
-            reason=with_tolerance(SHARED["fem"], digits),
+            why=with_tolerance(SHARED["fem"], digits),
         )
         for other in ("mdr", "fem")
         for quantity in ("normal_force", "contact_stiffness")

@@ -11,11 +11,10 @@ import numpy as np
 from numpy.polynomial.legendre import leggauss
 from scipy.special import j0
 
-from cases.declare.case import CaseScene
-from cases.judgement.claims.own_laws import SampledLaw
-from cases.judgement.rules.norms import RingQuadrature
+from cases.answers import Answer
+from cases.case import CaseScene
 from cases.library.stacks._second_kernel import surface_compliance
-from cases.results.records.scene_run import Curve, SceneRun
+from cases.norms import RingQuadrature
 from contact import ElasticLayer, FlatPunch
 from contact.records.validation import FloatArray
 
@@ -24,32 +23,29 @@ Compliance = Callable[[ElasticLayer, FloatArray], FloatArray]
 # Shares of the contact radius where the displacement is compared.
 COMPARED = np.array([0.0, 0.3, 0.7, 0.95])
 NODES = 20
+# Wavenumbers times the thickness of the surface material beyond which the half-space answers, to exp(-2 x 24).
+WAVES = 24.0
 
 
-@dataclass(frozen=True, kw_only=True)
-class PressedShape(SampledLaw):
-    """The sampled pressure of the last step displaces the surface by delta - f(r), relative to delta.
+def unlike_shape(
+    scene: CaseScene, answer: Answer, compliance: Compliance = surface_compliance, radial_waves: float = 0.0
+) -> list[float]:
+    """Return how far the displacement by the sampled pressure is from delta - f(r), relative to delta.
 
-    Attributes:
+    Args:
+        scene: whose pressure is sampled at the last step.
+        answer: with that pressure.
         compliance: the second kernel.
-        waves: wavenumbers, times the thickness of the surface material, beyond which the half-space answers.
-        radial_waves: the least such number times the contact radius, for kernels that fall like 1/k.
+        radial_waves: the least wavenumber times the contact radius up to which kernels that fall like 1/k are taken.
     """
-
-    compliance: Compliance = surface_compliance
-    waves: float = 24.0
-    radial_waves: float = 0.0
-
-    def residual(self, scene: CaseScene, run: SceneRun, sampled: Curve) -> float:
-        """Where the displacement is farthest from delta - f(r)."""
-        indenter, layer, rings = scene.scene.indenter, scene.scene.layer, scene.sampling.rings
-        pressed = Pressed(rings, np.array(sampled.y), singular=isinstance(indenter, FlatPunch))
-        radius = COMPARED * rings.edges[-1]
-        largest = max(self.waves / layer.surface.thickness, self.radial_waves / rings.edges[-1])
-        found = pressed.displacement(layer, self.compliance, radius, largest, tapered=self.radial_waves > 0)
-        depth = run.quantity("indentation_depth").values[-1]
-        height = indenter.height(radius)
-        return float(np.max(np.abs(found - depth + height))) / depth
+    indenter, layer, rings = scene.scene.indenter, scene.scene.layer, scene.sampling.rings
+    pressure = np.array(answer.quantities["pressure"].values)
+    pressed = Pressed(rings, pressure, singular=isinstance(indenter, FlatPunch))
+    radius = COMPARED * rings.edges[-1]
+    largest = max(WAVES / layer.surface.thickness, radial_waves / rings.edges[-1])
+    displaced = pressed.displacement(layer, compliance, radius, largest, tapered=radial_waves > 0)
+    depth = answer.quantities["indentation_depth"].values[-1]
+    return [float(np.max(np.abs(displaced - depth + indenter.height(radius)))) / depth]
 
 
 @dataclass(frozen=True, eq=False)

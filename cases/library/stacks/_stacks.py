@@ -2,20 +2,19 @@
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from functools import partial
 from typing import Any
 
 import numpy as np
 
-from cases.declare.case import CaseScene
-from cases.declare.task import Sampling
-from cases.judgement.claims.approach import Approach
-from cases.judgement.claims.declared import DeclaredClaim
+from cases.case import CaseScene, Sampling
+from cases.claims import Approach, Claim, Zero
 from cases.library._claims import agreements
 from cases.library._layers import THICKNESS, YOUNGS_MODULUS, edges
 from cases.library._methods import BEM, EQUATION, FEM, MDR
 from cases.library._reasons import reasons
 from cases.library.stacks._second_kernel import surface_compliance
-from cases.library.stacks._shape_test import Compliance, PressedShape
+from cases.library.stacks._shape_test import Compliance, unlike_shape
 from contact import (
     ContactRadii,
     ElasticBase,
@@ -119,11 +118,11 @@ def _rings(layer: ElasticLayer, contact_radius: float) -> tuple[float, ...]:
     return (*(1 - HALVED**level for level in range(levels + 1)), 1.0)
 
 
-def two_methods(scenes: Iterable[CaseScene], required: Mapping[str, float] = REQUIRED) -> Iterator[DeclaredClaim]:
+def two_methods(scenes: Iterable[CaseScene], required: Mapping[str, float] = REQUIRED) -> Iterator[Claim]:
     """Yield the agreement of MDR with each other method."""
     scenes = tuple(scenes)
     for label, tolerance in required.items():
-        yield from agreements(scenes, {label: tolerance}, reason=WHY[f"MDR and {label}"])
+        yield from agreements(scenes, {label: tolerance}, why=WHY[f"MDR and {label}"])
 
 
 def pressed_shape(
@@ -133,17 +132,16 @@ def pressed_shape(
     compliance: Compliance = surface_compliance,
     radial_waves: float = 0.0,
     methods: tuple[str, ...] = ("mdr", "integral_equation"),
-) -> PressedShape:
+) -> Zero:
     """Return the shape test of scenes whose pressure is sampled."""
-    return PressedShape(
+    return Zero(
         name="the pressure presses the shape",
         quantity="pressure",
         scenes=tuple(scene.name for scene in scenes if scene.sampling.ring_edges),
         methods=methods,
         tolerance=tolerance,
-        reason=WHY["shape test"],
-        compliance=compliance,
-        radial_waves=radial_waves,
+        why=WHY["shape test"],
+        derive=partial(unlike_shape, compliance=compliance, radial_waves=radial_waves),
     )
 
 
@@ -154,7 +152,7 @@ def stiffness_limit(
     limit: Callable[[AnyScene], float],
     *,
     largest: float,
-    reason: str,
+    why: str,
 ) -> Approach:
     """The stiffness of both fast methods approaches a limit with first order in a parameter, in the suite nightly."""
     return Approach(
@@ -166,5 +164,5 @@ def stiffness_limit(
         largest=largest,
         methods=("mdr", "integral_equation"),
         nightly=True,
-        reason=WHY[reason],
+        why=WHY[why],
     )

@@ -13,7 +13,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from cases.declare.case import Case, CaseScene, text_of
+from cases.case import Case, CaseScene, text_of
+from cases.cost_settings import elastic_costs
 from cases.declare.methods import MethodUse
 from cases.library._claims import exact
 from cases.library._layers import THICKNESS, YOUNGS_MODULUS
@@ -30,7 +31,6 @@ from cases.library.stacks._stacks import (
     stiffness_limit,
     two_methods,
 )
-from cases.measurements.cost.settings import elastic_costs
 from contact import ElasticBase, ElasticLayer, LayerStack
 from contact.records.validation import FloatArray
 
@@ -161,10 +161,10 @@ CASE = Case(
             tolerances={"fem": 1e-5, "bem": 1e-3},
         ),
         stiffness_limit(
-            "a thin film answers like its substrate", WIDE, thinness, thin_film, largest=0.05, reason="thin film"
+            "a thin film answers like its substrate", WIDE, thinness, thin_film, largest=0.05, why="thin film"
         ),
         stiffness_limit(
-            "a slipping stiff film bends like a plate", PLATES, narrowness, bent_plate, largest=0.05, reason="plate"
+            "a slipping stiff film bends like a plate", PLATES, narrowness, bent_plate, largest=0.05, why="plate"
         ),
     ),
     work=elastic_costs(film(10.0, 1.0).name),

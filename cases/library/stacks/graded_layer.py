@@ -10,8 +10,9 @@ layer is approached with nearly the second order of 1/n: the top one, of constan
 
 import numpy as np
 
-from cases.declare.case import Case, text_of
-from cases.judgement.claims.approach import Approach
+from cases.case import Case, text_of
+from cases.claims import Approach
+from cases.cost_settings import elastic_costs
 from cases.library._claims import exact
 from cases.library._layers import THICKNESS, YOUNGS_MODULUS
 from cases.library.stacks._stacks import (
@@ -26,7 +27,6 @@ from cases.library.stacks._stacks import (
     stack,
     two_methods,
 )
-from cases.measurements.cost.settings import elastic_costs
 from contact import ElasticBase, ExponentialDepth, GradedLayer, LayerStack
 from contact.scene.layer import Support
 
@@ -125,7 +125,7 @@ CASE = Case(
             largest=2e-3,
             methods=("mdr",),
             nightly=True,
-            reason=WHY["sublayers"],
+            why=WHY["sublayers"],
         ),
     ),
     work=elastic_costs(FIRST[0].name),

@@ -8,8 +8,9 @@ is written separately, must press the indenter's shape. An elastic bone is softe
 left out: a layer of the mean modulus alone errs by a multiple of what methods differ.
 """
 
-from cases.declare.case import Case, CaseScene, text_of
-from cases.judgement.claims.changed_scenes import NeverBelow
+from cases.case import Case, CaseScene, text_of
+from cases.claims import Bound
+from cases.cost_settings import elastic_costs
 from cases.library._convergence import EQUATION_NODES, FINEST_MDR, studies
 from cases.library.stacks._stacks import (
     METHODS,
@@ -22,7 +23,6 @@ from cases.library.stacks._stacks import (
     stack,
     two_methods,
 )
-from cases.measurements.cost.settings import elastic_costs
 from contact import ElasticBase
 from contact.scene.layer import Support
 
@@ -73,7 +73,7 @@ CASE = Case(
     claims=(
         *two_methods(SCENES),
         pressed_shape(SCENES),
-        NeverBelow(
+        Bound(
             name="a rigid bone is never softer than an elastic one",
             quantity="contact_stiffness",
             methods=("mdr",),
@@ -81,7 +81,7 @@ CASE = Case(
             change=on_elastic_bone,
             tolerance=1e-12,
             nightly=True,
-            reason=WHY["a stiffer base"],
+            why=WHY["a stiffer base"],
         ),
         *studies(ONE, EQUATION_NODES, ("normal_force",), against=FINEST_MDR),
     ),

@@ -11,7 +11,8 @@ here. The figure shows what bodies made simpler err by, also one on an elastic b
 
 import math
 
-from cases.declare.case import Case, CaseScene, text_of
+from cases.case import Case, CaseScene, text_of
+from cases.cost_settings import elastic_costs
 from cases.library._claims import exact, scaling_law
 from cases.library._convergence import EQUATION_NODES, FINEST_MDR, studies
 from cases.library._layers import THICKNESS
@@ -27,7 +28,6 @@ from cases.library.stacks._stacks import (
     stiffness_limit,
     two_methods,
 )
-from cases.measurements.cost.settings import elastic_costs
 from contact import ElasticLayer, Layer, LayerStack
 
 # Thickness, modulus and nu of each layer, from the top, and whether the two slip.
@@ -155,7 +155,7 @@ CASE = Case(
             tolerance=1e-11,
             tolerances={"fem": 1e-5, "bem": 1e-3},
         ),
-        stiffness_limit("incompressible layers flow", THIN, thinness, flowing, largest=0.1, reason="flow"),
+        stiffness_limit("incompressible layers flow", THIN, thinness, flowing, largest=0.1, why="flow"),
         *studies((FIRST_SCENE,), EQUATION_NODES, ("normal_force",), against=FINEST_MDR),
     ),
     work=elastic_costs(FIRST_SCENE.name),

@@ -12,7 +12,7 @@ from cases.run.empty_caches import forget
 from contact import Adhesion, ContactError, Detachment, ElasticLayer, Method, Scene, Solution
 
 if TYPE_CHECKING:
-    from cases.results.records.cost import EffectEntry
+    from cases.studies import Effect
 
 # A solution of more seconds than this hides the imports.
 _IMPORTS_COUNT = 2.0
@@ -20,7 +20,7 @@ NOTHING_PULLS = "without it nothing pulls: the whole detachment is its work"
 STATIC = ("contact_radius", "indentation_depth", "normal_force")
 
 
-def ablations(method: Method, scene: Scene) -> list[EffectEntry]:
+def ablations(method: Method, scene: Scene) -> list[Effect]:
     """Each listed effect, and the layer's finite thickness, left out in turn.
 
     Raises:
@@ -39,7 +39,7 @@ def first_solution(method: Method, scene: Scene) -> Solution:
     return method.solve(scene)
 
 
-def ablations_of(method: Method, whole: Solution) -> list[EffectEntry]:
+def ablations_of(method: Method, whole: Solution) -> list[Effect]:
     """The same for a scene that was solved."""
     return [_ablation(method, whole, part) for part in parts_of(whole.scene)]
 
@@ -64,10 +64,10 @@ def without(scene: Scene, parts: Sequence[str]) -> Scene:
     return scene.replace(effects=effects, layer=layer)
 
 
-def _ablation(method: Method, whole: Solution, part: str) -> EffectEntry:
-    from cases.results.records.cost import EffectEntry  # noqa: PLC0415 - a single answer needs no records of runs
+def _ablation(method: Method, whole: Solution, part: str) -> Effect:
+    from cases.studies import Effect  # noqa: PLC0415 - a single answer needs no records of runs
 
-    entry = partial(EffectEntry, scene="", method=method.name, effect=part, seconds=_seconds(whole))
+    entry = partial(Effect, case="", scene="", method=method.name, part=part, seconds=_seconds(whole))
     if part == Adhesion.__name__ and isinstance(whole.scene.loading, Detachment):
         return entry(seconds_without=None, remark=NOTHING_PULLS)
     try:

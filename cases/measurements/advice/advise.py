@@ -10,7 +10,7 @@ from cases.measurements.advice.dimensionless_numbers import Number, numbers
 from contact import InvalidInput, Method, Scene, Solution
 
 if TYPE_CHECKING:
-    from cases.results.records.cost import EffectEntry
+    from cases.studies import Effect
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -26,8 +26,8 @@ class Advice:
     """
 
     accuracy: float
-    needed: tuple[EffectEntry, ...]
-    droppable: tuple[EffectEntry, ...]
+    needed: tuple[Effect, ...]
+    droppable: tuple[Effect, ...]
     together: float
     numbers: tuple[Number, ...]
 
@@ -66,11 +66,11 @@ def advise(method: Method, scene: Scene, accuracy: float) -> Advice:
 
 
 def _together(
-    method: Method, whole: Solution, droppable: tuple[EffectEntry, ...], accuracy: float
-) -> tuple[float, tuple[EffectEntry, ...]]:
+    method: Method, whole: Solution, droppable: tuple[Effect, ...], accuracy: float
+) -> tuple[float, tuple[Effect, ...]]:
     """Small changes may add up: as long as they do, the part that moves most is needed after all."""
     while len(droppable) > 1:
-        change = change_without(method, whole, [part.effect for part in droppable])
+        change = change_without(method, whole, [part.part for part in droppable])
         if change <= accuracy:
             return change, droppable
         most = max(droppable, key=lambda part: part.largest_change)

@@ -2,36 +2,30 @@
 
 import dataclasses
 
-from cases.gate.accept import accept
+from cases.answers import Table
+from cases.gate.accept import accept, accepted_before, propose
 from cases.gate.baseline import read_baselines
 from cases.gate.gate import gate
-from cases.gate.proposal import propose
 from cases.gate.write_permission import WriteConditions
-from cases.results.records.claim import Kind
-from tests.cases.example_run import example_run, passing_case
+from cases.verdicts import Kind
+from tests.cases.example_run import CASE, passing_run
 
-CASE = "example_cone"
 NOW = WriteConditions(revision="0" * 40, changed=(), in_ci=False, date="2026-01-01")
 SPREAD = 1e-10  # tolerance 1e-9
 
 
-def clean_run(case=None):
-    return dataclasses.replace(example_run(), cases=(case or passing_case(),))
+def clean_run(**judged):
+    run = passing_run()
+    return dataclasses.replace(run, judged=dataclasses.replace(run.judged, **judged))
 
 
 def spreads_of(run, spread=SPREAD):
-    rows = [row for case in run.cases for row in case.runs]
-    return {(row.method, row.scene, q.name): spread for row in rows for q in row.quantities}
+    return {(a.method, a.scene, name): spread for a in run.answers for name in a.quantities}
 
 
 def proposal_of(run, folder, *, case=CASE, spread=SPREAD, reason="first numbers"):
-    return propose(
-        run.case(case),
-        suites=("ci",),
-        accepted=read_baselines(folder),
-        spreads=spreads_of(run, spread),
-        reason=reason,
-    )
+    before = accepted_before(folder, case)
+    return propose(run, case, suites=("ci",), before=before, spreads=spreads_of(run, spread), reason=reason)
 
 
 def accepted(folder, run=None, **how):
@@ -47,25 +41,30 @@ def gated(run, folder):
 
 
 def regressions(run):
-    return [claim for case in run.cases for claim in case.claims if claim.kind is Kind.REGRESSION]
+    return [verdict for verdict in run.judged.verdicts if verdict.kind is Kind.REGRESSION]
 
 
-def with_rows(change):
-    """The clean run with every row of the case replaced by `change(row)`; None drops it."""
-    case = passing_case()
-    rows = [change(row) for row in case.runs]
-    return clean_run(dataclasses.replace(case, runs=tuple(row for row in rows if row is not None)))
+def with_answers(change, run=None):
+    """The clean run with every answer replaced by `change(answer)`; None drops it."""
+    run = run or clean_run()
+    answers = [change(answer) for answer in run.answers]
+    return dataclasses.replace(run, answers=Table(answer for answer in answers if answer is not None))
+
+
+def with_quantities(change):
+    """The clean run with every quantity replaced by `change(method, name, values)`; None drops it."""
+
+    def changed(answer):
+        found = {name: change(answer.method, name, q) for name, q in answer.quantities.items()}
+        return dataclasses.replace(answer, quantities={name: q for name, q in found.items() if q is not None})
+
+    return with_answers(changed)
 
 
 def with_force(method, change):
-    """The clean run with the force record of `method` replaced by `change(record)`."""
-
-    def changed(row):
-        kept = [change(q) if row.method == method and q.name == "normal_force" else q for q in row.quantities]
-        return dataclasses.replace(row, quantities=tuple(q for q in kept if q is not None))
-
-    return with_rows(changed)
+    """The clean run with the force of `method` replaced by `change(values)`."""
+    return with_quantities(lambda m, name, q: change(q) if (m, name) == (method, "normal_force") else q)
 
 
 def scaled(factor):
-    return lambda quantity: dataclasses.replace(quantity, values=tuple(factor * v for v in quantity.values))
+    return lambda q: dataclasses.replace(q, values=tuple(factor * v for v in q.values))

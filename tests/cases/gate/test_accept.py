@@ -1,20 +1,17 @@
 """Accepting: what it writes, what it shows, and everything it refuses."""
 
 import dataclasses
-import json
 import math
 
 import pytest
 
 from cases.gate.accept import accept, refusals
-from cases.gate.baseline import read_baselines
+from cases.gate.baseline import read_baselines, relative_tolerance
 from cases.gate.write_permission import write_conditions
-from cases.results.records.claim import Kind
-from cases.results.status import Status
+from cases.verdicts import Kind, Status
 from contact import InvalidInput
-from tests.cases.example_run import SCENE, example_run, failed_claim, fast_run, order_claim, passing_case
+from tests.cases.example_run import CASE, SCENE, example_stamp, failed, fast
 from tests.cases.gate.example_baselines import (
-    CASE,
     NOW,
     accepted,
     clean_run,
@@ -22,9 +19,15 @@ from tests.cases.gate.example_baselines import (
     proposal_of,
     regressions,
     scaled,
+    with_answers,
     with_force,
-    with_rows,
 )
+
+
+def quantities(folder):
+    """Accepted quantities by method, scene and name."""
+    (baseline,) = read_baselines(folder)
+    return {(a.method, a.scene, name): q for a in baseline.answers for name, q in a.quantities.items()}
 
 
 def refused(folder, run=None, now=NOW, **how):
@@ -32,47 +35,40 @@ def refused(folder, run=None, now=NOW, **how):
     return refusals(proposal_of(run, folder, **how), run, now)
 
 
-def test_one_file_for_each_method_with_sorted_keys_and_every_digit(tmp_path):
-    third = with_force("mdr", scaled(1 / 3))
-    accepted(tmp_path, third)
-    assert sorted(path.name for path in (tmp_path / CASE).iterdir()) == ["fem.json", "mdr.json"]
-    text = (tmp_path / CASE / "mdr.json").read_text(encoding="utf-8")
-    tree = json.loads(text)
-    assert text == json.dumps(tree, sort_keys=True, indent=1) + "\n"
-    (mdr,) = [baseline for baseline in read_baselines(tmp_path) if baseline.method == "mdr"]
-    kept = {record.place: record for record in mdr.records}
-    assert kept[SCENE, "normal_force"].values == (0.5,)
-    assert kept[SCENE, "indentation_depth"].values == fast_run(SCENE).quantity("indentation_depth").values
+def test_one_file_per_case_with_one_answer_per_line_and_every_digit(tmp_path):
+    accepted(tmp_path, with_force("mdr", scaled(1 / 3)))
+    assert [path.name for path in tmp_path.iterdir()] == [f"{CASE}.jsonl"]
+    assert len((tmp_path / f"{CASE}.jsonl").read_text(encoding="utf-8").splitlines()) == 1 + 4
+    kept = quantities(tmp_path)
+    assert kept["mdr", SCENE, "normal_force"].values == (0.5,)
+    assert kept["mdr", SCENE, "indentation_depth"].values == fast(SCENE).quantities["indentation_depth"].values
+    assert kept["mdr", SCENE, "pressure"].values == ()  # of a field the stated error alone
 
 
-def test_a_record_says_what_it_is_and_why(tmp_path):
+def test_a_quantity_keeps_unit_scale_error_and_spread_and_the_case_its_reason(tmp_path):
     accepted(tmp_path, reason="checked against Sneddon")
-    record = read_baselines(tmp_path)[1].records[1]
-    assert (record.quantity, record.unit, record.scale, record.reason) == (
-        "normal_force",
-        "N",
-        1.5,
-        "checked against Sneddon",
-    )
-    assert (record.spread, record.tolerance) == (1e-10, 1e-9)  # ten times the spread
-    assert record.uncertainty == (1.5e-12,)
-    assert len(record.specification) == 16
+    q = quantities(tmp_path)["mdr", SCENE, "normal_force"]
+    assert (q.unit, q.scale, q.error, q.spread) == ("N", 1.5, (1.5e-12,), 1e-10)
+    assert relative_tolerance(q) == 1e-9  # ten times the spread
+    (baseline,) = read_baselines(tmp_path)
+    assert baseline.accepted.reason == "checked against Sneddon"
+    assert {len(answer.question) for answer in baseline.answers} == {16}
 
 
 def test_a_spread_of_zero_still_allows_1e_12(tmp_path):
     accepted(tmp_path, spread=0.0)
-    assert {record.tolerance for baseline in read_baselines(tmp_path) for record in baseline.records} == {1e-12}
+    assert {relative_tolerance(q) for q in quantities(tmp_path).values()} == {1e-12}
 
 
 def test_a_change_is_shown_in_tolerances_and_in_uncertainty(tmp_path):
     accepted(tmp_path)
     run = with_force("mdr", scaled(1 + 1e-7))
     changes = proposal_of(run, tmp_path).changes
-    assert {(c.method, c.record.quantity) for c in changes} == {("mdr", "normal_force")}
+    assert {(c.method, c.quantity) for c in changes} == {("mdr", "normal_force")}
     change = changes[0]
     assert change.values == (1.5, 1.5 * (1 + 1e-7))
     assert change.in_tolerances == pytest.approx(100, rel=1e-3, abs=0.0)
-    assert change.in_uncertainty == pytest.approx(1e5, rel=1e-3, abs=0.0)  # U is 1e-12 of the force
+    assert change.in_stated_errors == pytest.approx(1e5, rel=1e-3, abs=0.0)  # U is 1e-12 of the force
 
 
 def test_accepting_the_same_again_changes_no_byte(tmp_path):
@@ -88,8 +84,7 @@ def test_a_new_number_is_accepted_with_its_reason(tmp_path):
     assert any(claim.status is Status.DIFF for claim in regressions(gated(run, tmp_path)))
     accepted(tmp_path, run, reason="the quadrature was corrected")
     assert {claim.status for claim in regressions(gated(run, tmp_path))} == {Status.PASS}
-    records = [record for baseline in read_baselines(tmp_path) for record in baseline.records]
-    assert "the quadrature was corrected" in {record.reason for record in records}
+    assert read_baselines(tmp_path)[0].accepted.reason == "the quadrature was corrected"
 
 
 def test_loosening_is_refused_without_the_flag_and_kept_with_its_reason(tmp_path):
@@ -98,8 +93,7 @@ def test_loosening_is_refused_without_the_flag_and_kept_with_its_reason(tmp_path
     with pytest.raises(InvalidInput, match="--loosen"):
         accepted(tmp_path, spread=1e-7)
     accepted(tmp_path, spread=1e-7, loosen=True, reason="another compiler")
-    records = [record for baseline in read_baselines(tmp_path) for record in baseline.records]
-    assert {record.reason for record in records if record.tolerance == 1e-6} == {"another compiler"}
+    assert {relative_tolerance(q) for q in quantities(tmp_path).values() if not q.at} == {1e-6}
 
 
 def test_a_larger_declared_scale_is_a_loosening_too(tmp_path):
@@ -116,7 +110,7 @@ def test_a_smaller_value_of_the_same_scale_is_no_loosening(tmp_path):
 def test_withdrawing_a_record_or_a_counter_is_a_loosening(tmp_path):
     accepted(tmp_path)
     assert any("no longer be watched" in line for line in refused(tmp_path, with_force("mdr", lambda _: None)))
-    uncounted = with_rows(lambda row: dataclasses.replace(row, cost=dataclasses.replace(row.cost, counters={})))
+    uncounted = with_answers(lambda row: dataclasses.replace(row, counters={}))
     assert any("counter solves" in line for line in refused(tmp_path, uncounted))
 
 
@@ -126,10 +120,8 @@ def test_a_smaller_spread_leaves_the_tolerance_as_it_is(tmp_path):
 
 
 def test_a_solver_that_broke_down_is_refused(tmp_path):
-    broken = dataclasses.replace(
-        fast_run(SCENE), status=Status.INVALID, reason="value is nan", quantities=(), cost=None
-    )
-    run = with_rows(lambda row: broken if (row.method, row.scene) == ("mdr", SCENE) else row)
+    broken = dataclasses.replace(fast(SCENE), status=Status.INVALID, reason="value is nan", quantities={}, counters={})
+    run = with_answers(lambda row: broken if (row.method, row.scene) == ("mdr", SCENE) else row)
     assert any("value is nan" in line for line in refused(tmp_path, run))
 
 
@@ -137,7 +129,7 @@ def test_a_solver_that_broke_down_is_refused(tmp_path):
 def test_non_finite_numbers_are_refused_even_if_they_passed_every_record(tmp_path, bad):
     run = clean_run()
     proposal = proposal_of(run, tmp_path)
-    object.__setattr__(proposal.baselines[0].records[0], "values", (bad,))
+    object.__setattr__(proposal.baseline.answers[0].quantities["normal_force"], "values", (bad,))
     assert any("is not finite" in line for line in refusals(proposal, run, NOW))
     with pytest.raises(InvalidInput, match="not finite"):
         accept(tmp_path, proposal, run, NOW)
@@ -153,15 +145,13 @@ def test_an_impossible_spread_is_refused(tmp_path, bad):
 @pytest.mark.parametrize("kind", [Kind.EXACT, Kind.ORDER])
 @pytest.mark.parametrize("status", [Status.FAIL, Status.INVALID, Status.TIMEOUT, Status.XPASS])
 def test_a_failing_exact_or_order_claim_is_refused(tmp_path, kind, status):
-    claim = dataclasses.replace(failed_claim(), kind=kind, status=status)
-    run = clean_run(dataclasses.replace(passing_case(), claims=(claim,)))
-    assert any("half-space force" in line for line in refused(tmp_path, run))
+    claim = dataclasses.replace(failed(), case=CASE, kind=kind, status=status)
+    assert any("half-space force" in line for line in refused(tmp_path, clean_run(verdicts=(claim,))))
 
 
 def test_a_passing_claim_and_a_regression_are_no_obstacle(tmp_path):
     accepted(tmp_path)
     run = gated(with_force("mdr", scaled(1 + 1e-7)), tmp_path)
-    assert order_claim() in run.case(CASE).claims
     assert not refused(tmp_path, run)
 
 
@@ -178,9 +168,9 @@ def test_the_wrong_place_or_time_is_refused(tmp_path, now, message):
 
 
 def test_a_run_of_uncommitted_code_and_an_unfinished_one_are_refused(tmp_path):
-    dirty = dataclasses.replace(clean_run(), stamp=dataclasses.replace(example_run().stamp, dirty=True))
+    dirty = clean_run(stamp=dataclasses.replace(example_stamp(), dirty=True))
     assert any("uncommitted" in line for line in refused(tmp_path, dirty))
-    assert any("interrupted" in line for line in refused(tmp_path, dataclasses.replace(clean_run(), complete=False)))
+    assert any("interrupted" in line for line in refused(tmp_path, clean_run(complete=False)))
 
 
 def test_no_reason_is_refused(tmp_path):
@@ -197,8 +187,8 @@ def test_changed_and_new_files_are_seen_but_not_the_baselines_being_written(tmp_
     repository(tmp_path)
     folder = tmp_path / "baselines"
     assert write_conditions(tmp_path, folder, {}).changed == ()
-    (folder / CASE).mkdir(parents=True)
-    (folder / CASE / "mdr.json").write_text("{}", encoding="utf-8")
+    folder.mkdir()
+    (folder / f"{CASE}.jsonl").write_text("{}", encoding="utf-8")
     assert write_conditions(tmp_path, folder, {}).changed == ()
     (tmp_path / "new.py").write_text("x = 1\n", encoding="utf-8")
     (tmp_path / "tracked.py").write_text("x = 2\n", encoding="utf-8")
@@ -220,10 +210,9 @@ def repository(folder):
 
 
 def test_a_claim_is_withdrawn_only_when_told_so(tmp_path):
-    case = passing_case()
-    less = clean_run(dataclasses.replace(case, claims=()))
+    less = clean_run(verdicts=())
     accepted(tmp_path)
-    with pytest.raises(InvalidInput, match="claim 'force agrees' about normal_force by mdr would no longer be"):
+    with pytest.raises(InvalidInput, match="claim 'force agrees' about normal_force by mdr and fem would no longer be"):
         accepted(tmp_path, less)
     accepted(tmp_path, less, loosen=True)
-    assert not any(baseline.claims for baseline in read_baselines(tmp_path))
+    assert not any(baseline.accepted.claims for baseline in read_baselines(tmp_path))

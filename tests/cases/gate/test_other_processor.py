@@ -5,16 +5,17 @@ import math
 
 import pytest
 
+from cases.answers import Table
 from cases.declare.registry import load_cases
-from cases.declare.selection import in_suite
-from cases.declare.task import Answers
+from cases.gate.accept import propose
 from cases.gate.gate import gate
-from cases.gate.proposal import propose
 from cases.gate.spread import nudged_scene
-from cases.judgement.judge import case_result
-from cases.judgement.rules.tolerance import relative_spread
-from cases.run.solve_task import solve
-from tests.cases.gate.example_baselines import clean_run, regressions
+from cases.rules import relative_spread
+from cases.run.runner import judge
+from cases.run.solve_task import job_of, solve
+from cases.runs import Run
+from tests.cases.example_run import example_stamp
+from tests.cases.gate.example_baselines import regressions
 
 CASES = [
     "measured_profile",
@@ -23,31 +24,31 @@ CASES = [
 
 
 def answered(case, nudged=lambda scene: scene):
-    """The judged case with its scenes nudged."""
+    """The judged case with its scenes nudged; a number with nine digits is the same question."""
     tasks = [case.task(scene, use) for scene in case.scenes for use in case.methods_of(scene)]
-    rows = {t.identity: solve(dataclasses.replace(t, problem=nudged(t.problem)), "") for t in tasks}
-    return case_result(case, Answers(rows), complete=False)
+    answers = Table(solve(job_of(dataclasses.replace(t, problem=nudged(t.problem)))) for t in tasks)
+    return Run(judged=dataclasses.replace(judge([case], answers, example_stamp()), suite="ci"), answers=answers)
 
 
-def spreads(*answers):
+def spreads(*runs):
     """Half the range of some answers over their size, by method, scene and quantity."""
     return {
-        (first.method, first.scene, q.name): max(
-            relative_spread(step, q.scale) for step in zip(*(row.quantity(q.name).values for row in rows), strict=True)
+        (first.method, first.scene, name): max(
+            relative_spread(step, q.scale)
+            for step in zip(*(answer.quantities[name].values for answer in answers), strict=True)
         )
-        for rows in zip(*(answer.runs for answer in answers), strict=True)
-        for first in rows[:1]
-        for q in first.quantities
+        for answers in zip(*(run.answers for run in runs), strict=True)
+        for first in answers[:1]
+        for name, q in first.quantities.items()
     }
 
 
 @pytest.mark.parametrize("name", CASES)
 def test_a_case_answered_from_inputs_one_rounding_away_passes_the_gate(name):
-    case = in_suite(load_cases()[name], "ci")
+    case = load_cases()[name].in_suite("ci")
     plain, up, down = answered(case), *(answered(case, lambda s, t=t: nudged_scene(s, t)) for t in (math.inf, 0.0))
-    accepted = propose(plain, suites=("ci",), accepted=(), spreads=spreads(plain, up, down), reason="x")
+    accepted = propose(plain, name, suites=("ci",), before=None, spreads=spreads(plain, up, down), reason="x")
     other = answered(case, lambda scene: scene.replace(layer=nudged_scene(scene, math.inf).layer))
-    judged = gate(clean_run(other), accepted.baselines)
-    found = regressions(judged)
+    found = regressions(gate(other, [accepted.baseline]))
     assert len(found) > 10
-    assert [(claim.scene, claim.methods, claim.message) for claim in found if claim.status.is_failure] == []
+    assert [(v.scene, v.methods, v.message) for v in found if v.status.is_failure] == []

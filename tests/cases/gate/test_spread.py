@@ -6,11 +6,12 @@ import os
 import numpy as np
 import pytest
 
+from cases.answers import Table
 from cases.declare import methods
 from cases.declare.registry import load_cases
 from cases.gate import spread
 from cases.gate.spread import measured_spreads, nudged_scene
-from cases.run.solve_task import solve
+from cases.run.solve_task import job_of, solve
 from contact import (
     ContactRadii,
     DepthHistory,
@@ -49,13 +50,13 @@ def test_few_repetitions_are_under_way_at_a_time(monkeypatch):
         case, scenes=tuple(dataclasses.replace(case.scenes[0], name=f"{n}") for n in range(5))
     )
     tasks = [several.task(scene, use) for scene in several.scenes for use in several.methods]
-    measured_spreads(several, {(task.scene, task.method): solve(task, "") for task in tasks}, jobs=1)
+    measured_spreads(several, Table(solve(job_of(task)) for task in tasks), jobs=1)
     assert max(executor.largest for executor in made) <= 2 < made[0].submitted
 
 
 def spreads_of(case):
     tasks = [case.task(scene, use) for scene in case.scenes for use in case.methods]
-    return measured_spreads(case, {(task.scene, task.method): solve(task, "") for task in tasks})
+    return measured_spreads(case, Table(solve(job_of(task)) for task in tasks))
 
 
 @pytest.mark.parametrize(("towards", "sign"), [(np.inf, 1), (0.0, -1)])
@@ -97,11 +98,11 @@ def test_repetitions_are_not_refined_for_an_error(monkeypatch):
     asked = []
     (scene, *_), (use, *_) = fake_case().scenes, fake_case().methods
     task = fake_case().task(scene, use)
-    monkeypatch.setattr("cases.run.solve_task.registered", lambda: {task.method: None})
-    monkeypatch.setattr("cases.run.solve_task._estimated", lambda _, answer: asked.append(answer) or answer)
-    solve(task, "", estimates=False)
+    monkeypatch.setattr("cases.run.solve_task.registered", lambda: {task.use.method: None})
+    monkeypatch.setattr("cases.run.solve_task.with_estimated_errors", lambda *a: asked.append(a) or a[-1])
+    solve(job_of(task, estimates=False))
     assert not asked
-    solve(task, "")
+    solve(job_of(task))
     assert len(asked) == 1
 
 
@@ -123,9 +124,9 @@ def test_the_spread_of_an_unstable_method_is_seen():
 @pytest.mark.usefixtures("in_this_process")
 def test_a_repetition_that_breaks_down_is_refused():
     case = fake_case()
-    rows = {(task.scene, task.method): solve(task, "") for task in case.tasks() if not task.variant}
+    answers = Table(solve(job_of(task)) for task in case.tasks() if not task.variant)
     with pytest.raises(InvalidInput, match="should change nothing, but INVALID"):
-        measured_spreads(fake_case(slow=spoiled(SLOW, plant="raise")), rows)
+        measured_spreads(fake_case(slow=spoiled(SLOW, plant="raise")), answers)
 
 
 def test_the_plain_kernel_is_asked_for_only_inside(monkeypatch):
@@ -136,13 +137,11 @@ def test_the_plain_kernel_is_asked_for_only_inside(monkeypatch):
 
 
 def test_different_numbers_of_steps_are_refused():
-    case = fake_case()
-    quantity = solve(next(iter(case.tasks())), "").quantities[0]
-    from dataclasses import replace
-
-    shorter = replace(quantity, values=quantity.values[:1], uncertainty=())
+    task = next(fake_case().tasks())
+    answer = solve(job_of(task))
+    shorter = {n: dataclasses.replace(q, values=q.values[:1], error=()) for n, q in answer.quantities.items()}
     with pytest.raises(InvalidInput, match="steps"):
-        spread._spread(("fast", "scene", "q"), [quantity, shorter])
+        list(spread._spreads(task, [answer, dataclasses.replace(answer, quantities=shorter)]))
 
 
 def test_every_scene_of_the_library_can_be_nudged():

@@ -2,10 +2,9 @@
 
 import pytest
 
+from cases.cost import WorkStudy
 from cases.declare.registry import load_cases
-from cases.declare.selection import in_suite
-from cases.measurements.cost.work_precision import WorkStudy
-from cases.results.records.claim import Kind, Origin
+from cases.verdicts import Kind, Origin
 
 CASES = load_cases()
 FAMILIES = {
@@ -49,7 +48,7 @@ def test_a_case_asks_a_question_and_names_its_source(name):
 @pytest.mark.parametrize("name", sorted(CASES))
 def test_a_case_has_a_claim_that_no_own_output_decides(name):
     case = CASES[name]
-    assert Origin.OWN_EARLIER_OUTPUT not in {claim.reason.origin for claim in case.claims}
+    assert Origin.OWN_EARLIER_OUTPUT not in {claim.why.origin for claim in case.claims}
     assert {claim.kind for claim in case.claims} & {Kind.EXACT, Kind.AGREEMENT, Kind.ORDER}
 
 
@@ -57,20 +56,17 @@ def test_a_case_has_a_claim_that_no_own_output_decides(name):
 def test_an_independent_method_takes_part(name):
     """Finite elements share nothing with MDR; a case without them would verify the kernel with itself."""
     assert "fem" in {use.label for use in CASES[name].methods}
-    assert any(
-        "fem" in claim.labels(CASES[name], scene)
-        for claim in CASES[name].claims
-        for scene in claim.scenes_of(CASES[name])
-    )
+    assert any("fem" in claim.labels(use) for claim in CASES[name].claims for _, use in claim.places(CASES[name]))
 
 
 def test_a_method_that_solves_some_scenes_only_is_judged_on_these():
     """In the suite ci finite elements solve one of four scenes; a claim that named them then judged them on none."""
-    case = in_suite(CASES["inside_half_space"], "ci")
+    case = CASES["inside_half_space"].in_suite("ci")
     claim = next(claim for claim in case.claims if claim.name == "the force passes every depth")
-    assert [(scene.name, claim.labels(case, scene)) for scene in claim.scenes_of(case)] == [
-        ("paraboloid nu=0.3", ("mdr", "fem")),
-        ("paraboloid nu=0.5", ("mdr",)),
+    assert [(scene.name, use.label) for scene, use in claim.places(case)] == [
+        ("paraboloid nu=0.3", "mdr"),
+        ("paraboloid nu=0.3", "fem"),
+        ("paraboloid nu=0.5", "mdr"),
     ]
 
 
@@ -79,7 +75,7 @@ def test_every_task_can_be_planned_and_its_identity_is_unique_or_the_same_questi
     tasks = {}
     for task in CASES[name].tasks():
         known = tasks.setdefault(task.identity, task)
-        assert (known.problem, known.solver, known.timed) == (task.problem, task.solver, task.timed), task.label
+        assert (known.problem, known.use, known.timed) == (task.problem, task.use, task.timed), task.label
 
 
 @pytest.mark.parametrize("name", sorted(CASES))

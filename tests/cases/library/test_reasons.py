@@ -15,14 +15,14 @@ OWN = [name for name in _reasons.TABLE if name not in ("shared", *SHARED_TABLES)
 
 @pytest.mark.parametrize("case", OWN)
 def test_every_reason_of_a_case_is_given_by_one_of_its_claims(case):
-    given = {dataclasses.astuple(claim.reason) for claim in load_cases()[case].claims}
+    given = {dataclasses.astuple(claim.why) for claim in load_cases()[case].claims}
     unused = [name for name, reason in _reasons.reasons(case).items() if dataclasses.astuple(reason) not in given]
     assert unused == []
 
 
 @pytest.mark.parametrize("table", SHARED_TABLES)
 def test_every_reason_of_a_shared_table_is_given_by_a_claim_of_some_case(table):
-    given = {dataclasses.astuple(claim.reason) for case in load_cases().values() for claim in case.claims}
+    given = {dataclasses.astuple(claim.why) for case in load_cases().values() for claim in case.claims}
     unused = [name for name, why in _reasons.reasons(table).items() if dataclasses.astuple(why) not in given]
     assert unused == []
 

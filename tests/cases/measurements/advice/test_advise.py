@@ -39,13 +39,13 @@ def impact(relaxation_time):
 
 
 def part(advice, name):
-    return next(p for p in (*advice.needed, *advice.droppable) if p.effect == name)
+    return next(p for p in (*advice.needed, *advice.droppable) if p.part == name)
 
 
 def test_a_slow_relaxation_may_be_dropped_and_a_fast_one_not():
     slow, fast = advise(Mdr(), impact(1e3), 1e-2), advise(Mdr(), impact(1e-3), 1e-2)
-    assert "StandardSolid" in {p.effect for p in slow.droppable}
-    assert "StandardSolid" in {p.effect for p in fast.needed}
+    assert "StandardSolid" in {p.part for p in slow.droppable}
+    assert "StandardSolid" in {p.part for p in fast.needed}
     assert part(fast, "StandardSolid").changes["coefficient_of_restitution"] > 0.1
 
 
@@ -62,7 +62,7 @@ def test_a_thick_layer_is_a_half_space(ratio, needed):
     radius = ratio * SOFT.thickness
     scene = Scene(layer=SOFT, indenter=BALL, loading=ContactRadii([radius]))
     advice = advise(Mdr(), scene, 1e-2)
-    assert ("finite thickness" in {p.effect for p in advice.needed}) is needed
+    assert ("finite thickness" in {p.part for p in advice.needed}) is needed
     assert advice.numbers[0].value == pytest.approx(ratio, rel=1e-12, abs=0.0)
 
 
@@ -80,8 +80,8 @@ def test_weak_adhesion_may_be_dropped():
         )
         for work in (1e-9, 1e-1)
     )
-    assert "Adhesion" in {p.effect for p in weak.droppable}
-    assert "Adhesion" in {p.effect for p in strong.needed}
+    assert "Adhesion" in {p.part for p in weak.droppable}
+    assert "Adhesion" in {p.part for p in strong.needed}
 
 
 def test_a_detachment_is_nothing_without_adhesion():
@@ -170,7 +170,7 @@ def test_a_table_of_relaxation_times_has_no_line_per_branch():
 
 def test_what_all_parts_share_is_no_effect_s_share_of_the_time():
     """The flat-punch data are computed with and without viscosity; kept from before, they made it 96 % of the time."""
-    shares = {p.effect: p.share_of_time for p in ablations(Mdr(), impact(1e-3))}
+    shares = {p.part: p.share_of_time for p in ablations(Mdr(), impact(1e-3))}
     assert sum(shares.values()) < 1.5
     assert shares["StandardSolid"] < 0.8
 

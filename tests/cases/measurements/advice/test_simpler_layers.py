@@ -61,7 +61,7 @@ def test_a_rigid_substrate_errs_by_what_is_said():
         layer=STACK, indenter=Paraboloid(radius_of_curvature=5.0), loading=IndentationDepths(values=np.array([0.05]))
     )
     found = advise(mdr, scene, 1e-2)
-    entry = next(part for part in (*found.needed, *found.droppable) if part.effect == ELASTIC_BASE)
+    entry = next(part for part in (*found.needed, *found.droppable) if part.part == ELASTIC_BASE)
     forces = [
         float(mdr.solve(scene.replace(layer=layer)).normal_force[0])
         for layer in (STACK, STACK.replace(support="bonded"))

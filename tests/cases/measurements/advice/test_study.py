@@ -2,14 +2,14 @@
 
 import pytest
 
-from cases.declare.case import Case, CaseScene
+from cases.answers import Table
+from cases.case import Case, CaseScene
+from cases.claims import Equal
 from cases.declare.methods import MethodUse
-from cases.declare.task import Answers
-from cases.judgement.claims.exact import Exact
 from cases.measurements.advice.effects import NOTHING_PULLS, AblationStudy
-from cases.run.solve_task import solve
+from cases.run.solve_task import job_of, solve
 from contact import Adhesion, Detachment, FlatPunch, Impact, KelvinVoigt, Layer, Paraboloid, Scene
-from tests.cases.fake_case import REASON
+from tests.cases.fake_case import WHY
 
 LAYER = Layer.incompressible(thickness=1.0, shear_modulus=1.0)
 IMPACT = Scene(
@@ -28,7 +28,7 @@ DETACHMENT = Scene(
 
 def entries(scene):
     study = AblationStudy(scene="scene", methods=("mdr",), nightly=("fem",))
-    claim = Exact(name="c", quantity="peak_force", expected=lambda _: [1.0], tolerance=1.0, reason=REASON)
+    claim = Equal(name="c", quantity="peak_force", to=lambda _: [1.0], tolerance=1.0, why=WHY)
     case = Case(
         name="ablated",
         title="t",
@@ -41,8 +41,8 @@ def entries(scene):
         claims=(claim,),
         ablations=(study,),
     )
-    answers = Answers({task.identity: solve(task, "key") for task in study.tasks(case)})
-    return {entry.effect: entry for entry in study.records(case, answers)}
+    answers = Table(solve(job_of(task)) for task in study.tasks(case))
+    return {entry.part: entry for entry in study.records(case, answers)}
 
 
 def test_a_little_viscosity_moves_restitution_and_may_be_dropped_where_that_does_not_matter():

@@ -2,31 +2,27 @@ import math
 
 import pytest
 
-from cases.measurements.cost.cost_of_accuracy import (
-    cheapest,
-    crossover,
-    degree_of_accuracy,
-    degree_of_efficacy,
-    degree_of_size,
-    error_bound,
-    pareto_front,
-    price_of_a_digit,
-    true_static_scaling,
-)
-from cases.measurements.measurement import Measurement
+from cases.cost import cheapest, crossover, error_bound, methods_of, pareto_front, price_of_a_digit, speed_up
+from cases.studies import CostOfAccuracy, Point
 from contact import InvalidInput
 
 
-def run(label, bound, seconds):
-    return Measurement(method=label, error=bound, seconds=seconds)
+def run(label, bound, seconds, method="mdr"):
+    return Point(method=method, setting=label, bound=bound, seconds=seconds, cold_seconds=10 * seconds)
+
+
+def study(*points):
+    return CostOfAccuracy(
+        case="c", scene="s", quantity="q", reference="r", reference_error=0.0, noise=0.0, points=tuple(points)
+    )
 
 
 def front_of(runs, null_spread):
-    return [kept.method for kept in pareto_front(runs, null_spread)]
+    return [kept.setting for kept in pareto_front(runs, null_spread)]
 
 
 FAST = [run("a", 1e-3, 0.001), run("b", 1e-6, 0.010), run("c", 1e-6, 0.500)]
-SLOW = [run("x", 1e-2, 0.0005), run("y", 1e-5, 0.100), run("z", 1e-9, 2.000)]
+SLOW = [run("x", 1e-2, 0.0005, "fem"), run("y", 1e-5, 0.100, "fem"), run("z", 1e-9, 2.000, "fem")]
 
 
 def test_ranking_uses_the_bound_not_the_error():
@@ -44,8 +40,8 @@ def test_a_bad_error_is_refused(bad):
 
 
 def test_cheapest_is_never_interpolated():
-    assert cheapest(FAST, 1e-3).method == "a"
-    assert cheapest(FAST, 5e-4).method == "b"
+    assert cheapest(FAST, 1e-3).setting == "a"
+    assert cheapest(FAST, 5e-4).setting == "b"
     assert cheapest(FAST, 1e-7) is None
 
 
@@ -60,20 +56,20 @@ def test_front_keeps_ties_within_the_null_spread():
 
 
 def test_crossover_is_the_smallest_tolerance_where_the_fast_method_wins():
-    taus = [10.0**-k for k in range(1, 11)]
-    assert crossover(FAST, SLOW, taus) == pytest.approx(1e-6, rel=1e-12, abs=0.0)
-    assert crossover(SLOW, FAST, [1e-1]) == pytest.approx(1e-1, rel=1e-12, abs=0.0)
-    assert crossover([run("never", 1.0, 1.0)], SLOW, taus) is None
+    both = study(*FAST, *SLOW)
+    assert crossover(both, "mdr", "fem") == pytest.approx(1e-6, rel=1e-12, abs=0.0)
+    assert crossover(study(run("never", 1.0, 1.0), *SLOW), "mdr", "fem") is None
+
+
+def test_speed_ups_compare_settings_that_reach_the_tolerance():
+    both = study(*FAST, *SLOW)
+    assert methods_of(both) == ("mdr", "fem")
+    assert speed_up(both, "mdr", "fem", 1e-5) == pytest.approx(10.0, rel=1e-12, abs=0.0)
+    assert speed_up(both, "mdr", "fem", 1e-5, cold=True) == pytest.approx(10.0, rel=1e-12, abs=0.0)
+    assert speed_up(both, "mdr", "fem", 1e-9) is None
 
 
 def test_price_of_a_digit():
     assert price_of_a_digit(FAST[0], FAST[1]) == pytest.approx(1 / 3, rel=1e-12, abs=0.0)
     with pytest.raises(InvalidInput, match="not more accurate"):
         price_of_a_digit(FAST[1], FAST[2])
-
-
-def test_degrees():
-    assert degree_of_accuracy(1e-6) == pytest.approx(6, rel=1e-12, abs=0.0)
-    assert degree_of_size(1000) == pytest.approx(3, rel=1e-12, abs=0.0)
-    assert degree_of_efficacy(1e-6, 0.1) == pytest.approx(7, rel=1e-12, abs=0.0)
-    assert true_static_scaling(1000, 0.5, 1e-6) == pytest.approx(4000, rel=1e-12, abs=0.0)

@@ -9,12 +9,12 @@ import pytest
 
 from cases.measurements.ladders import ladders
 from cases.measurements.ladders.invariants import LAWS, invariant_residuals
-from cases.measurements.ladders.ladder_study import climbs, ladder_case, no_silent_failure
+from cases.measurements.ladders.ladder_study import breakdown, climbs, ladder_case, no_silent_failure, worse_than
 from cases.measurements.ladders.ladder_table import LADDERS, contact_ratio, damped_punch, truncated
 from cases.measurements.ladders.ladders import LadderPlan, climb
 from cases.measurements.ladders.repeats import DOUBLE_DIGITS, digits_of, nudged, relative_spread, repeated
-from cases.results.records.reliability import Ladder, Rung
-from cases.results.status import Status
+from cases.studies import Step, StressTest
+from cases.verdicts import Status
 from contact import InvalidInput, NotConvergedError, Supported
 from mdr import Mdr
 
@@ -77,21 +77,23 @@ def test_a_nudge_moves_numbers_by_one_unit_in_the_last_place_and_nothing_else():
 
 def test_the_fast_method_climbs_with_nearly_all_digits():
     ladder = climb(PLAN, Mdr())
-    assert ladder.breakdown is None
-    assert ladder.fewest_digits > 13.5  # roundings of a dozen operations on well-conditioned numbers
-    assert set(ladder.rungs[0].residuals) >= {"twice the modulus", "stated error"}
+    assert breakdown(ladder) is None
+    assert (
+        min(step.digits for step in ladder.steps) > 13.5
+    )  # roundings of a dozen operations on well-conditioned numbers
+    assert set(ladder.steps[0].residuals) >= {"twice the modulus", "fast method"}
 
 
 def test_digits_that_repeats_do_not_share_are_not_counted():
-    digits = [rung.digits for rung in climb(PLAN, Faulty(noisy)).rungs]
+    digits = [rung.digits for rung in climb(PLAN, Faulty(noisy)).steps]
     assert digits[0] > 13
     assert digits[1] < 7.5
 
 
 def test_a_wrong_number_is_a_failure_even_if_all_repeats_agree():
     ladder = climb(PLAN, Faulty(wrong))
-    assert [rung.status for rung in ladder.rungs] == [Status.PASS, Status.FAIL, Status.FAIL]
-    assert ladder.breakdown.value == 0.1
+    assert [rung.status for rung in ladder.steps] == [Status.PASS, Status.FAIL, Status.FAIL]
+    assert breakdown(ladder).value == 0.1
 
 
 def test_a_wrong_number_in_motion_is_found_beside_the_fast_method():
@@ -103,14 +105,14 @@ def test_a_wrong_number_in_motion_is_found_beside_the_fast_method():
             return dataclasses.replace(path, peak_force=path.peak_force * (1 + 1e-5))
 
     plan = LadderPlan(name="test", parameter="D", values=(0.5,), scene=damped_punch, quantity="peak_force")
-    (rung,) = climb(plan, Heavier(None)).rungs
+    (rung,) = climb(plan, Heavier(None)).steps
     assert rung.status is Status.FAIL
     assert rung.residuals["fast method"] == pytest.approx(1e-5, rel=1e-2, abs=0.0)
-    assert climb(plan, Mdr()).rungs[0].status is Status.PASS
+    assert climb(plan, Mdr()).steps[0].status is Status.PASS
 
 
 def test_a_named_refusal_and_a_crash_are_told_apart():
-    refusal, crash = climb(PLAN, Faulty(broken)).rungs[1], climb(PLAN, Faulty(crashing)).rungs[1]
+    refusal, crash = climb(PLAN, Faulty(broken)).steps[1], climb(PLAN, Faulty(crashing)).steps[1]
     assert (refusal.status, refusal.digits) == (Status.INVALID, None)
     assert refusal.reason == "NotConvergedError: planted (residual = 1.000e-03)"
     assert (crash.status, crash.reason) == (Status.FAIL, "crash: ZeroDivisionError: planted")
@@ -118,21 +120,25 @@ def test_a_named_refusal_and_a_crash_are_told_apart():
 
 def ladder(*digits):
     rungs = [
-        Rung(value=10.0**-k, status=Status.INVALID, reason="NotConvergedError: x", digits=None)
+        Step(value=10.0**-k, status=Status.INVALID, reason="NotConvergedError: x", digits=None)
         if d is None
-        else Rung(value=10.0**-k, status=Status.PASS, digits=d)
+        else Step(value=10.0**-k, status=Status.PASS, digits=d)
         for k, d in enumerate(digits)
     ]
-    return Ladder(name="n", parameter="p", unit="1", method="mdr", quantity="normal_force", rungs=tuple(rungs))
+    return StressTest(
+        case="stability", name="n", parameter="p", unit="1", method="mdr", quantity="normal_force", steps=tuple(rungs)
+    )
 
 
 def test_an_earlier_breakdown_and_a_lost_digit_are_worse():
     accepted = ladder(14.0, 12.0, 9.0, None)
-    assert ladder(14.0, 11.5, 8.2, None).worse_than(accepted) == []
-    assert ladder(14.0, 12.0, 9.0, 5.0).worse_than(accepted) == []
-    assert ladder(14.0, 12.0, 7.9, None).worse_than(accepted) == ["n, mdr, p = 0.01: 7.9 digits, but 9.0 were accepted"]
-    assert "NotConvergedError: x, but 12.0 digits" in ladder(14.0, None, 9.0, None).worse_than(accepted)[0]
-    assert ladder(14.0, 12.0).worse_than(accepted) == ["n, mdr, p = 0.01: not walked, but 9.0 digits were accepted"]
+    assert worse_than(ladder(14.0, 11.5, 8.2, None), accepted) == []
+    assert worse_than(ladder(14.0, 12.0, 9.0, 5.0), accepted) == []
+    assert worse_than(ladder(14.0, 12.0, 7.9, None), accepted) == [
+        "n, mdr, p = 0.01: 7.9 digits, but 9.0 were accepted"
+    ]
+    assert "NotConvergedError: x, but 12.0 digits" in worse_than(ladder(14.0, None, 9.0, None), accepted)[0]
+    assert worse_than(ladder(14.0, 12.0), accepted) == ["n, mdr, p = 0.01: not solved, but 9.0 digits were accepted"]
 
 
 def test_a_method_climbs_only_what_it_supports_and_what_it_is_asked_to():
@@ -149,14 +155,14 @@ def test_a_method_climbs_only_what_it_supports_and_what_it_is_asked_to():
 
 def test_a_study_of_ladders_claims_that_nothing_fails_silently():
     found = ladder_case([PLAN], {"mdr": {}})
-    assert [(claim.status, claim.scene, claim.observed) for claim in found.claims] == [(Status.PASS, "test", 0.0)]
-    assert found.ladders[0].method == "mdr"
+    assert [(claim.status, claim.scene, claim.error) for claim in found.verdicts] == [(Status.PASS, "test", 0.0)]
+    assert found.stress_tests[0].method == "mdr"
 
 
 def test_a_silent_failure_fails_its_claim():
     claim = no_silent_failure(climb(PLAN, Faulty(wrong), "faulty"))
-    assert (claim.status, claim.observed) == (Status.FAIL, 2.0)
-    assert "beyond its stated error" in claim.message
+    assert (claim.status, claim.error) == (Status.FAIL, 2.0)
+    assert "more than both state" in claim.message
 
 
 def test_every_ladder_starts_with_a_scene_that_the_fast_method_supports():
@@ -190,9 +196,9 @@ def test_a_repeat_on_a_scene_out_of_reach_refuses_by_name():
 @pytest.mark.parametrize("plan", [plan for plan in LADDERS if not plan.only], ids=lambda plan: plan.name)
 def test_no_rung_of_the_fast_method_fails_without_a_name(plan):
     climbed = climb(plan, Mdr())
-    assert [rung for rung in climbed.rungs if rung.status is Status.FAIL] == []
+    assert [rung for rung in climbed.steps if rung.status is Status.FAIL] == []
 
 
 def test_a_warning_on_a_rung_is_a_crash(monkeypatch):
     monkeypatch.setattr(ladders, "invariant_residuals", lambda method, answer: {"x": float(np.log(np.zeros(1))[0])})
-    assert "crash: RuntimeWarning" in climb(PLAN, Mdr()).rungs[0].reason
+    assert "crash: RuntimeWarning" in climb(PLAN, Mdr()).steps[0].reason

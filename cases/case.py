@@ -1,0 +1,254 @@
+"""A case is a short paper that is also a test: scenes, methods, claims. Nothing here solves anything."""
+
+from collections.abc import Callable, Collection, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import Any
+
+from cases.answers import Identity, Table
+from cases.declare.methods import MethodUse
+from cases.norms import RingQuadrature, ring_quadrature
+from cases.verdicts import Scalar, Verdict
+from contact import InvalidInput, Scene
+
+# Suites that every case is in unless it says otherwise, and that of outside solvers.
+USUAL_SUITES = ("ci", "nightly")
+SUITES = (*USUAL_SUITES, "referees")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Sampling:
+    """What is kept of an answer beside its quantities.
+
+    Attributes:
+        ring_edges: the pressure of the last step is kept at the Gauss nodes of the rings between these radii [m];
+            empty keeps no pressure.
+        nodes: Gauss nodes on each ring.
+        scales: declared size of a quantity, by name; otherwise its largest magnitude.
+        inside: points of the body where fields of the last step are kept: r over the contact radius, z over the smaller
+            of contact radius and thickness; empty keeps none.
+        laws: whether the laws of elastic bodies are checked on these fields.
+    """
+
+    ring_edges: tuple[float, ...] = ()
+    nodes: int = 12
+    scales: dict[str, float] = field(default_factory=dict)
+    inside: tuple[tuple[float, float], ...] = ()
+    laws: bool = True
+
+    @property
+    def rings(self) -> RingQuadrature:
+        """Nodes and weights."""
+        return ring_quadrature(self.ring_edges, self.nodes)
+
+
+@dataclass(frozen=True, kw_only=True)
+class CaseScene:
+    """A scene of a case.
+
+    Attributes:
+        name: unique within the case.
+        parameters: what sets it apart, for tables and figures.
+        scene: the problem.
+        sampling: what is kept of each answer.
+        methods: the methods that solve it; empty for those of the case.
+        nightly: labels of those that take too long for the suite "ci".
+    """
+
+    name: str
+    parameters: dict[str, Scalar]
+    scene: Scene
+    sampling: Sampling = field(default_factory=Sampling)
+    methods: tuple[MethodUse, ...] = ()
+    nightly: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class Task:
+    """One method on one scene of a case, or on a variant of it.
+
+    Attributes:
+        case: name of the case.
+        scene: name of the scene within the case.
+        variant: "" for the scene itself, else what was changed ("doubled E", "grid nodes=8").
+        use: the method with the settings asked for; its label names it in the case.
+        problem: the scene that is solved.
+        refined: how often the method is refined before.
+        sampling: what is kept.
+        timed: whether the solution is repeated for its time, alone on the machine.
+        first: whether it is a first solution: imports are done before, caches are empty.
+    """
+
+    case: str
+    scene: str
+    variant: str = ""
+    use: MethodUse
+    problem: Scene
+    refined: int = 0
+    sampling: Sampling = field(default_factory=Sampling)
+    timed: bool = False
+    first: bool = False
+
+    @property
+    def identity(self) -> Identity:
+        """Case, scene, method and variant: unique within a run."""
+        return self.case, self.scene, self.use.label, self.variant
+
+    @property
+    def label(self) -> str:
+        """The identity in words."""
+        return " / ".join(part for part in (self.case, self.scene, self.variant, self.use.label) if part)
+
+    def changed(self, variant: str, problem: Scene | None = None, **more: Any) -> "Task":
+        """Return a variant of this task: another scene, other settings, or both."""
+        return replace(self, variant=variant, problem=problem or self.problem, **more)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Case:
+    """A question, the scenes that answer it, the methods that solve them and what is claimed of the answers.
+
+    Attributes:
+        name: unique; letters, digits and underscores.
+        title: one line.
+        question: what a reader learns.
+        equations: of the source.
+        text: the paper's body: set-up, what to expect and why.
+        suites: "ci" (minutes) and "nightly"; "referees" asks solvers of others.
+        scenes: solved by every method.
+        methods: compared methods.
+        claims: what must hold (`cases.claims.Claim`).
+        work: what accuracy costs (`cases.cost.WorkStudy`).
+        ablations: what each effect costs and changes (`cases.measurements.advice.effects.AblationStudy`).
+        restricted: whether only some of its methods are left; then nothing may be left to claim.
+    """
+
+    name: str
+    title: str
+    question: str
+    equations: tuple[str, ...]
+    text: str
+    suites: tuple[str, ...] = USUAL_SUITES
+    scenes: tuple[CaseScene, ...]
+    methods: tuple[MethodUse, ...]
+    claims: tuple[Any, ...]
+    work: tuple[Any, ...] = ()
+    ablations: tuple[Any, ...] = ()
+    restricted: bool = False
+
+    def __post_init__(self) -> None:
+        """Refuse what would silently check less than it says."""
+        if not self.name.replace("_", "").isalnum():
+            raise InvalidInput(f"case name {self.name!r}: use letters, digits and underscores")
+        if unknown := set(self.suites) - set(SUITES):
+            raise InvalidInput(f"case {self.name}: suite {unknown.pop()!r} is none of {', '.join(SUITES)}")
+        lists = {"scenes": self.scenes, "claims": self.claims, "methods": self.methods}
+        if self.restricted:
+            return
+        for what, value in {**lists, "question": self.question, "title": self.title, "text": self.text}.items():
+            if not value:
+                raise InvalidInput(f"case {self.name}: {what} is empty; a case without it checks nothing")
+        for what, names in (
+            ("scenes", [s.name for s in self.scenes]),
+            ("claims", [c.name for c in self.claims]),
+            ("methods", [m.label for m in self.methods]),
+        ):
+            if twice := sorted({name for name in names if names.count(name) > 1}):
+                raise InvalidInput(f"case {self.name}: {what}: {twice[0]!r} stands twice; names must be unique")
+        for scene in self.scenes:
+            for label in scene.nightly:
+                self.use(scene, label)
+        for claim in self.claims:
+            claim.check(self)
+
+    @cached_property
+    def by_name(self) -> Mapping[str, CaseScene]:
+        """The scenes by name."""
+        return {scene.name: scene for scene in self.scenes}
+
+    def scene(self, name: str) -> CaseScene:
+        """Return the scene called ``name``.
+
+        Raises:
+            InvalidInput: if the case has none of that name.
+        """
+        if name not in self.by_name:
+            raise InvalidInput(f"case {self.name} has no scene {name!r}; it has {', '.join(self.by_name)}")
+        return self.by_name[name]
+
+    def methods_of(self, scene: CaseScene) -> tuple[MethodUse, ...]:
+        """Return the methods that solve ``scene``."""
+        return scene.methods or self.methods
+
+    def use(self, scene: CaseScene, label: str) -> MethodUse:
+        """Return the method labelled ``label`` that solves ``scene``.
+
+        Raises:
+            InvalidInput: if no such method does.
+        """
+        for use in self.methods_of(scene):
+            if use.label == label:
+                return use
+        raise InvalidInput(f"case {self.name}: no method {label!r} solves {scene.name!r}")
+
+    def task(self, scene: CaseScene, use: MethodUse) -> Task:
+        """Return the task of one method on one scene."""
+        return Task(case=self.name, scene=scene.name, use=use, problem=scene.scene, sampling=scene.sampling)
+
+    def tasks(self) -> Iterator[Task]:
+        """Yield all tasks: every scene by every method, then what claims and studies need beside."""
+        for scene in self.scenes:
+            yield from (self.task(scene, use) for use in self.methods_of(scene))
+        for part in (*self.claims, *self.ablations):
+            yield from part.tasks(self)
+        yield from self.cost_tasks()
+
+    def cost_tasks(self) -> Iterator[Task]:
+        """Yield the tasks of the studies of cost alone."""
+        for study in self.work:
+            yield from study.tasks(self)
+
+    def verdicts(self, answers: Table) -> list[Verdict]:
+        """Judge the claims whose answers are there."""
+        return [verdict for claim in self.claims for verdict in claim.judge(self, answers)]
+
+    def only(self, keep: Callable[[CaseScene, MethodUse], bool]) -> "Case":
+        """Return the case with the methods that ``keep`` keeps on each scene; scenes without any are left out."""
+        uses = {s.name: tuple(use for use in self.methods_of(s) if keep(s, use)) for s in self.scenes}
+        scenes = tuple(replace(s, methods=uses[s.name], nightly=()) for s in self.scenes if uses[s.name])
+        return replace(self, scenes=scenes, restricted=True)
+
+    def in_suite(self, suite: str) -> "Case":
+        """Return the case as ``suite`` runs it: nightly everything, ci without what takes long.
+
+        Without a suite each scene keeps its ``nightly`` methods; studies of cost and effects are those of ci.
+        """
+        left = self
+        if suite == "ci":
+            left = replace(self, claims=tuple(claim for claim in self.claims if not claim.nightly), restricted=True)
+            left = left.only(lambda scene, use: use.label not in scene.nightly)
+        work, ablations = (tuple(study.in_suite(suite) for study in part) for part in (self.work, self.ablations))
+        return replace(left, work=work, ablations=ablations)
+
+    def only_methods(self, wanted: Collection[str]) -> "Case":
+        """Return the case with the methods asked for (all if none is), without timings.
+
+        Raises:
+            InvalidInput: if the case has none of the methods.
+        """
+        if not wanted:
+            return self
+        methods = tuple(use for use in self.methods if use.label in wanted)
+        if not methods:
+            known = ", ".join(use.label for use in self.methods)
+            raise InvalidInput(f"case {self.name} has no method {' or '.join(wanted)}; it has {known}")
+        return replace(self.only(lambda _, use: use.label in wanted), methods=methods, work=())
+
+    def nightly_only(self) -> frozenset[tuple[str, str]]:
+        """Return the scenes and methods that only the nightly suite solves."""
+        return frozenset((scene.name, label) for scene in self.scenes for label in scene.nightly)
+
+
+def text_of(docstring: str | None) -> str:
+    """Return the text of a case from the docstring of its module: everything after the first line."""
+    return (docstring or "").partition("\n")[2].strip()

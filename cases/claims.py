@@ -1,0 +1,587 @@
+"""What a case may claim. Each kind yields the tasks it needs beside the case's own and judges their answers."""
+
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import ClassVar, Literal, TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from cases.answers import Answer, Table, Values
+from cases.case import Case, CaseScene, Task
+from cases.declare.methods import MethodUse
+from cases.declare.shared import in_common
+from cases.declare.uncertain_inputs import read_inputs
+from cases.norms import relative_difference, ring_load_difference
+from cases.rules import (
+    Judgement,
+    judge_agreement,
+    judge_exact,
+    judge_order,
+    judge_residual,
+    nothing_compared,
+    positive_tolerance,
+    worst_judgement,
+)
+from cases.verdicts import Kind, Origin, Status, Verdict, Why
+from contact import InvalidInput, Scene
+from contact.records.validation import FloatArray
+
+Expected: TypeAlias = Mapping[str, Sequence[float]] | Callable[[Scene], Sequence[float]]
+Norm: TypeAlias = Literal["", "weighted L2", "ring loads", "largest", "root mean square"]
+
+# On the half-space MDR on a table reads no table: it is MDR itself, by construction.
+TABLE, NO_TABLE = "mdr_table", "on the half-space no table is read"
+# Twice the standard uncertainty of printed inputs covers 95 % (GUM 6.3.3); once it would fail every third number.
+COVERAGE = 2.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Claim(ABC):
+    """What every claim states before anything is computed.
+
+    Attributes:
+        name: unique within the case.
+        quantity: what is compared.
+        tolerance: largest permitted error, relative.
+        why: why it should hold, and where its numbers come from.
+        scenes: names of the scenes it speaks about; empty for all.
+        methods: labels of the methods it speaks about; empty for every method that solves a scene.
+        tolerances: of methods that need another one, by label.
+        identities: of methods for which it holds by construction, by label: why; such checks are not counted.
+        nightly: whether it takes too long for the suite "ci".
+    """
+
+    kind: ClassVar[Kind]
+
+    name: str
+    quantity: str
+    tolerance: float
+    why: Why
+    scenes: tuple[str, ...] = ()
+    methods: tuple[str, ...] = ()
+    tolerances: Mapping[str, float] = field(default_factory=dict)
+    identities: Mapping[str, str] = field(default_factory=dict)
+    nightly: bool = False
+
+    def __post_init__(self) -> None:
+        """Refuse a claim without words, and a tolerance of the wrong sign."""
+        for tolerance in (self.tolerance, *self.tolerances.values()):
+            positive_tolerance(tolerance)
+        if not (self.name.strip() and self.quantity.strip()):
+            raise InvalidInput(f"claim {self.name!r}: name or quantity is empty; say what is claimed of what")
+
+    def check(self, case: Case) -> None:
+        """Refuse scenes that the case does not have, and named methods that solve none of the claim's scenes.
+
+        Raises:
+            InvalidInput: naming the first of them.
+        """
+        scenes = [case.scene(name) for name in self.scenes] or case.scenes
+        solving = {use.label for scene in scenes for use in case.methods_of(scene)}
+        for label in self.methods:
+            if label not in solving:
+                case.use(scenes[0], label)
+
+    def scenes_of(self, case: Case) -> tuple[CaseScene, ...]:
+        """Return the scenes of the case that this claim speaks about."""
+        return tuple(case.by_name[name] for name in self.scenes if name in case.by_name) if self.scenes else case.scenes
+
+    def places(self, case: Case) -> Iterator[tuple[CaseScene, MethodUse]]:
+        """Yield each scene with each method that solves it and is spoken about."""
+        for scene in self.scenes_of(case):
+            for use in case.methods_of(scene):
+                if not self.methods or use.label in self.methods:
+                    yield scene, use
+
+    def tasks(self, case: Case) -> Iterator[Task]:
+        """Yield what must be solved beside the case's own scenes."""
+        yield from ()
+
+    def judge(self, case: Case, answers: Table) -> Iterator[Verdict]:
+        """Judge each scene and method whose answers are there."""
+        for scene, use in self.places(case):
+            answer = answers.get(case.task(scene, use).identity)
+            others = [answers.get(task.identity) for task in self.needed(case, scene, use)]
+            if answer is not None and None not in others:
+                present = [other for other in others if other is not None]
+                judged = self._judged(scene, use, answer, present)
+                yield self.verdict(case, scene, use, answer, judged=judged, others=present)
+
+    def needed(self, case: Case, scene: CaseScene, use: MethodUse) -> Iterator[Task]:
+        """Yield the other tasks whose answers one verdict needs."""
+        yield from ()
+
+    def _judged(self, scene: CaseScene, use: MethodUse, answer: Answer, others: list[Answer]) -> Judgement:
+        absent = first_missing(answer, *others, quantity=self.quantity if self.needs_quantity else "")
+        return absent or self.judged(scene, use.label, answer, others)
+
+    # Whether answers without the quantity cannot be compared.
+    needs_quantity: ClassVar[bool] = True
+
+    @abstractmethod
+    def judged(self, scene: CaseScene, label: str, answer: Answer, others: list[Answer]) -> Judgement:
+        """Judge one answer, and those of the needed tasks, which all have numbers."""
+
+    def tolerance_of(self, label: str) -> float:
+        """Return the tolerance of one method."""
+        return self.tolerances.get(label, self.tolerance)
+
+    def labels(self, use: MethodUse) -> tuple[str, ...]:
+        """Return the labels of the methods that a verdict speaks about."""
+        return (use.label,)
+
+    def expected(self, scene: CaseScene) -> float | None:
+        """Return the number compared with, if it is a single one."""
+        return None
+
+    def stated(self, scene: CaseScene, answers: list[Answer]) -> dict[str, float]:
+        """Return the error that each method states at the step compared, relative, by its label."""
+        return {}
+
+    def identity(self, scene: CaseScene, labels: Iterable[str]) -> str:
+        """Return why the comparison cannot fail on ``scene``, empty where it can."""
+        known = {TABLE: NO_TABLE} if scene.scene.layer.is_half_space else {}
+        return next((why[label] for why in (self.identities, known) for label in labels if label in why), "")
+
+    def verdict(
+        self,
+        case: Case,
+        scene: CaseScene,
+        use: MethodUse,
+        answer: Answer,
+        *,
+        judged: Judgement,
+        others: Sequence[Answer] = (),
+    ) -> Verdict:
+        """Return the verdict of one judgement; a method is independent only where the two share nothing."""
+        agreement, why = self.kind is Kind.AGREEMENT, self.why
+        both = in_common(answer.shared, others[0].shared, quantity=self.quantity, case=case.name) if agreement else ()
+        if both and why.origin is Origin.INDEPENDENT_METHOD:
+            why = replace(why, origin=Origin.RELATED_METHOD)
+        compared = judged.error is not None
+        return Verdict(
+            case=case.name,
+            claim=self.name,
+            kind=self.kind,
+            scene=scene.name,
+            methods=self.labels(use),
+            quantity=self.quantity,
+            status=judged.status,
+            error=judged.error,
+            expected=self.expected(scene),
+            tolerance=self.tolerance_of(use.label),
+            fraction=judged.fraction,
+            uncertainty=self.stated(scene, [answer, *others]) if compared else {},
+            why=why,
+            shared=both,
+            message=judged.message,
+            identity=self.identity(scene, self.labels(use)) if compared else "",
+        )
+
+
+def first_missing(*answers: Answer, quantity: str = "") -> Judgement | None:
+    """Return why the first of the answers without numbers (of ``quantity``) cannot be compared, or None."""
+    for answer in answers:
+        if not answer.solved:
+            return nothing_compared(answer.status, f"{answer.method}: {answer.reason}")
+        if quantity and quantity not in answer.quantities:
+            return nothing_compared(Status.SKIP, f"{answer.method} gives no {quantity.replace('_', ' ')}")
+    return None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Equal(Claim):
+    """The values along the steps equal expected ones, of a closed form or the literature.
+
+    Attributes:
+        to: by name of the scene, or a function of the scene.
+        uncertain: printed inputs and how exact they are, as `read_inputs` takes them; the values may be off by as much
+            as they leave open.
+    """
+
+    kind: ClassVar[Kind] = Kind.EXACT
+
+    to: Expected
+    uncertain: str = ""
+
+    def scenes_of(self, case: Case) -> tuple[CaseScene, ...]:
+        """Return the scenes named, or those that have an expected value."""
+        if isinstance(self.to, Mapping) and not self.scenes:
+            return tuple(case.by_name[name] for name in self.to if name in case.by_name)
+        return super().scenes_of(case)
+
+    def check(self, case: Case) -> None:
+        """Refuse expected values of scenes that the case does not have."""
+        super().check(case)
+        for name in self.to if isinstance(self.to, Mapping) else ():
+            case.scene(name)
+
+    def values(self, scene: CaseScene) -> list[float]:
+        """Return the expected values on one scene."""
+        if not isinstance(self.to, Mapping):
+            return [float(value) for value in self.to(scene.scene)]
+        if scene.name not in self.to:
+            raise InvalidInput(f"claim {self.name!r}: no expected value for scene {scene.name!r}")
+        return list(self.to[scene.name])
+
+    def tasks(self, case: Case) -> Iterator[Task]:
+        """Yield the scenes with each uncertain input one standard deviation up and down."""
+        for scene, use in self.places(case):
+            yield from self.needed(case, scene, use)
+
+    def needed(self, case: Case, scene: CaseScene, use: MethodUse) -> Iterator[Task]:
+        """Yield them for one scene."""
+        if not self.uncertain:
+            return
+        inputs, task = read_inputs(self.uncertain), case.task(scene, use)
+        for one, unit in zip(inputs.inputs, np.eye(len(inputs.inputs)), strict=True):
+            for side, deviations in (("up", unit), ("down", -unit)):
+                problem = inputs.moved(task.problem, deviations)
+                yield task.changed(f"{self.name}, {one.name} {side}", problem)
+
+    def judged(self, scene: CaseScene, label: str, answer: Answer, others: list[Answer]) -> Judgement:
+        """Judge the worst step."""
+        return self._worst(scene, label, answer, others)[0]
+
+    def stated(self, scene: CaseScene, answers: list[Answer]) -> dict[str, float]:
+        """Return the stated error of the worst step, and what the inputs leave open."""
+        answer, *others = answers
+        values, q = self.values(scene), answer.quantities[self.quantity]
+        step = self._worst(scene, answer.method, answer, others)[1]
+        size = max(abs(values[step]), q.scale if 0.0 in values else 0.0)
+        own = {answer.method: q.error[step] / size} if q.error or self.uncertain else {}
+        return own | ({"inputs": float(self._by_inputs(others)[step] / size)} if self.uncertain else {})
+
+    def _worst(self, scene: CaseScene, label: str, answer: Answer, others: list[Answer]) -> tuple[Judgement, int]:
+        values, q = self.values(scene), answer.quantities[self.quantity]
+        if len(values) != len(q.values):
+            message = f"{len(q.values)} steps for {len(values)} expected values of {self.quantity}"
+            return nothing_compared(Status.INCOMPARABLE, message), 0
+        scale = q.scale if 0.0 in values else 0.0
+        inputs: ArrayLike = COVERAGE * self._by_inputs(others) if self.uncertain else 0.0
+        stated = np.hypot(q.error or (0.0,) * len(values), inputs)
+        tolerance = self.tolerance_of(label)
+        found = [
+            judge_exact(v, e, scale=scale, tolerance=tolerance, stated=float(u))
+            for v, e, u in zip(q.values, values, stated, strict=True)
+        ]
+        worst = worst_judgement(found)
+        return worst, found.index(worst)
+
+    def _by_inputs(self, others: list[Answer]) -> FloatArray:
+        """Standard uncertainty of every step by the inputs: the root of D R D^T."""
+        moved = [np.array(other.quantities[self.quantity].values) for other in others]
+        changes = np.array([(up - down) / 2 for up, down in zip(moved[::2], moved[1::2], strict=True)])
+        correlation = read_inputs(self.uncertain).correlation
+        return np.asarray(np.sqrt(np.einsum("is,ij,js->s", changes, correlation, changes)))
+
+    def expected(self, scene: CaseScene) -> float | None:
+        """Return the single expected value."""
+        values = self.values(scene)
+        return values[0] if len(values) == 1 else None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Agree(Claim):
+    """Two methods give the same values, or the same field in a norm, their stated errors counted.
+
+    Attributes:
+        fast: label of the method under test.
+        reference: label of the method that it is compared with.
+        norm: how fields are compared; empty of quantities, whose worst step counts.
+        refined: labels of methods that state no error of the field; the change on halving their discretisation length
+            takes its place.
+    """
+
+    kind: ClassVar[Kind] = Kind.AGREEMENT
+
+    fast: str
+    reference: str
+    norm: Norm = ""
+    refined: tuple[str, ...] = ()
+
+    def check(self, case: Case) -> None:
+        """Refuse scenes that one of the methods does not solve."""
+        for scene in [case.scene(name) for name in self.scenes] or case.scenes:
+            for label in (self.fast, self.reference):
+                case.use(scene, label)
+
+    def places(self, case: Case) -> Iterator[tuple[CaseScene, MethodUse]]:
+        """Yield each scene that both methods solve, with the fast one."""
+        for scene in self.scenes_of(case):
+            uses = {use.label: use for use in case.methods_of(scene)}
+            if self.fast in uses and self.reference in uses:
+                yield scene, uses[self.fast]
+
+    def tasks(self, case: Case) -> Iterator[Task]:
+        """Yield the refined solutions that stand for a missing error."""
+        for scene, _ in self.places(case):
+            yield from (self._finer(case, scene, label) for label in self.refined)
+
+    def needed(self, case: Case, scene: CaseScene, use: MethodUse) -> Iterator[Task]:
+        """Yield the reference's task, then the refined ones."""
+        yield case.task(scene, case.use(scene, self.reference))
+        yield from (self._finer(case, scene, label) for label in self.refined)
+
+    def _finer(self, case: Case, scene: CaseScene, label: str) -> Task:
+        return case.task(scene, case.use(scene, label)).changed("refined", refined=1)
+
+    def _judged(self, scene: CaseScene, use: MethodUse, answer: Answer, others: list[Answer]) -> Judgement:
+        # A refined solution that failed leaves its method without a stated error.
+        absent = first_missing(answer, others[0], quantity=self.quantity)
+        return absent or self.judged(scene, use.label, answer, others)
+
+    def judged(self, scene: CaseScene, label: str, answer: Answer, others: list[Answer]) -> Judgement:
+        """Judge the field, or the worst step; without a stated error there is no pass."""
+        judged, stated = self._compared(scene, [answer, *others])
+        silent = [one.method for one in (answer, others[0]) if one.method not in stated]
+        if not silent or judged.status.is_failure:
+            return judged
+        message = f"{silent[0]} states no uncertainty of {self.quantity}: no verdict is possible"
+        return nothing_compared(Status.INCONCLUSIVE, message)
+
+    def stated(self, scene: CaseScene, answers: list[Answer]) -> dict[str, float]:
+        """Return both stated errors."""
+        return self._compared(scene, answers)[1]
+
+    def _compared(self, scene: CaseScene, answers: list[Answer]) -> tuple[Judgement, dict[str, float]]:
+        a, b = (answer.quantities[self.quantity] for answer in answers[:2])
+        if a.unit != b.unit or len(a.values) != len(b.values):
+            message = f"{len(a.values)} values in {a.unit} against {len(b.values)} in {b.unit}"
+            return nothing_compared(Status.INCOMPARABLE, message), {}
+        if self.norm:
+            return self._field(scene, answers)
+        x, y = np.array(a.values), np.array(b.values)
+        size = np.where(y == 0.0, b.scale, np.abs(y))
+        stated = {
+            answer.method: np.array(q.error) / np.maximum(np.abs(q.values), size)
+            for answer, q in zip(answers, (a, b), strict=False)
+            if q.error
+        }
+        steps = [{label: float(u[i]) for label, u in stated.items()} for i in range(len(x))]
+        found = [
+            judge_agreement(float((x[i] - y[i]) / size[i]), steps[i], tolerance=self.tolerance) for i in range(len(x))
+        ]
+        worst = worst_judgement(found)
+        return worst, steps[found.index(worst)]
+
+    def _field(self, scene: CaseScene, answers: list[Answer]) -> tuple[Judgement, dict[str, float]]:
+        fields = {answer.method: answer.quantities[self.quantity] for answer in answers[:2]}
+        stated = {label: q.error[0] for label, q in fields.items() if q.error and label not in self.refined}
+        for label, finer in zip(self.refined, answers[2:], strict=True):
+            if finer.solved:
+                stated[label] = self.distance(scene, fields[label], finer.quantities[self.quantity])
+        return judge_agreement(self.distance(scene, *fields.values()), stated, tolerance=self.tolerance), stated
+
+    def distance(self, scene: CaseScene, first: Values, second: Values) -> float:
+        """Return the difference of two fields in the norm: of pressures relative, of fields over their scale."""
+        a, b = np.array(first.values), np.array(second.values)
+        match self.norm:
+            case "weighted L2":
+                return relative_difference(a, b, scene.sampling.rings)
+            case "ring loads":
+                return ring_load_difference(a, b, scene.sampling.rings)
+            case "largest":
+                return float(np.abs(a - b).max())
+        return float(np.sqrt(np.mean((a - b) ** 2)))
+
+    def labels(self, use: MethodUse) -> tuple[str, ...]:
+        """Return both labels."""
+        return self.fast, self.reference
+
+    def tolerance_of(self, label: str) -> float:
+        """Return the tolerance of the pair."""
+        return self.tolerance
+
+    def expected(self, scene: CaseScene) -> float | None:
+        """Return the difference that is expected: none."""
+        return 0.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Changed(Claim, ABC):
+    """A claim on an answer and on that of a changed scene.
+
+    Attributes:
+        change: from the scene to the other one.
+    """
+
+    kind: ClassVar[Kind] = Kind.INVARIANT
+
+    change: Callable[[Scene], Scene]
+
+    def tasks(self, case: Case) -> Iterator[Task]:
+        """Yield the changed scenes to solve."""
+        for scene, use in self.places(case):
+            yield from self.needed(case, scene, use)
+
+    def needed(self, case: Case, scene: CaseScene, use: MethodUse) -> Iterator[Task]:
+        """Yield the changed scene of one place."""
+        yield case.task(scene, use).changed(self.name, self.change(scene.scene))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Law(Changed):
+    """A changed scene gives the same answer times known factors: the modulus doubled, the units changed.
+
+    Attributes:
+        factors: expected answer of the changed scene over that of the original, by name of the quantity.
+    """
+
+    factors: Mapping[str, float]
+    needs_quantity: ClassVar[bool] = False
+
+    def judged(self, scene: CaseScene, label: str, answer: Answer, others: list[Answer]) -> Judgement:
+        """Judge the residuals of all quantities and steps."""
+        residuals: list[float] = []
+        for name, factor in self.factors.items():
+            a, b = answer.quantities[name], others[0].quantities[name]
+            if len(a.values) != len(b.values):
+                return nothing_compared(Status.INCOMPARABLE, f"the changed scene has {len(b.values)} steps of {name}")
+            residuals += [(y - factor * x) / (factor * a.scale) for x, y in zip(a.values, b.values, strict=True)]
+        return worst_judgement([judge_residual(r, tolerance=self.tolerance_of(label)) for r in residuals])
+
+
+@dataclass(frozen=True, kw_only=True)
+class Bound(Changed):
+    """At every step the quantity is at least a multiple of that of the changed scene, but for the tolerance.
+
+    Attributes:
+        multiple: m in q(scene) >= m q(changed scene), of the scene; 1 by default.
+        at_most: whether it is a bound from above.
+    """
+
+    multiple: Callable[[Scene], float] | None = None
+    at_most: bool = False
+
+    def judged(self, scene: CaseScene, label: str, answer: Answer, others: list[Answer]) -> Judgement:
+        """Judge what the quantity lacks."""
+        multiple = 1.0 if self.multiple is None else self.multiple(scene.scene)
+        values, bounds = (one.quantities[self.quantity] for one in (answer, others[0]))
+        sign = -1.0 if self.at_most else 1.0
+        lacking = (
+            max(0.0, sign * (multiple * least - value)) / bounds.scale
+            for value, least in zip(values.values, bounds.values, strict=True)
+        )
+        return worst_judgement([judge_residual(share, tolerance=self.tolerance_of(label)) for share in lacking])
+
+
+@dataclass(frozen=True, kw_only=True)
+class Zero(Claim):
+    """A residual vanishes: one that the answers carry as a quantity, or one that is derived from an answer.
+
+    Attributes:
+        derive: residuals of an answer on its scene, relative; by default the values of the quantity itself.
+    """
+
+    kind: ClassVar[Kind] = Kind.INVARIANT
+
+    derive: Callable[[CaseScene, Answer], Iterable[float]] | None = None
+
+    def _judged(self, scene: CaseScene, use: MethodUse, answer: Answer, others: list[Answer]) -> Judgement:
+        if answer.solved and self.derive is None and self.quantity not in answer.quantities:
+            return nothing_compared(Status.INCOMPARABLE, f"{answer.method} publishes no {self.quantity}")
+        return super()._judged(scene, use, answer, others)
+
+    def judged(self, scene: CaseScene, label: str, answer: Answer, others: list[Answer]) -> Judgement:
+        """Judge the worst residual."""
+        residuals = self.derive(scene, answer) if self.derive else answer.quantities[self.quantity].values
+        return worst_judgement([judge_residual(float(r), tolerance=self.tolerance_of(label)) for r in residuals])
+
+    def identity(self, scene: CaseScene, labels: Iterable[str]) -> str:
+        """Return nothing: a residual can always fail."""
+        return ""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Approach(Claim):
+    """Between the two last scenes the relative distance from a limit falls like a parameter to the formal order.
+
+    Attributes:
+        scenes: names, the one closest to the limit last.
+        parameter: what tends to zero, for example h/a.
+        limit: the closed form the quantity's last step tends to.
+        formal_order: of the distance in the parameter.
+        largest: the relative distance of the last scene must not exceed this.
+    """
+
+    kind: ClassVar[Kind] = Kind.ORDER
+
+    # The band of an observed order around the formal one.
+    tolerance: float = 0.2
+    parameter: Callable[[Scene], float]
+    limit: Callable[[Scene], float]
+    formal_order: float = 1.0
+    largest: float
+    needs_quantity: ClassVar[bool] = False
+
+    def places(self, case: Case) -> Iterator[tuple[CaseScene, MethodUse]]:
+        """Yield the last scene with each method that solves it and the one before."""
+        scenes = self.scenes_of(case)
+        if len(scenes) == max(len(self.scenes), 2):
+            before = {use.label for use in case.methods_of(scenes[-2])}
+            for scene, use in super().places(case):
+                if scene is scenes[-1] and use.label in before:
+                    yield scene, use
+
+    def needed(self, case: Case, scene: CaseScene, use: MethodUse) -> Iterator[Task]:
+        """Yield the scene before the last."""
+        before = self.scenes_of(case)[-2]
+        yield case.task(before, case.use(before, use.label))
+
+    def judge(self, case: Case, answers: Table) -> Iterator[Verdict]:
+        """Judge the sequence once for each method."""
+        for scene, use in self.places(case):
+            before = self.scenes_of(case)[-2]
+            near, far = (answers.get(case.task(one, case.use(one, use.label)).identity) for one in (scene, before))
+            if near is not None and far is not None:
+                judged = first_missing(far, near) or self._limit((before, scene), (far, near))
+                yield self.verdict(case, scene, use, near, judged=judged)
+
+    def judged(self, scene: CaseScene, label: str, answer: Answer, others: list[Answer]) -> Judgement:
+        """Judge nothing: two scenes are judged at once."""
+        raise NotImplementedError
+
+    def expected(self, scene: CaseScene) -> float | None:
+        """Return the formal order."""
+        return self.formal_order
+
+    def identity(self, scene: CaseScene, labels: Iterable[str]) -> str:
+        """Return nothing: an order can always fail."""
+        return ""
+
+    def _limit(self, scenes: tuple[CaseScene, CaseScene], answers: tuple[Answer, Answer]) -> Judgement:
+        """Judge the rate; what fails inside the method's stated error stays open."""
+        pairs = [
+            (answer.quantities[self.quantity], self.limit(scene.scene))
+            for scene, answer in zip(scenes, answers, strict=True)
+        ]
+        far, near = (q.values[-1] / limit - 1 for q, limit in pairs)
+        # A value that is too large does not widen its own error.
+        errors = [q.error[-1] / max(abs(q.values[-1]), abs(limit)) if q.error else 0.0 for q, limit in pairs]
+        ratio = self.parameter(scenes[0].scene) / self.parameter(scenes[1].scene)
+        judged = self._rate(far, near, ratio)
+        if judged.status is not Status.FAIL or not self._may_hold((far, near), errors, ratio):
+            return judged
+        return nothing_compared(Status.INCONCLUSIVE, f"{judged.message}; error {max(errors):.1e}: refine")
+
+    def _rate(self, far: float, near: float, ratio: float) -> Judgement:
+        if abs(near) > self.largest:
+            message = f"{near:+.1e} from the limit, at most {self.largest:g} claimed"
+            return nothing_compared(Status.FAIL, message)
+        if near == 0 or far == 0:
+            return nothing_compared(Status.INCONCLUSIVE, "at the limit to the last bit: no rate to measure")
+        order = math.log(abs(far / near)) / math.log(ratio)
+        judged = judge_order(order, self.formal_order, "monotone" if far * near > 0 else "oscillatory")
+        return replace(judged, message=f"{judged.message}; {near:+.1e} from the limit")
+
+    def _may_hold(self, distances: tuple[float, float], errors: list[float], ratio: float) -> bool:
+        """Whether true distances within the errors could be near the limit and fall at the formal order."""
+        (least_far, least_near), (most_far, most_near) = (
+            [max(abs(d) + sign * e, 0.0) for d, e in zip(distances, errors, strict=True)] for sign in (-1, 1)
+        )
+        fall = ratio**self.formal_order
+        return least_near <= self.largest and least_far <= fall * most_near and fall * least_near <= most_far

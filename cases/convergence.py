@@ -1,0 +1,335 @@
+"""The observed order of convergence of one method on one scene, against a reference or from three grids alone."""
+
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import Any, ClassVar, TypeAlias
+
+import numpy as np
+from scipy.optimize import brentq
+
+from cases.answers import Answer, Table, Values
+from cases.case import Case, CaseScene, Task
+from cases.claims import Claim, first_missing
+from cases.declare.methods import MethodUse
+from cases.rules import Judgement, judge_digits, judge_order, nothing_compared
+from cases.studies import Convergence, Grid
+from cases.verdicts import Kind, Status, Verdict
+from contact import InvalidInput, Scene
+from contact.records.validation import FloatArray
+
+# The settings of one grid, or of several grids that make one refinement.
+Grids: TypeAlias = Mapping[str, Any] | tuple[Mapping[str, Any], ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Order(Claim):
+    """On a sequence of grids the quantity's last step, or a field at points, converges at its formal order.
+
+    Fields count by root mean squares over their points.
+
+    Attributes:
+        method: label of the method in the case.
+        ladder: settings of each refinement, coarsest first, in place of those of the case; several grids of one
+            refinement, whose errors scatter, count by their root mean square.
+        ratio: of the discretisation lengths of neighbours.
+        formal_order: p_f of this case, quantity and mesh family; None claims spectral convergence.
+        least_digits: digits per refinement, for spectral convergence.
+        mesh_family: what the formal order belongs to.
+        reference: the value at vanishing length, or None.
+        against: the method whose answer is the reference, where there is no such value: its label in the case, or one
+            with settings of its own.
+        reference_uncertainty: relative, of the reference; zero for what the method itself states.
+        floor: round-off floor, relative.
+    """
+
+    kind: ClassVar[Kind] = Kind.ORDER
+
+    method: str
+    ladder: tuple[Grids, ...]
+    ratio: float = 2.0
+    formal_order: float | None = None
+    least_digits: float = 1.0
+    mesh_family: str
+    reference: Callable[[Scene], float] | None = None
+    against: str | MethodUse = ""
+    reference_uncertainty: float = 0.0
+    floor: float = 1e-14
+
+    def check(self, case: Case) -> None:
+        """Refuse scenes that the method or its reference does not solve."""
+        for scene in [case.scene(name) for name in self.scenes] or case.scenes:
+            for label in (self.method, self.against if isinstance(self.against, str) else ""):
+                if label:
+                    case.use(scene, label)
+
+    def places(self, case: Case) -> Iterator[tuple[CaseScene, MethodUse]]:
+        """Yield each scene with the method, where its reference solves it, too."""
+        for scene in self.scenes_of(case):
+            uses = {use.label: use for use in case.methods_of(scene)}
+            if self.method in uses and (not isinstance(self.against, str) or self.against in {"", *uses}):
+                yield scene, uses[self.method]
+
+    def tasks(self, case: Case) -> Iterator[Task]:
+        """Yield the grids of every scene, coarsest first, and the reference."""
+        for scene, use in self.places(case):
+            yield from self.needed(case, scene, use)
+
+    def needed(self, case: Case, scene: CaseScene, use: MethodUse) -> Iterator[Task]:
+        """Yield them for one scene; named after their settings, claims about other quantities share them."""
+        for level in self._levels(case, scene, use):
+            yield from level
+        yield from self._references(case, scene)
+
+    def _levels(self, case: Case, scene: CaseScene, use: MethodUse) -> Iterator[tuple[Task, ...]]:
+        for level in self.ladder:
+            grids = (level,) if isinstance(level, Mapping) else level
+            yield tuple(_grid(case, scene, replace(use, settings=settings)) for settings in grids)
+
+    def _references(self, case: Case, scene: CaseScene) -> Iterator[Task]:
+        """The task whose answer is the reference, if one is."""
+        if isinstance(self.against, MethodUse):
+            yield _grid(case, scene, self.against)
+        elif self.against:
+            yield case.task(scene, case.use(scene, self.against))
+
+    def judge(self, case: Case, answers: Table) -> Iterator[Verdict]:
+        """Judge each scene."""
+        for scene, use in self.places(case):
+            own = [answers.get(task.identity) for task in self.needed(case, scene, use)]
+            if None not in own:
+                found = [one for one in own if one is not None]
+                judged = first_missing(*found) or self._order(self._study(case, scene, use, answers))
+                yield self.verdict(case, scene, use, found[0], judged=judged)
+
+    def studies(self, case: Case, answers: Table) -> Iterator[Convergence]:
+        """Yield the study of each scene whose grids were all solved."""
+        for scene, use in self.places(case):
+            own = [answers.get(task.identity) for task in self.needed(case, scene, use)]
+            if all(one is not None and one.solved for one in own):
+                yield self._study(case, scene, use, answers)
+
+    def expected(self, scene: CaseScene) -> float | None:
+        """Return the formal order."""
+        return self.formal_order
+
+    def judged(self, scene: CaseScene, label: str, answer: Answer, others: list[Answer]) -> Judgement:
+        """Judge nothing: a whole sequence is judged at once."""
+        raise NotImplementedError
+
+    def _order(self, study: Convergence) -> Judgement:
+        if self.formal_order is not None:
+            return judge_order(study.observed_order, self.formal_order, study.kind)
+        if study.digits is None:
+            return nothing_compared(Status.INCONCLUSIVE, "every grid is at the floor: start coarser")
+        return judge_digits(study.digits, self.least_digits)
+
+    def _study(self, case: Case, scene: CaseScene, use: MethodUse, answers: Table) -> Convergence:
+        levels = [
+            [one for task in level if (one := answers.get(task.identity))] for level in self._levels(case, scene, use)
+        ][::-1]
+        firsts = [level[0] for level in levels]
+        found = [_last(one, self.quantity) for one in firsts]
+        reference, uncertainty, source = self._reference(case, scene, answers)
+        lengths = [self.ratio**level for level in range(1 - len(levels), 1)]
+        values = [_size(q.values) for q in found]
+        errors = [self._distance(level, reference) for level in levels] if reference is not None else []
+        scale = found[0].scale
+        kind, order, digits = self._behaviour(values, errors, lengths, scale, uncertainty)
+        shown = errors or self._indices(values, lengths, order, scale)
+        grids = tuple(
+            Grid(
+                length=length,
+                unknowns=answer.unknowns,
+                seconds=answer.seconds,
+                value=value,
+                error=shown[i],
+                stated=found[i].error[-1] if found[i].error else None,
+            )
+            for i, (length, answer, value) in enumerate(zip(lengths, firsts, values, strict=True))
+        )
+        return Convergence(
+            case=case.name,
+            scene=scene.name,
+            method=self.method,
+            quantity=self.quantity,
+            unit=found[0].unit,
+            refined=self.mesh_family,
+            kind=kind,
+            grids=grids,
+            scale=scale,
+            formal_order=self.formal_order,
+            observed_order=order,
+            digits=digits,
+            reference=None if reference is None else _size(reference),
+            reference_error=uncertainty * scale,
+            source=source,
+        )
+
+    def _behaviour(
+        self, values: list[float], errors: list[float], lengths: list[float], scale: float, uncertainty: float
+    ) -> tuple[str, float | None, float | None]:
+        """Class, order and digits: of the errors where the reference is ten times as exact as the finest grid."""
+        if self.formal_order is None:
+            known = errors or [abs(value - values[0]) for value in values[1:]]
+            return "spectral", None, digits_per_refinement([error / scale for error in known], self.floor)
+        floor = self.floor * scale
+        if errors and errors[0] > 10 * uncertainty * scale:
+            kind = behaviour_of_errors(errors, floor)
+            order = None if kind in ("floor", "too-few") else order_of_errors(errors, lengths)
+        else:
+            kind = behaviour(values, floor)
+            order = None if kind in ("floor", "too-few") else observed_order(values[:3], lengths[:3])
+        return kind, order, None
+
+    def _indices(
+        self, values: list[float], lengths: list[float], order: float | None, scale: float
+    ) -> list[float | None]:
+        """Without a reference the error of each grid by the grid convergence index; None for the coarsest."""
+        if order is None or self.formal_order is None:
+            return [None] * len(values)
+        formal = self.formal_order
+        pairs = zip(pairwise(values), pairwise(lengths), strict=True)
+        found = (
+            grid_convergence_index(fine, coarse, b / a, order, formal, scale=scale) * max(abs(fine), scale)
+            for (fine, coarse), (a, b) in pairs
+        )
+        return [*found, None]
+
+    def _reference(self, case: Case, scene: CaseScene, answers: Table) -> tuple[FloatArray | None, float, str]:
+        """The value or field at vanishing length, its relative error, and its source."""
+        for task in self._references(case, scene):
+            answer = answers.get(task.identity)
+            if answer is not None:
+                q = _last(answer, self.quantity)
+                stated = (q.error or (0.0,))[-1] / q.scale
+                return np.array(q.values), self.reference_uncertainty or stated, task.use.label
+        exact = np.array([self.reference(scene.scene)]) if self.reference else None
+        return exact, self.reference_uncertainty, self.why.source
+
+    def _distance(self, level: Sequence[Answer], reference: FloatArray) -> float:
+        """Root mean square distance of the grids of one refinement, at all points of a field."""
+        squares = [np.mean((np.array(_last(one, self.quantity).values) - reference) ** 2) for one in level]
+        return math.sqrt(sum(map(float, squares)) / len(level))
+
+
+def _grid(case: Case, scene: CaseScene, use: MethodUse) -> Task:
+    words = ", ".join(f"{name}={value}" for name, value in use.settings.items())
+    return case.task(scene, use).changed(f"grid {words}")
+
+
+def _last(answer: Answer, name: str) -> Values:
+    """The last value of a quantity alone, or a field at points, which is kept over its scale."""
+    q = answer.quantities[name]
+    return q if q.at else replace(q, values=q.values[-1:], error=q.error[-1:])
+
+
+def _size(values: Sequence[float] | FloatArray) -> float:
+    """One value itself, or the root mean square of a field."""
+    return float(values[0]) if len(values) == 1 else float(np.sqrt(np.mean(np.square(values))))
+
+
+def behaviour(values: Sequence[float], floor: float) -> str:
+    """Return the class of values, finest first, decided by the three finest.
+
+    Args:
+        values: finest first.
+        floor: round-off floor, absolute; differences within ten times it say nothing about the order.
+
+    Raises:
+        InvalidInput: if a value is not finite: such a sequence is INVALID, not divergent.
+    """
+    if not all(math.isfinite(value) for value in values):
+        raise InvalidInput(f"a sequence of refinements must be finite, got {tuple(values)}")
+    if len(values) < 3:
+        return "too-few"
+    eps21, eps32 = values[1] - values[0], values[2] - values[1]
+    if abs(eps21) <= 10 * floor:
+        return "floor"
+    if abs(eps21) >= abs(eps32):
+        return "divergent"
+    return "monotone" if eps21 * eps32 > 0 else "oscillatory"
+
+
+def behaviour_of_errors(errors: Sequence[float], floor: float) -> str:
+    """Return the class of absolute errors, finest first; arguments as of `behaviour`."""
+    if len(errors) < 3:
+        return "too-few"
+    if min(errors) <= 10 * floor:
+        return "floor"
+    return "divergent" if errors[0] >= errors[-1] else "monotone"
+
+
+def order_of_errors(errors: Sequence[float], lengths: Sequence[float]) -> float:
+    """Return the slope of the least-squares line of log error over log length through all grids."""
+    return float(np.polyfit(np.log(lengths), np.log(errors), 1)[0])
+
+
+def digits_per_refinement(errors: Sequence[float], floor: float) -> float | None:
+    """Return the mean number of digits gained per refinement until the floor; None where all grids lie there.
+
+    Args:
+        errors: relative errors against the reference, finest first.
+        floor: below ten times this, round-off and the reference decide; finer grids say nothing more.
+
+    Raises:
+        InvalidInput: if an error is not finite or negative.
+    """
+    if not all(math.isfinite(error) and error >= 0 for error in errors):
+        raise InvalidInput(f"errors must be finite and not negative, got {tuple(errors)}")
+    above = [i for i, error in enumerate(errors) if error > 10 * floor]
+    # The first grid at the floor ends the sequence.
+    if not above or above[-1] != len(errors) - 1 or (first := max(above[0] - 1, 0)) == len(errors) - 1:
+        return None
+    return (math.log10(errors[-1]) - math.log10(max(errors[first], floor))) / (len(errors) - 1 - first)
+
+
+def observed_order(values: Sequence[float], lengths: Sequence[float]) -> float:
+    """Return p of f = f_0 + C length^p from three grids, finest first, with any two refinement ratios.
+
+    p solves p ln r21 = ln|eps32/eps21| + q(p), q(p) = ln[(r21^p - s)/(r32^p - s)], s = sign(eps32/eps21) (Celik et al.
+    2008, J. Fluids Eng. 130, 078001). The source takes the modulus of the right-hand side. Without it the solution is
+    unique, and negative where the differences grow under refinement.
+
+    Raises:
+        InvalidInput: unless there are three finite values at increasing lengths with two non-zero differences.
+    """
+    if len(lengths) != 3 or not 0 < lengths[0] < lengths[1] < lengths[2] < math.inf:
+        raise InvalidInput(f"lengths must be three positive numbers, finest first, got {tuple(lengths)}")
+    eps21, eps32 = (b - a for a, b in pairwise(values))
+    if not (math.isfinite(eps21) and math.isfinite(eps32) and eps21 and eps32):
+        raise InvalidInput(f"values must be finite and different, finest first, got {tuple(values)}")
+    r21, r32 = (math.log(b / a) for a, b in pairwise(lengths))
+    size, oscillates = math.log(abs(eps32 / eps21)), eps32 / eps21 < 0
+
+    def excess(order: float) -> float:
+        return order * r21 - size - _q(order, r21, r32, oscillates=oscillates)
+
+    bound = (abs(size) + abs(math.log(r32 / r21)) + 1.0) / min(r21, r32)
+    return float(brentq(excess, -bound, bound, xtol=1e-14))
+
+
+def _q(order: float, r21: float, r32: float, *, oscillates: bool) -> float:
+    """q(p) with logarithms of the ratios, in a form that neither overflows nor cancels at p = 0."""
+    if oscillates:
+        return float(np.logaddexp(0.0, order * r21) - np.logaddexp(0.0, order * r32))
+    return _log_mean_exp(order * r21) - _log_mean_exp(order * r32) + math.log(r21 / r32)
+
+
+def _log_mean_exp(x: float) -> float:
+    """ln[(e^x - 1)/x], zero at x = 0."""
+    return max(x, 0.0) + math.log(-math.expm1(-abs(x)) / abs(x)) if x else 0.0
+
+
+def grid_convergence_index(
+    fine: float, coarse: float, refinement: float, observed: float, formal: float, *, scale: float
+) -> float:
+    """Return the relative GCI = Fs |f1 - f2| / (S (r^p - 1)), S = max(|f1|, scale).
+
+    Fs is 1.25 with the formal order where the observed one agrees with it within 10 %, else 3 with a cautious order.
+    The declared scale keeps a zero crossing from blowing up.
+    """
+    agrees = abs(observed - formal) <= 0.1 * formal
+    safety, order = (1.25, formal) if agrees else (3.0, min(max(0.5, observed), formal))
+    return safety * abs(fine - coarse) / (max(abs(fine), scale) * math.expm1(order * math.log(refinement)))

@@ -1,0 +1,169 @@
+"""What accuracy costs: error against seconds. All ranking uses the bound U = e + u_ref, and nothing is interpolated."""
+
+import math
+from collections.abc import Collection, Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+
+from cases.answers import Answer, Table
+from cases.case import Case, Task
+from cases.declare.methods import MethodUse
+from cases.run.timing import summed_up
+from cases.studies import CostOfAccuracy, Point
+from cases.verdicts import Status
+from contact import InvalidInput
+
+TOLERANCES = tuple(10.0**-k for k in range(1, 11))
+
+
+@dataclass(frozen=True, kw_only=True)
+class WorkStudy:
+    """Error against seconds of one quantity's last step, for settings that are timed alone on the machine.
+
+    Attributes:
+        scene: name of the scene.
+        quantity: what the error is of.
+        ladder: settings to try; the label of each names the setting, ``method`` the method.
+        reference: the settings errors are measured against; its own stated error is u_ref.
+        cheap: the settings that the ci suite times; empty for all.
+    """
+
+    scene: str
+    quantity: str
+    ladder: tuple[MethodUse, ...]
+    reference: MethodUse
+    cheap: tuple[MethodUse, ...] = ()
+
+    def in_suite(self, suite: str) -> "WorkStudy":
+        """Return the study as a suite carries it out: nightly all settings, otherwise the cheap ones."""
+        return self if suite == "nightly" or not self.cheap else replace(self, ladder=self.cheap)
+
+    def of_methods(self, methods: Collection[str], foreign: Iterable[MethodUse] = ()) -> "WorkStudy":
+        """Return the study of these methods' settings, and of those of ``foreign`` ones."""
+        own = tuple(use for use in self.ladder if use.method in methods)
+        return replace(self, ladder=(*own, *foreign), cheap=())
+
+    def tasks(self, case: Case) -> Iterator[Task]:
+        """Yield the reference and every timed setting."""
+        if self.scene in case.by_name:
+            yield self._task(case, self.reference, timed=False)
+            for use in self.ladder:
+                yield self._task(case, use, timed=True)
+
+    def records(self, case: Case, answers: Table) -> Iterator[CostOfAccuracy]:
+        """Yield the finished study; nothing when an answer is missing or the reference itself has no numbers."""
+        own = [answers.get(task.identity) for task in self.tasks(case)]
+        if not own or None in own:
+            return
+        reference, *timed = [one for one in own if one is not None]
+        if not reference.solved or not reference.quantities[self.quantity].error:
+            return
+        exact = reference.quantities[self.quantity]
+        u_ref = exact.error[-1] / abs(exact.values[-1])
+        points = [self._point(*pair, exact.values[-1], u_ref) for pair in zip(self.ladder, timed, strict=True)]
+        noise = max((summed_up(answer.samples).spread for answer in timed if answer.samples), default=0.0)
+        front = pareto_front(points, noise)
+        yield CostOfAccuracy(
+            case=case.name,
+            scene=self.scene,
+            quantity=self.quantity,
+            reference=f"{self.reference.method} ({self.reference.label})",
+            reference_error=u_ref,
+            noise=noise,
+            points=tuple(replace(point, on_front=point in front) for point in points),
+        )
+
+    def _task(self, case: Case, use: MethodUse, *, timed: bool) -> Task:
+        task = case.task(case.scene(self.scene), use)
+        role = "cost" if timed else "reference"
+        # The answer belongs to the method; the setting stands in the variant.
+        named = replace(use, label=use.method, method="")
+        return replace(task, use=named, variant=f"{role}: {use.label}", timed=timed)
+
+    def _point(self, use: MethodUse, answer: Answer, exact: float, u_ref: float) -> Point:
+        point = Point(method=use.method, setting=use.label, settings=answer.settings, reason=answer.reason)
+        if answer.status is not Status.PASS or not answer.samples:
+            return point
+        error = abs(answer.quantities[self.quantity].values[-1] - exact) / abs(exact)
+        timing = summed_up(answer.samples)
+        return replace(
+            point,
+            error=error,
+            bound=error_bound(error, u_ref),
+            seconds=timing.median,
+            quartiles=(timing.lower_quartile, timing.upper_quartile),
+            cold_seconds=answer.cold_seconds,
+            unknowns=answer.unknowns,
+            memory=answer.memory,
+        )
+
+
+def error_bound(error: float, reference_error: float) -> float:
+    """Return U = e + u_ref.
+
+    Raises:
+        InvalidInput: unless both are finite and not negative.
+    """
+    if not (math.isfinite(error) and math.isfinite(reference_error) and min(error, reference_error) >= 0):
+        raise InvalidInput(f"error {error} and error of the reference {reference_error} must be finite, not < 0")
+    return error + reference_error
+
+
+def bound_of(point: Point) -> float:
+    """Return the bound of a setting, infinite without an answer."""
+    return math.inf if point.bound is None else point.bound
+
+
+def pareto_front(points: Sequence[Point], noise: float) -> list[Point]:
+    """Return the settings on the front, in their order.
+
+    Setting k is dropped iff some j has U_j <= U_k and T_j < T_k (1 - d), d the relative spread of repeated times.
+    """
+    solved = [point for point in points if point.bound is not None]
+    return [
+        k for k in solved if not any(bound_of(j) <= bound_of(k) and j.seconds < k.seconds * (1 - noise) for j in solved)
+    ]
+
+
+def cheapest(points: Iterable[Point], tolerance: float) -> Point | None:
+    """Return the setting behind T*(tau), the smallest time with U <= tau; None when tau was not reached."""
+    return min((point for point in points if bound_of(point) <= tolerance), key=lambda p: p.seconds, default=None)
+
+
+def of_method(study: CostOfAccuracy, method: str) -> list[Point]:
+    """Return the settings of one method that gave an answer."""
+    return [point for point in study.points if point.method == method and point.bound is not None]
+
+
+def methods_of(study: CostOfAccuracy) -> tuple[str, ...]:
+    """Return the methods with at least one answer, in the order they were tried."""
+    return tuple(dict.fromkeys(point.method for point in study.points if point.bound is not None))
+
+
+def speed_up(study: CostOfAccuracy, fast: str, other: str, tolerance: float, *, cold: bool = False) -> float | None:
+    """Return T* of ``other`` over T* of ``fast``, or the ratio of first solutions; None unless both reach it."""
+    ours, theirs = (cheapest(of_method(study, method), tolerance) for method in (fast, other))
+    if ours is None or theirs is None:
+        return None
+    seconds = [point.cold_seconds if cold else point.seconds for point in (ours, theirs)]
+    return seconds[1] / seconds[0] if seconds[0] else None
+
+
+def crossover(study: CostOfAccuracy, fast: str, other: str) -> float | None:
+    """Return the smallest tolerance where the fast method still wins; None where it never does."""
+    wins = []
+    for tolerance in TOLERANCES:
+        ours, theirs = (cheapest(of_method(study, method), tolerance) for method in (fast, other))
+        if ours is not None and (theirs is None or ours.seconds < theirs.seconds):
+            wins.append(tolerance)
+    return min(wins, default=None)
+
+
+def price_of_a_digit(cheap: Point, accurate: Point) -> float:
+    """Return d log10(T) / d DoA between neighbours on the front: decades of time per digit of accuracy.
+
+    Raises:
+        InvalidInput: unless the second setting is the more accurate one.
+    """
+    if not bound_of(accurate) < bound_of(cheap):
+        raise InvalidInput(f"{accurate.method} is not more accurate than {cheap.method}")
+    return math.log10(accurate.seconds / cheap.seconds) / math.log10(bound_of(cheap) / bound_of(accurate))

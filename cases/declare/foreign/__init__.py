@@ -1,1 +1,0 @@
-"""What a case adds for methods of other packages: scenes restated in what they take."""

@@ -1,0 +1,132 @@
+"""Settings of registered methods from the command line or a file: for all scenes, for one scene, or as a ladder."""
+
+import re
+import tomllib
+from collections.abc import Collection, Iterable, Mapping
+from dataclasses import fields, is_dataclass, replace
+from pathlib import Path
+from typing import Any, Final, TypeAlias
+
+from cases.case import Case, CaseScene
+from cases.declare.methods import MethodUse, build, load, registered
+from contact import InvalidInput
+from contact.records.errors import shown
+
+# By name of a method: its settings by name; a table is those of the scene of that name.
+Settings: TypeAlias = Mapping[str, Mapping[str, Any]]
+
+WORDS: Final = re.compile(r"(?:(?P<method>[^=]+)\.)?(?P<name>\w+)=(?P<value>.*)", re.DOTALL)
+
+
+def read_settings(texts: Iterable[str], methods: Collection[str]) -> dict[str, dict[str, Any]]:
+    """Return what was asked for; the last of two settings of one name counts.
+
+    Args:
+        texts: each is ``name=value``, ``method.name=value``, or a TOML file with a table for each method.  Values are
+            written as in TOML; what is no TOML is a word.
+        methods: chosen ones; a setting without a method belongs to the only registered one among them.
+
+    Raises:
+        InvalidInput: if a text is none of these, or if its method is not registered.
+    """
+    found: dict[str, dict[str, Any]] = {}
+    for text in texts:
+        for method, settings in (_of_words(text, methods) if "=" in text else _of_file(text)).items():
+            if method not in registered():
+                raise InvalidInput(
+                    f"--setting {shown(text)}: {method!r} is no method of an installed package; "
+                    f"those are {', '.join(registered())}"
+                )
+            found.setdefault(method, {}).update(settings)
+    return found
+
+
+def _of_words(text: str, methods: Collection[str]) -> dict[str, dict[str, Any]]:
+    words = WORDS.fullmatch(text)
+    if words is None:
+        raise InvalidInput(f"--setting {shown(text)}: write name=value, method.name=value, or the name of a TOML file")
+    chosen = [name for name in methods if name in registered()]
+    if not words["method"] and len(chosen) != 1:
+        raise InvalidInput(f"--setting {shown(text)}: name the method, as in {(*chosen, 'mine')[0]}.{text}")
+    return {words["method"] or chosen[0]: {words["name"]: _value(words["value"])}}
+
+
+def _value(text: str) -> Any:
+    try:
+        return tomllib.loads(f"value = {text}")["value"]
+    except tomllib.TOMLDecodeError:
+        return text
+
+
+def _of_file(text: str) -> dict[str, dict[str, Any]]:
+    try:
+        tables = tomllib.loads(Path(text).read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        raise InvalidInput(f"--setting {shown(text)}: no such file of settings can be read: {error}") from None
+    if loose := [name for name, table in tables.items() if not isinstance(table, dict)]:
+        raise InvalidInput(f"--setting {shown(text)}: {loose[0]} stands outside a table; put it under [method]")
+    return tables
+
+
+def with_settings(case: Case, settings: Settings) -> Case:
+    """Return ``case`` with these settings of its methods on top of its own.
+
+    Raises:
+        InvalidInput: if a method does not take them.
+    """
+    methods = tuple(_changed(use, settings, "") for use in case.methods)
+    scenes = tuple(_with(case, scene, settings) for scene in case.scenes)
+    return replace(case, methods=methods, scenes=scenes)
+
+
+def _with(case: Case, scene: CaseScene, settings: Settings) -> CaseScene:
+    uses = case.methods_of(scene)
+    changed = tuple(_changed(use, settings, scene.name) for use in uses)
+    return scene if changed == uses else replace(scene, methods=changed)
+
+
+def _changed(use: MethodUse, settings: Settings, scene: str) -> MethodUse:
+    name = use.method or use.label
+    asked = settings.get(name, {})
+    own = asked.get(scene, {})
+    wanted = {key: value for key, value in asked.items() if not isinstance(value, dict)}
+    wanted |= own if isinstance(own, dict) else {}
+    return _checked(replace(use, settings={**use.settings, **wanted})) if wanted else use
+
+
+def ladder(name: str, settings: Mapping[str, Any]) -> tuple[MethodUse, ...]:
+    """Return the rungs that ``cost`` times: a list stands for one value a rung, anything else for all rungs.
+
+    Raises:
+        InvalidInput: if lists differ in length, or if the method does not take a value.
+    """
+    plain = {key: value for key, value in settings.items() if not isinstance(value, dict)}
+    lists = {key: value for key, value in plain.items() if isinstance(value, list)}
+    lengths = {len(values) for values in lists.values()}
+    if len(lengths) > 1 or 0 in lengths:
+        raise InvalidInput(f"settings of {name!r}: lists of a ladder have as many entries as one another, at least one")
+    rungs = [
+        {key: value[i] if key in lists else value for key, value in plain.items()}
+        for i in range(max(lengths, default=1))
+    ]
+    return tuple(_checked(MethodUse(label=_words(rung), method=name, settings=rung)) for rung in rungs)
+
+
+def _words(rung: Mapping[str, Any]) -> str:
+    return ", ".join(f"{name}={value}" for name, value in rung.items()) or "as it comes"
+
+
+def _checked(use: MethodUse) -> MethodUse:
+    """The use, once its method has taken the settings."""
+    name = use.method or use.label
+    try:
+        build(name, use.settings)
+    except InvalidInput:
+        raise
+    except Exception as error:
+        # A method of another package may raise anything.
+        kind = load(name)
+        known = ", ".join(field.name for field in fields(kind) if field.init) if is_dataclass(kind) else ""
+        there = f"; it has {known or 'none'}" if is_dataclass(kind) else ""
+        raise InvalidInput(f"method {name!r} does not take {_words(use.settings)}: {error}{there}") from error
+    return use

@@ -1,0 +1,89 @@
+"""Files of this program: written whole or not at all, and read strictly."""
+
+import csv
+import io
+import os
+from collections.abc import Iterable
+from pathlib import Path
+from typing import TypeVar
+
+from pydantic import TypeAdapter, ValidationError
+
+from contact import InvalidInput
+from contact.records.errors import shown
+
+T = TypeVar("T")
+
+# A larger file is refused before it is read: its values would need several times these bytes of memory.
+MAX_BYTES = 500_000_000
+
+
+def read_record(adapter: TypeAdapter[T], path: Path, *, remedy: str) -> T:
+    """Return the record in a JSON file.
+
+    Args:
+        adapter: of the record's type, whose numbers are finite.
+        path: the file.
+        remedy: what a user does about a file that is refused.
+
+    Raises:
+        InvalidInput: in one line, naming the first entry that fits no record, its value, and the remedy.
+    """
+    try:
+        if (size := path.stat().st_size) > MAX_BYTES:
+            raise InvalidInput(f"{path} has {size} bytes, more than {MAX_BYTES}; {remedy}")
+        return validated(adapter, path.read_bytes(), place=str(path), remedy=remedy)
+    except OSError as error:
+        raise InvalidInput(f"{path} cannot be read ({error.strerror}); {remedy}") from None
+
+
+def validated(adapter: TypeAdapter[T], data: bytes, *, place: str, remedy: str) -> T:
+    """Return the record that a JSON text holds; arguments and errors as of `read_record`."""
+    try:
+        return adapter.validate_json(data)
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        where = ".".join(str(part) for part in first["loc"])
+        wrong = f"{place}: {where:.200}: {first['msg']:.200}, got {shown(first['input'])}"
+        raise InvalidInput(f"{wrong}; {remedy}") from None
+
+
+def write_whole(path: Path, content: str | bytes) -> None:
+    """Write a text or bytes so that a reader finds the old file or the new one, never a part (fsync, rename).
+
+    A link stays a link; a device or pipe is written to as it stands.
+
+    Raises:
+        InvalidInput: if the disk is full or does not let the file be written; nothing is left of it then.
+    """
+    data = content.encode("utf-8") if isinstance(content, str) else content
+    target = path.resolve()
+    special = target.exists() and not target.is_file()
+    try:
+        if special:
+            target.write_bytes(data)
+        else:
+            _replace(target, data)
+    except OSError as error:
+        raise InvalidInput(f"{path}: cannot be written ({error.strerror}); make room, or name another place") from None
+
+
+def _replace(path: Path, data: bytes) -> None:
+    unfinished = path.with_name(f".{path.name}.{os.getpid()}.partial")
+    try:
+        with unfinished.open("wb") as stream:
+            stream.write(data)
+            stream.flush()
+            os.fsync(stream.fileno())
+        unfinished.replace(path)
+    finally:
+        unfinished.unlink(missing_ok=True)
+
+
+def csv_text(heads: Iterable[str], rows: Iterable[Iterable[object]]) -> str:
+    """Return a table as CSV; floats keep all digits that tell them apart, None is an empty cell."""
+    buffer = io.StringIO()
+    writer = csv.writer(buffer, lineterminator="\n")
+    writer.writerow(heads)
+    writer.writerows(rows)
+    return buffer.getvalue()

@@ -1,0 +1,312 @@
+"""Methods of installed packages join every case when they are chosen: each claim that can be put to them is.
+
+Such a method follows ``contact.Method``. A claim asks of it what it asks of its least exact method. A method may say
+how accurate it is (``claimed_accuracy``, relative, a class attribute, at most 10 %): closed forms and the fast method
+are then compared within ten times this where the claim asks less.
+
+Scenes that prescribe contact radii are restated by depth for methods that take no radii. The depths are those that MDR
+finds, and are prescribed to every method compared there, so that none of their error enters: compared are the contact
+radius, which must come back, force and stiffness.
+"""
+
+import math
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from dataclasses import replace
+from numbers import Real
+from typing import Any, Final
+
+from cases.case import Case, CaseScene
+from cases.claims import Agree, Approach, Changed, Claim, Equal, Zero
+from cases.declare.guarded_method import BrokenMethodError, build_guarded
+from cases.declare.methods import REFEREES, MethodUse, build, check_known, load, registered
+from contact import ContactError, ContactPath, ContactRadii, IndentationDepths, InvalidInput, Scene
+from contact.records.errors import shown
+
+# Largest accuracy, relative, that a method may claim for itself: agreement within more than a tenth tells nothing.
+LARGEST_CLAIM: Final = 0.1
+# A method is held to ten times the accuracy that it claims: with half of it errors of a few digits beyond would fail,
+# with twice as much a claim would mean less.
+HELD_TO: Final = 10.0
+SUFFIX: Final = ", restated by depth"
+# What is compared where a depth is prescribed, by what is compared where a radius is.
+RESTATED: Final = {
+    "indentation_depth": "contact_radius",
+    "normal_force": "normal_force",
+    "contact_stiffness": "contact_stiffness",
+}
+
+
+def with_registered(case: Case, chosen: Collection[str] | None = None) -> Case:
+    """Return ``case`` with the registered methods of installed packages.
+
+    Args:
+        case: with its own methods.
+        chosen: names of methods; None for every registered one but the outside solvers, which are asked by name.
+
+    Raises:
+        InvalidInput: if such a method cannot be imported, or claims an accuracy that is none.
+    """
+    own = {use.label for use in case.methods}
+    asked = [name for name in registered() if name not in REFEREES] if chosen is None else chosen
+    names = [name for name in registered() if name in asked and name not in own]
+    return with_foreign_methods(case, {name: claimed_accuracy(name) for name in names})
+
+
+def claimed_accuracy(name: str) -> float:
+    """Return the relative accuracy that a registered method claims for itself, zero if it claims none.
+
+    Raises:
+        InvalidInput: if it is no number from zero to `LARGEST_CLAIM`.
+    """
+    return check_claim(name, getattr(load(name), "claimed_accuracy", 0.0))
+
+
+def check_claim(name: str, claimed: Any) -> float:
+    """Return the accuracy that a method claims, as a number.
+
+    Raises:
+        InvalidInput: if it is no number from zero to `LARGEST_CLAIM`.
+    """
+    is_number = isinstance(claimed, Real) and not isinstance(claimed, bool)
+    if not is_number or not 0 <= claimed <= LARGEST_CLAIM:
+        raise InvalidInput(
+            f"method {name!r}: claimed_accuracy = {shown(claimed)} is no relative accuracy from 0 to "
+            f"{LARGEST_CLAIM:g}; correct it in that package, or uninstall it"
+        )
+    return float(claimed)
+
+
+def with_foreign_methods(case: Case, accuracies: Mapping[str, float]) -> Case:
+    """Return ``case`` solved by more methods and with the claims that can be put to them.
+
+    Claims about single methods extend to them; agreements compare each with the methods of the case, never with one
+    another. Orders of convergence belong to a mesh family, and residuals that are published to their method: they stay.
+
+    Args:
+        case: with its own methods and claims.
+        accuracies: that the methods claim for themselves, relative, by name; zero where one claims none.
+    """
+    if not accuracies:
+        return case
+    uses = tuple(MethodUse(label=name) for name in accuracies)
+    asked = with_restated(case, accuracies)
+    scenes = (replace(scene, methods=(*scene.methods, *uses)) if scene.methods else scene for scene in asked.scenes)
+    # The first claims of what is asked are the case's own, of its own scenes.
+    own = (_extended(case, claim, accuracies) for claim in asked.claims[: len(case.claims)])
+    others = dict.fromkeys(label for claim in asked.claims if isinstance(claim, Agree) for label in _pair(claim))
+    new = (
+        claim
+        for name, accuracy in accuracies.items()
+        for other in others
+        for claim in agreements_between(asked, name, other, {name: accuracy}, everywhere=False)
+    )
+    return replace(case, methods=(*case.methods, *uses), scenes=tuple(scenes), claims=(*own, *new))
+
+
+def _extended(case: Case, claim: Any, accuracies: Mapping[str, float]) -> Any:
+    """The claim about single methods with more of them; any other claim as it is."""
+    if isinstance(claim, Zero) and claim.derive is None:
+        return replace(claim, methods=claim.methods or tuple(use.label for use in case.methods))
+    if not isinstance(claim, Equal | Changed | Approach | Zero):
+        return claim
+    methods = (*claim.methods, *accuracies) if claim.methods else ()
+    asked = max([claim.tolerance, *claim.tolerances.values()])
+    held = {name: HELD_TO * own if own and isinstance(claim, Equal) else asked for name, own in accuracies.items()}
+    more = {name: min(asked, own) for name, own in held.items()}
+    return replace(claim, methods=methods, tolerances={**claim.tolerances, **more})
+
+
+def agreements_between(
+    case: Case, first: str, second: str, accuracies: Mapping[str, float], *, everywhere: bool = True
+) -> Iterator[Agree]:
+    """Yield the agreements of ``first`` with ``second`` in what ``case`` compares.
+
+    They come from the case's own agreements. The tightest that applies to a pair on a scene decides: against MDR, what
+    MDR itself has to meet. Scenes stand in one claim unless their tolerances differ; no scene stands in two.
+
+    Args:
+        case: with its own claims only.
+        first: label of the method under test.
+        second: label of the method that it is compared with.
+        accuracies: relative, that methods claim for themselves, by label.
+        everywhere: on every scene where the case compares any methods; otherwise where it compares ``second``.
+    """
+    compared: dict[str, dict[str, list[Agree]]] = {}
+    for claim in case.claims:
+        if isinstance(claim, Agree):
+            words = claim.quantity.replace("_", " ") + (f", {claim.norm}" if claim.norm else "")
+            for scene in claim.scenes_of(case):
+                compared.setdefault(words, {}).setdefault(scene.name, []).append(claim)
+    for words, by_scene in compared.items():
+        groups: dict[float, tuple[Agree, list[str]]] = {}
+        for name, claims in by_scene.items():
+            if everywhere or any(second in _pair(claim) for claim in claims):
+                claim = _deciding(claims, first, second)
+                groups.setdefault(claim.tolerance, (claim, []))[1].append(name)
+        for tolerance, (claim, scenes) in groups.items():
+            name = f"{words}: {first} and {second}"
+            yield replace(
+                claim,
+                name=name if len(groups) == 1 else f"{name}, others within {tolerance:g}",
+                scenes=tuple(scenes),
+                fast=first,
+                reference=second,
+                tolerance=min(tolerance, _held_to(claim, (first, second), accuracies)),
+                # No refinement of other methods than its own is solved.
+                refined=tuple(label for label in claim.refined if label in (first, second)),
+            )
+
+
+def _pair(claim: Agree) -> tuple[str, str]:
+    return claim.fast, claim.reference
+
+
+def _held_to(claim: Agree, labels: tuple[str, str], accuracies: Mapping[str, float]) -> float:
+    """Ten times the larger accuracy that the pair claims; infinite where one is not the fast method and claims none."""
+    claimed = [accuracies.get(label, 0.0) for label in labels if label != claim.fast]
+    return HELD_TO * max(claimed) if claimed and all(claimed) else math.inf
+
+
+def _deciding(claims: list[Agree], first: str, second: str) -> Agree:
+    """The tightest claim about the pair; without one, the tightest of its less exact method, or of any pair."""
+    about = {label: [claim for claim in claims if label in _pair(claim)] for label in (first, second)}
+    pair = [claim for claim in about[first] if claim in about[second]]
+    if pair:
+        return min(pair, key=_tolerance)
+    known = [min(found, key=_tolerance) for found in about.values() if found]
+    return max(known, key=_tolerance) if known else min(claims, key=_tolerance)
+
+
+def _tolerance(claim: Agree) -> float:
+    return claim.tolerance
+
+
+def with_restated(case: Case, names: Iterable[str]) -> Case:
+    """Return the case with such twins of its scenes as one of the methods needs, and its own agreements on them last.
+
+    Args:
+        case: with its own methods and claims.
+        names: of methods, as the table knows them.
+    """
+    twins = {scene.name: twin for scene in case.scenes if (twin := _twin(scene, tuple(names))) is not None}
+    if not twins:
+        return case
+    # A claim about all scenes says nothing of their twins.
+    own = tuple(replace(c, scenes=tuple(s.name for s in c.scenes_of(case))) for c in case.claims)
+    new = tuple(twin for claim in case.claims for twin in _on_twins(case, claim, twins))
+    return replace(case, scenes=(*case.scenes, *twins.values()), claims=(*own, *new))
+
+
+def _twin(scene: CaseScene, names: tuple[str, ...]) -> CaseScene | None:
+    """The scene by depth, where a method takes it only so."""
+    problem = scene.scene
+    if not isinstance(problem.loading, ContactRadii) or problem.effects:
+        return None
+    if not any(_only_by_depth(name, problem) for name in names):
+        return None
+    try:
+        found = build("mdr", {}).solve(problem)
+    except ContactError:
+        return None
+    if not isinstance(found, ContactPath):
+        return None
+    return replace(
+        scene,
+        name=f"{scene.name}{SUFFIX}",
+        parameters={**scene.parameters, "restated": "depths that MDR finds for the prescribed radii"},
+        scene=problem.replace(loading=IndentationDepths(values=found.indentation_depth)),
+    )
+
+
+def _only_by_depth(name: str, problem: Scene) -> bool:
+    """Whether a method refuses the radii of a scene and takes depths; any depths of their number will do to ask."""
+    by_depth = problem.replace(loading=IndentationDepths(values=problem.loading.values))  # type: ignore[attr-defined]  # radii
+    try:
+        method = build_guarded(name, {})
+        return not method.supports(problem) and bool(method.supports(by_depth))
+    except ContactError:
+        # What breaks here says so where it solves.
+        return False
+
+
+def _on_twins(case: Case, claim: Any, twins: Mapping[str, CaseScene]) -> Iterator[Agree]:
+    """An agreement of quantities on the twins of its scenes; whatever else is claimed speaks of the radii alone."""
+    if isinstance(claim, Agree) and not claim.norm and claim.quantity in RESTATED:
+        names = tuple(twins[scene.name].name for scene in claim.scenes_of(case) if scene.name in twins)
+        if names:
+            yield replace(claim, name=f"{claim.name}{SUFFIX}", quantity=RESTATED[claim.quantity], scenes=names)
+
+
+def against(cases: Collection[Case], methods: Collection[str], others: Collection[str]) -> tuple[Case, ...]:
+    """Return the cases that compare methods at all, each of ``methods`` compared with each of ``others``.
+
+    Raises:
+        InvalidInput: if a method is unknown or compared with itself, or if no case compares methods.
+    """
+    for label in (*methods, *others):
+        check_known(label, (use.label for case in cases for use in case.methods))
+    pairs = [(one, other) for other in others for one in methods if one != other]
+    if not pairs:
+        raise InvalidInput(f"--against {' '.join(others)}: name with --method what is compared with it")
+    accuracies = {label: claimed_accuracy(label) for label in registered() if label in (*methods, *others)}
+    compared = []
+    for case in (with_restated(case, accuracies) for case in cases):
+        claims = tuple(claim for pair in pairs for claim in agreements_between(case, *pair, accuracies))
+        compared += [_compared(case, pairs, claims)] if claims else []
+    if not compared:
+        raise InvalidInput(f"{', '.join(case.name for case in cases)}: methods are not compared there; run it without")
+    return tuple(compared)
+
+
+def _compared(case: Case, pairs: list[tuple[str, str]], claims: tuple[Agree, ...]) -> Case:
+    """The case with these claims alone, each of its methods on every scene that a claim is about."""
+    labels = tuple(dict.fromkeys(label for pair in pairs for label in pair))
+    about = {scene.name for claim in claims for scene in claim.scenes_of(case)}
+    scenes = tuple(
+        replace(scene, methods=tuple(_use(case, scene, label) for label in labels), nightly=())
+        for scene in case.scenes
+        if scene.name in about
+    )
+    uses = tuple(_use(case, case.scenes[0], label) for label in labels)
+    return replace(case, scenes=scenes, methods=uses, claims=claims, work=(), ablations=())
+
+
+def _use(case: Case, scene: CaseScene, label: str) -> MethodUse:
+    """The method as the scene, or else the case, has it; or with the settings it comes with."""
+    known = {use.label: use for use in (*case.methods, *case.methods_of(scene))}
+    return known.get(label, MethodUse(label=label))
+
+
+def beside(case: Case, methods: Collection[str], reference: str) -> Case:
+    """Return the case with what is claimed of ``methods``, and ``reference`` on the scenes that one of them supports.
+
+    Nothing is claimed of the reference alone. Where no method supports any scene, all are compared: skipped by reason.
+
+    Args:
+        case: with all these methods.
+        methods: labels of those under test.
+        reference: label of the method that they are compared with.
+    """
+    supported = {scene.name for scene in case.scenes if any(_supports(scene, label) for label in methods)}
+    compared = supported or {scene.name for scene in case.scenes}
+    left = case.only(lambda scene, use: use.label in methods or (use.label == reference and scene.name in compared))
+    uses = tuple(use for use in case.methods if use.label in (*methods, reference))
+    claims = tuple(own for claim in case.claims for own in _about(claim, methods))
+    return replace(left, methods=uses, claims=claims, work=(), ablations=())
+
+
+def _supports(scene: CaseScene, label: str) -> bool:
+    """Whether the method supports the scene; one that breaks down when it is asked says so when it solves."""
+    try:
+        return bool(build_guarded(label, {}).supports(scene.scene))
+    except BrokenMethodError:
+        return True
+
+
+def _about(claim: Any, methods: Collection[str]) -> Iterator[Claim]:
+    """The claim as far as it is about one of the methods."""
+    if isinstance(claim, Equal | Changed | Zero | Approach):
+        named = tuple(label for label in methods if not claim.methods or label in claim.methods)
+        yield from (replace(claim, methods=named),) if named else ()
+    elif isinstance(claim, Agree) and claim.fast in methods:
+        yield claim

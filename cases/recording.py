@@ -1,0 +1,116 @@
+"""From a method's answer to what a run keeps: quantities with units and stated errors, fields at points."""
+
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+
+from cases.answers import Values
+from cases.case import Sampling
+from cases.declare.quantities import IMPACT_NUMBERS, values_of
+from cases.inside_laws import residuals
+from contact import UNITS, ContactPath, DetachmentPath, HistoryPath, ImpactHistory, Solution
+from contact.answer.inside import InsideFields
+from contact.records.validation import FloatArray
+
+_SCALES = {"energy_residual": 1.0}  # already over the initial energy: its own size is rounding
+_ON_BRANCH = {"pull_off_force": "normal_force", "pull_off_depth": "indentation_depth", "force_at_loss": "normal_force"}
+# Fields inside that are kept together at all points, and the stated error that belongs to them.
+GROUPS = {
+    "displacement_inside": ("displacement", ("radial_displacement", "axial_displacement")),
+    "stress_inside": ("stress", ("radial_stress", "hoop_stress", "axial_stress", "shear_stress")),
+    "pressure_inside": ("hydrostatic_pressure", ("hydrostatic_pressure",)),
+    "gradient_inside": ("pressure_gradient", ("pressure_gradient_radial", "pressure_gradient_axial")),
+}
+STRESSES = ("radial_stress", "axial_stress", "von_mises")
+
+
+def recorded(solution: Solution, sampling: Sampling) -> dict[str, Values]:
+    """Return all that a run keeps of an answer, by name."""
+    found = quantities(solution, sampling)
+    if isinstance(solution, ContactPath):
+        found |= _pressure(solution, sampling) if sampling.ring_edges else {}
+        found |= dict(_inside(solution, sampling)) if sampling.inside else {}
+    return found
+
+
+def quantities(solution: Solution, sampling: Sampling) -> dict[str, Values]:
+    """Return every quantity of the answer, along its steps; of an impact what sums it up, of a history its end."""
+    if isinstance(solution, ImpactHistory):
+        names = [*IMPACT_NUMBERS, "energy_residual"]
+    else:
+        names = [*(n for n in solution.ARRAYS if n != "time"), *solution.SCALARS]
+    end = slice(-1, None) if isinstance(solution, HistoryPath) else slice(None)
+    # Residuals that the method publishes beside its answer, such as an energy defect.
+    residual = {
+        name: Values(unit="1", scale=1.0, values=_floats(error))
+        for name, error in solution.error_estimate.items()
+        if name not in UNITS
+    }
+    return {name: _quantity(solution, name, sampling, end) for name in names} | residual
+
+
+def _floats(values: object) -> tuple[float, ...]:
+    return tuple(np.atleast_1d(np.asarray(values, dtype=np.float64)).ravel().tolist())
+
+
+def _quantity(solution: Solution, name: str, sampling: Sampling, steps: slice) -> Values:
+    values = values_of(solution, name)
+    error = _stated(solution, name, values.size)[steps]
+    values = values[steps]
+    scale = sampling.scales.get(name) or _SCALES.get(name) or float(np.max(np.abs(values))) or 1.0
+    return Values(unit=UNITS.get(name, "1"), scale=scale, values=_floats(values), error=error)
+
+
+def _stated(solution: Solution, name: str, size: int) -> tuple[float, ...]:
+    if name not in solution.error_estimate:
+        return _of_the_branch(solution, name)
+    stated = np.abs(np.atleast_1d(solution.uncertainty(name)))
+    # There is one number for all steps, or one for each step of a history whose peak is the quantity.
+    return _floats(stated) if stated.size == size else (float(np.max(stated)),) * size
+
+
+def _of_the_branch(solution: Solution, name: str) -> tuple[float, ...]:
+    """A critical point lies on the branch and is as uncertain as the state of the branch nearest to it."""
+    branch = _ON_BRANCH.get(name, "")
+    if branch not in solution.error_estimate or not isinstance(solution, DetachmentPath):
+        return ()
+    nearest = np.argmin(np.abs(solution.contact_radius - solution.pull_off_contact_radius))
+    stated = np.broadcast_to(np.abs(solution.uncertainty(branch)), solution.contact_radius.shape)
+    return (float(stated[nearest]),)
+
+
+def _pressure(path: ContactPath, sampling: Sampling) -> Mapping[str, Values]:
+    """The pressure of the last step at the nodes of the rings."""
+    if path.fields is None:
+        return {}
+    radius, step = sampling.rings.radius.ravel(), len(path) - 1
+    stated = path.error_estimate.get("pressure")
+    error = () if stated is None else (float(np.broadcast_to(stated, (len(path),))[step]),)
+    values = _floats(path.pressure(radius, step))
+    return {"pressure": Values(unit=UNITS["pressure"], scale=1.0, values=values, at=_floats(radius), error=error)}
+
+
+def fields_at(path: ContactPath, sampling: Sampling) -> InsideFields:
+    """Fields of the last step at a scene's points."""
+    a, h = float(path.contact_radius[-1]), path.scene.layer.thickness
+    r, z = np.transpose(sampling.inside)
+    return path.inside(-1).at(a * r, min(a, h) * z)
+
+
+def _inside(path: ContactPath, sampling: Sampling) -> Iterator[tuple[str, Values]]:
+    """Fields over depth, mean pressure and that over the smaller of a and h; stresses; residuals of laws."""
+    found, mean = fields_at(path, sampling), float(path.scale("pressure")[-1])
+    largest = max(float(np.abs(getattr(found, name)).max()) for name in GROUPS["stress_inside"][1])
+    length = min(float(path.contact_radius[-1]), path.scene.layer.thickness)
+    scales = (abs(float(path.indentation_depth[-1])), mean, mean, mean / length)
+    for (name, (stated, fields)), scale in zip(GROUPS.items(), scales, strict=True):
+        values: FloatArray = np.concatenate([getattr(found, field) for field in fields]) / scale
+        share = 1.0 if name == "displacement_inside" else largest / mean
+        own = (float(found.error_estimate[stated] * share),)
+        at = _floats(np.arange(values.size))
+        yield name, Values(unit="1", scale=1.0, values=_floats(values), at=at, error=own)
+    error = (float(found.error_estimate["stress"] * largest),) * len(sampling.inside)
+    for name in STRESSES:
+        yield f"{name}_inside", Values(unit="Pa", scale=largest, values=_floats(getattr(found, name)), error=error)
+    for name, residual in residuals(path).items() if sampling.laws else ():
+        yield name, Values(unit="1", scale=1.0, values=_floats(residual))
