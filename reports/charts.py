@@ -122,30 +122,35 @@ def _draw_agreement(found: Sequence[Verdict]) -> Figure:
 
 
 def _over_parameter(run: Run, case: CaseText) -> Picture | None:
-    """The answers over the parameter of the scenes with most values; None without a parameter of three values."""
-    values: dict[str, set[float]] = {}
+    """The answers over the parameter of the scenes with most numbers; None without a parameter of three numbers."""
+    numbers: dict[str, set[float]] = {}
     for parameters in case.scenes.values():
         for name, value in parameters.items():
-            if isinstance(value, int | float) and not isinstance(value, bool) and value > 0:
-                values.setdefault(name, set()).add(value)
+            numbers.setdefault(name, set()).update(_positive(value))
+    name = max(numbers, key=lambda one: len(numbers[one]), default="")
     answers = [answer for answer in run.answers.of_case(case.name) if answer.solved]
     quantity = next((q for q in SHOWN_QUANTITIES if any(q in answer.quantities for answer in answers)), "")
-    name = max(values, key=lambda one: len(values[one]), default="")
-    if not quantity or len(values.get(name, ())) < 3:
-        return None
     curves: dict[tuple[str, str], list[Place]] = {}
-    for answer in answers:
+    for answer in (one for one in answers if quantity in one.quantities):
         parameters = case.scenes.get(answer.scene, {})
-        if quantity in answer.quantities and name in parameters:
-            group = ", ".join(f"{value}" for other, value in parameters.items() if other != name)
-            place = float(parameters[name]), abs(answer.quantities[quantity].values[-1])
-            curves.setdefault((group, answer.method), []).append(place)
+        group = ", ".join(f"{value}" for other, value in parameters.items() if other != name)
+        for x in _positive(parameters.get(name, "")):
+            for y in _positive(abs(answer.quantities[quantity].values[-1])):
+                curves.setdefault((group, answer.method), []).append((x, y))
+    if not curves or len(numbers[name]) < 3:
+        return None
     groups = sorted(dict.fromkeys(group for group, _ in curves), key=lambda g: -len(curves.get((g, "mdr"), ())))
     shown = {place: curve for place, curve in curves.items() if place[0] in groups[:MOST_CURVES]}
     unit = next(a.quantities[quantity].unit for a in answers if quantity in a.quantities)
     label = name.replace("_over_", "/")
     draw = partial(_draw_over, shown, label, f"{quantity_words(quantity)} [{unit}]")
     return Picture(file_name(case.name, "answers"), f"{quantity_words(quantity).capitalize()} over {label}", draw)
+
+
+def _positive(value: object) -> tuple[float, ...]:
+    """The value alone if it is a number above zero, which a logarithmic axis can show."""
+    is_number = isinstance(value, int | float) and not isinstance(value, bool) and value > 0
+    return (float(value),) if is_number else ()  # type: ignore[arg-type]
 
 
 def _draw_over(curves: dict[tuple[str, str], list[Place]], x_label: str, y_label: str) -> Figure:
