@@ -191,12 +191,11 @@ def _stated(scene: Scene, data: Data, fitted: Fitted, confidence: float) -> Curv
         jacobian, (data.force - fitted_force)[order], pressed[order], float(np.ptp(data.force)), confidence
     )
     changes = _changes(values, family, by_u, by_modulus)
-    covariance = changes @ spread.covariance @ changes.T
-    errors = dict(zip(values, np.sqrt(np.maximum(np.diag(covariance), 0.0)).tolist(), strict=True))
-    if "work_of_adhesion" in values:
-        raw = float(spread.covariance[list(values).index("work_of_adhesion")][list(values).index("work_of_adhesion")])
-        errors["work_of_adhesion"] = math.hypot(errors["work_of_adhesion"], modulus * raw)  # w = E u^2 near u = 0
-    band = spread.quantile * np.sqrt(np.maximum(np.sum((jacobian @ spread.covariance) * jacobian, axis=1), 0.0))
+    raw, band = spread.errors(values), spread.band(jacobian)
+    spread = spread._replace(covariance=changes @ spread.covariance @ changes.T)
+    errors = spread.errors(values)
+    if "work_of_adhesion" in values:  # w = E u^2 is flat at u = 0
+        errors["work_of_adhesion"] = math.hypot(errors["work_of_adhesion"], modulus * raw["work_of_adhesion"] ** 2)
     warnings, notes = _words(scene, data, fitted, values, modulus)
     return CurveFit(
         scene=scene,
@@ -205,12 +204,12 @@ def _stated(scene: Scene, data: Data, fitted: Fitted, confidence: float) -> Curv
         fitted=fitted_force,
         values=values,
         standard_error=errors,
-        covariance=covariance,
+        covariance=spread.covariance,
         quantile=spread.quantile,
         confidence=confidence,
         band=band,
         numerical_error=_numerical_error(fitted, shifted),
-        warnings=(*warnings, *spread.warnings, *confounded(values, covariance, spread.quantile)),
+        warnings=(*warnings, *spread.warnings, *confounded(values, spread.covariance, spread.quantile)),
         notes=notes,
         per_modulus=phi,
     )

@@ -104,6 +104,15 @@ def test_times_that_are_kept_are_not_fitted_and_another_solid_warns(relaxed):
     assert any("residuals are not noise" in line for line in other.warnings)
 
 
+def test_a_normalised_table_is_kept_and_its_scale_fitted(relaxed):
+    """G(t)/G_0 in pascals: 1/3, 1/3 and 1/3."""
+    third = PronySeries(long_term_shear_modulus=1 / 3, shear_moduli=[1 / 3, 1 / 3], relaxation_times=[0.2, 3.0])
+    layer = LAYER.replace(youngs_modulus=3.0)
+    guess = scene(PRONY, DepthHistory(time=[0, 1], depth=[0, 1e-7])).replace(layer=layer, effects=(third,))
+    found = fit_history(guess, TIME, DEPTH, relaxed[PRONY], parameters=("scale", "contact_point", "baseline"))
+    assert found.values["instantaneous_shear_modulus"] == pytest.approx(3e3, rel=1e-4, abs=0.0)
+
+
 SCENE_FILE = """layer = {thickness = "10 um", youngs_modulus = "9 kPa", poissons_ratio = 0.5}
 indenter = {kind = "paraboloid", radius_of_curvature = "5 um"}
 loading = {kind = "depth_history", time = ["0 s", "1 s"], depth = ["0 nm", "100 nm"]}
