@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Final
 
@@ -21,7 +21,7 @@ from bem.flat_punch import IntegralEquation
 from contact import Adhesion, IndentationDepths, NotConvergedError, Paraboloid, Scene, Sphere
 from contact.records.validation import BoolArray, FloatArray
 from mdr.curves.contact_point import Data, Fitted, least_squares, modulus_and_residual, rough_indentation
-from mdr.curves.families import CurveShape
+from mdr.curves.families import CurveShape, Family
 from mdr.curves.force_curve import longest_curve
 from mdr.equilibria import solve_elastic
 from mdr.spring_bed import Springs
@@ -115,7 +115,7 @@ class BranchShape:
 
 
 @dataclass(frozen=True)
-class Adhering:
+class Adhering(Family):
     """Curves of withdrawal over u: sqrt(w/E) with a free work of adhesion, ln E with a known one.
 
     Attributes:
@@ -123,6 +123,8 @@ class Adhering:
         work: Work of adhesion [J/m^2] where it is known.
         attached: Which points are in contact, shape (n,).
         elastic_error: Relative error of the force without adhesion.
+        varied: What u stands for.
+        is_scaled: Whether the modulus is free beside u.
         starts: First values of u.
     """
 
@@ -130,17 +132,9 @@ class Adhering:
     work: float | None
     attached: BoolArray
     elastic_error: float
-    starts: Sequence[float] = field(default=())
-
-    @property
-    def varied(self) -> str:
-        """What u stands for."""
-        return "work_of_adhesion" if self.work is None else "youngs_modulus"
-
-    @property
-    def is_scaled(self) -> bool:
-        """Whether the modulus is free beside u."""
-        return self.work is None
+    varied: str
+    is_scaled: bool
+    starts: Sequence[float]
 
     def root(self, u: float) -> float:
         """sqrt(w/E) [m^(1/2)]."""
@@ -160,6 +154,10 @@ class Adhering:
             return max(u, 0.0) ** 2 * modulus, 2 * max(u, 0.0) * modulus, max(u, 0.0) ** 2
         return self.factor(u), self.factor(u), 0.0
 
+    def size(self, u: float) -> float:
+        """The root itself or a usual one, or one of a logarithm."""
+        return max(abs(u), self.starts[len(self.starts) // 2]) if self.work is None else 1.0
+
 
 def fit_adhesive(scene: Scene, data: Data) -> Fitted:
     """Values of least squares of a curve of withdrawal.
@@ -177,7 +175,9 @@ def fit_adhesive(scene: Scene, data: Data) -> Fitted:
         reach = 4 * way if data.has_free_point else max(4 * way, 2 * data.deepest)
         curve = longest_curve(scene, reach)
         table = table_of(curve.scene)
-        family = Adhering(table, work, attached, curve.error, _first_values(table, work, data, way))
+        varied = "work_of_adhesion" if work is None else "youngs_modulus"
+        starts = _first_values(table, work, data, way)
+        family = Adhering(table, work, attached, curve.error, varied, work is None, starts)
         trials = {}
         for u in family.starts:
             first = float(table.branch(family.root(u))[0][0])

@@ -196,7 +196,7 @@ def least_squares(data: Data, family: Family, trials: dict[float, FloatArray]) -
 def _polished(data: Data, family: Family, indentation: float, u: float) -> Fitted:
     """Levenberg and Marquardt over the depth of indentation and u."""
     free_point, varies = data.has_free_point, bool(family.varied)
-    unit = abs(u) if abs(u) > 0.0 and family.is_scaled and family.varied == "work_of_adhesion" else 1.0
+    unit = family.size(u)
 
     def unpacked(x: FloatArray) -> tuple[float, float]:
         point = indentation * float(x[0]) if free_point else indentation

@@ -29,7 +29,6 @@ from mdr.curves.contact_point import (
 from mdr.curves.families import (
     BACKGROUND,
     Family,
-    Plain,
     Solved,
     changed,
     check_parameters,
@@ -229,7 +228,7 @@ def _background(data: Data, remaining: FloatArray, shifted: FloatArray) -> dict[
 
 def _by_u(family: Family, u: float, shifted: FloatArray, modulus: float) -> FloatArray:
     """Derivative of the force by u, shape (n,), by central differences."""
-    step = _STEP * (max(abs(u), abs(family.starts[len(family.starts) // 2])) if family.varied[0] == "w" else 1.0)
+    step = _STEP * family.size(u)
 
     def force(at: float) -> FloatArray:
         factor = modulus if family.is_scaled else family.factor(at)
@@ -292,7 +291,7 @@ def _by_formulas(scene: Scene, data: Data, own: float) -> tuple[FormulaFit, ...]
     """Each formula fitted to the same curve with the same background."""
     found, rough = [], rough_indentation(data)
     for formula in formulas_for(scene):
-        best = _search(data, Plain(formula), rough, math.inf)
+        best = _search(data, Family(formula), rough, math.inf)
         modulus, _ = modulus_and_residual(data, best.family, best.indentation, best.u)
         found.append(FormulaFit(formula=formula, youngs_modulus=modulus, bias=modulus / own - 1.0))
     return tuple(found)
