@@ -20,7 +20,7 @@ from numpy.typing import ArrayLike
 from bem.flat_punch import IntegralEquation
 from contact import Adhesion, IndentationDepths, NotConvergedError, Paraboloid, Scene, Sphere
 from contact.records.validation import BoolArray, FloatArray
-from mdr.curves.contact_point import Data, Fitted, least_squares, modulus_and_residual, rough_indentation
+from mdr.curves.contact_point import Data, Fitted, check_contact, least_squares, modulus_and_residual, rough_indentation
 from mdr.curves.families import CurveShape, Family
 from mdr.curves.force_curve import longest_curve
 from mdr.equilibria import solve_elastic
@@ -248,11 +248,12 @@ def _best(data: Data, ends: Sequence[Fitted]) -> Fitted:
             "check the tip of the scene and the sign of the force (pressing is positive)"
         )
     best = possible[0]
+    residual = modulus_and_residual(data, best.family, best.indentation, best.u)[1]
+    check_contact(data, float(data.remaining @ data.remaining) - best.squares, residual)
     limit = best.squares * (1 + 3 / data.force.size) + 1e-12 * float(data.force @ data.force)
     for end, modulus in zip(possible[1:], moduli[1:], strict=True):
         if end.squares <= limit and abs(modulus / moduli[0] - 1) > _SAME:
-            change = modulus_and_residual(data, best.family, best.indentation, best.u)[1]
-            change = change - modulus_and_residual(data, end.family, end.indentation, end.u)[1]
+            change = residual - modulus_and_residual(data, end.family, end.indentation, end.u)[1]
             if float(change @ change) > 9 * limit / data.force.size or modulus == 0.0:
                 raise NotConvergedError(
                     f"two sets of values fit this curve equally well (E = {moduli[0]:.4g} and {modulus:.4g} Pa); "

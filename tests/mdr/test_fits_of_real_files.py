@@ -116,14 +116,17 @@ def test_curves_of_a_map_keep_their_own_points():
     assert alone == pytest.approx([5e3] * 3, rel=0.02, abs=0.0)
 
 
+@pytest.mark.filterwarnings("error")
 @pytest.mark.parametrize("seed", range(10))
-def test_noise_and_drift_show_no_contact(seed):
+@pytest.mark.parametrize("effects", [(), (Adhesion(work_of_adhesion=1e-4),)], ids=["elastic", "adhesive"])
+def test_noise_and_drift_show_no_contact(seed, effects):
     draw = np.random.default_rng(seed)
     depth = np.linspace(-2e-6, 1e-6, 300)
     white, drift = draw.normal(0, 1e-10, 300), 1e-3 * depth
-    for force in (white, drift + white, -hertz(depth) + white, np.zeros(300)):
-        with pytest.raises(InvalidInput, match="no contact in the curve"):
-            fit_curve(HALF_SPACE, depth, force)
+    wave = 5e-10 * np.sin(depth / 1e-7 + seed)
+    for force in (white, drift + white, -1e-2 * np.clip(depth, 0, None) + white, wave + white, np.zeros(300)):
+        with pytest.raises((InvalidInput, NotConvergedError), match=r"no contact|no values describe|press deeper"):
+            fit_curve(HALF_SPACE.replace(effects=effects), depth, force)
 
 
 def test_an_offset_and_a_tilt_are_fitted_by_default():
