@@ -19,9 +19,9 @@ from contact import (
     Solution,
     StageRecord,
 )
-from contact.answer.shown import SYMBOLS
+from contact.answer.evidence import SYMBOLS
 from contact.answer.small_strains import depth_note, depths_of
-from contact.answer.summary import scene_line
+from contact.answer.solution import scene_line
 from contact.records.units import prefix_for
 from contact.records.validation import FloatArray
 from reports.words import Table, display_name, duration, measured, memory, scaled_unit, small

@@ -118,8 +118,8 @@ def table_of(item: Record) -> dict[str, Any]:
     values = ((field.name, getattr(item, field.name)) for field in dataclasses.fields(item))
     table = {name: _written(value) for name, value in values if value is not None}
     if isinstance(item, Layer) and item.is_half_space:
-        # JSON and TOML share no infinity.
-        del table["thickness"], table["support"]
+        # JSON and TOML share no infinity, and a half-space has no base.
+        table = {name: value for name, value in table.items() if name != "thickness" and value != "bonded"}
         table["half_space"] = True
     return {"kind": item.kind(), **table} if item.NAMED else table
 

@@ -192,9 +192,14 @@ def read(cls: type[R], table: Mapping[str, Any], name: str, context: object = No
         InvalidInput: One line for each problem, with its place in the tables; `name` is that of the whole.
     """
     try:
-        return TypeAdapter(cls).validate_python(table, strict=False, context=context)
+        return cast(R, _adapter(cls).validate_python(table, strict=False, context=context))
     except pydantic.ValidationError as error:
         raise InvalidInput(describe(error, "", top=name)) from None
+
+
+@functools.cache
+def _adapter(cls: type[Record]) -> TypeAdapter[Any]:
+    return TypeAdapter(cls)
 
 
 def unit_of(cls: type[Record], field: str) -> str | None:

@@ -229,9 +229,7 @@ def _write(solution: Solution, path: Path) -> None:
     if path.suffix == ".csv":
         _put(path, solution_csv(solution))
     elif path.suffix == ".h5":
-        from contact.files.storage import save_solution  # noqa: PLC0415 - h5py only where it is asked for
-
-        save_solution(path, solution)
+        solution.save(path)
     elif path.suffix in MESHES:
         write = getattr(solution.inside(-1).fields, "write", None) if isinstance(solution, ContactPath) else None
         if write is None:

@@ -322,7 +322,7 @@ FAULTS = (
         SharedFault(
             "restitution and duration of an impact",
             what,
-            wrong_property("contact.answer.solution:ImpactHistory", name),
+            wrong_property("contact.answer.paths:ImpactHistory", name),
             ("punch impact", "sphere impact"),
         )
         for what, name in (("restitution", "coefficient_of_restitution"), ("duration", "contact_time"))
@@ -363,7 +363,7 @@ FAULTS = (
 OWN = SharedFault(
     "nothing: modulus of finite elements",
     "G of finite elements",
-    swap("fem_reference.discrete_layer.material:shear_modulus", times),
+    swap("fem_reference.materials:shear_modulus", times),
     ELASTIC,
 )
 
