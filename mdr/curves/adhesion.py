@@ -46,8 +46,6 @@ _BEYOND: Final = 0.02
 _NO_PULL_OFF: Final = 1e-5
 # Relative difference of moduli in which two ends of least squares are the same one.
 _SAME: Final = 1e-2
-# Step of the slope over the length of the branch. At a tenth of it the straight pieces of the table show.
-_STEP: Final = 1e-4
 # Range of adhesive forces [m] in the Tabor parameter: 0.2 to 0.5 nm in the literature.
 RANGE_OF_FORCES: Final = 3e-10
 
@@ -108,11 +106,6 @@ class BranchShape:
         """phi [m^2]; points in contact beyond pull-off have the force of pull-off."""
         return np.where(self.attached, np.interp(np.asarray(depth, dtype=np.float64), self.depths, self.forces), 0.0)
 
-    def with_slope(self, depth: ArrayLike) -> tuple[FloatArray, FloatArray]:
-        """phi [m^2] and d(phi)/d(depth) [m]."""
-        d, step = np.asarray(depth, dtype=np.float64), _STEP * float(self.depths[-1] - self.depths[0])
-        return self.extended(d), (self.extended(d + step) - self.extended(d - step)) / (2 * step)
-
 
 @dataclass(frozen=True)
 class Adhering(Family):
@@ -157,6 +150,13 @@ class Adhering(Family):
     def size(self, u: float) -> float:
         """The root itself or a usual one, or one of a logarithm."""
         return max(abs(u), self.starts[len(self.starts) // 2]) if self.work is None else 1.0
+
+    def error(self, u: float, depth: FloatArray) -> float:
+        """That of the elastic contact, and of the table by its change with every other radius."""
+        coarse = replace(self, table=self.table.every_other()).at(u).extended(depth)
+        fine = self.at(u).extended(depth)
+        largest = float(np.abs(fine).max(initial=1e-300))
+        return self.elastic_error + float(np.abs(coarse - fine)[self.attached].max(initial=0.0)) / (3 * largest)
 
 
 def fit_adhesive(scene: Scene, data: Data) -> Fitted:
@@ -260,14 +260,6 @@ def _best(data: Data, ends: Sequence[Fitted]) -> Fitted:
                     "include the baseline before pull-off, or fix the work of adhesion or the contact point"
                 )
     return best
-
-
-def adhesive_error(family: Adhering, u: float, depth: FloatArray) -> float:
-    """Relative error of the force: of the elastic contact, and of the table by its change with every other radius."""
-    coarse = replace(family, table=family.table.every_other()).at(u).extended(depth)
-    fine = family.at(u).extended(depth)
-    largest = float(np.abs(fine).max(initial=1e-300))
-    return family.elastic_error + float(np.abs(coarse - fine)[family.attached].max(initial=0.0)) / (3 * largest)
 
 
 def tabor_sentence(scene: Scene, modulus: float, work: float) -> str:

@@ -40,9 +40,6 @@ class CurveShape(Protocol):
     def extended(self, depth: ArrayLike) -> FloatArray:
         """phi = F/E [m^2] at depths [m] of any size, zero where nothing touches."""
 
-    def with_slope(self, depth: ArrayLike) -> tuple[FloatArray, FloatArray]:
-        """phi [m^2] and d(phi)/d(depth) [m]."""
-
 
 class Family:
     """Force curves over one further number u; here one curve alone.
@@ -76,6 +73,10 @@ class Family:
     def size(self, u: float) -> float:
         """Change of u that counts as large."""
         return 1.0
+
+    def error(self, u: float, depth: FloatArray) -> float:
+        """Relative error of the force by the computation, at depths [m]."""
+        return float(getattr(self.at(u), "error", 0.0))
 
 
 class Solved(Family):

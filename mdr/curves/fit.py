@@ -12,11 +12,12 @@ from dataclasses import dataclass, replace
 from typing import Final, Literal
 
 import numpy as np
+from numpy.polynomial.polynomial import polyfit
 
 from contact import Adhesion, InvalidInput, NotConvergedError, Scene
 from contact.answer.small_strains import depth_note
 from contact.records.validation import FloatArray
-from mdr.curves.adhesion import Adhering, adhesive_error, fit_adhesive, points_beyond, tabor_sentence
+from mdr.curves.adhesion import Adhering, fit_adhesive, points_beyond, tabor_sentence
 from mdr.curves.contact_point import (
     FURTHEST,
     Data,
@@ -34,7 +35,7 @@ from mdr.curves.families import (
     check_parameters,
     elastic_family,
 )
-from mdr.curves.force_curve import ForceCurve, curve_to, longest_curve
+from mdr.curves.force_curve import curve_to, longest_curve
 from mdr.curves.formulas import formulas_for
 from mdr.curves.result import CurveFit, FormulaFit, confounded, spread_of
 
@@ -175,16 +176,16 @@ def _stated(scene: Scene, data: Data, fitted: Fitted, confidence: float) -> Curv
             f"needs {len(contact_names) + _SPARE_POINTS}; measure more points in contact"
         )
     shifted = data.depth - point
-    phi, slope = family.at(u).with_slope(shifted)
+    phi = family.at(u).extended(shifted)
     line = _background(data, data.force - modulus * phi, shifted)
     varied, by_u, by_modulus = family.value(u, modulus)
     known = line | {"contact_point": point, family.varied: varied}
     values = {name: known.get(name, modulus) for name in data.names}
-    derivative = -(modulus * slope + line.get("tilt", 0.0))
-    columns = {"contact_point": derivative, "baseline": np.ones_like(shifted), "tilt": shifted}
-    columns |= {family.varied: _by_u(family, u, shifted, modulus)} if family.varied else {}
+    by_depth, change = _derivatives(family, u, shifted, modulus)
+    columns = {"contact_point": -by_depth - line["tilt"], "baseline": np.ones_like(shifted), "tilt": shifted}
+    columns |= {family.varied: change}  # "" where nothing is varied
     jacobian = np.stack([columns.get(name, phi) for name in values], axis=1)
-    fitted_force = modulus * phi + line.get("baseline", 0.0) + line.get("tilt", 0.0) * shifted
+    fitted_force = modulus * phi + line["baseline"] + line["tilt"] * shifted
     order = np.argsort(data.depth, kind="stable")
     spread = spread_of(
         jacobian, (data.force - fitted_force)[order], pressed[order], float(np.ptp(data.force)), confidence
@@ -207,7 +208,7 @@ def _stated(scene: Scene, data: Data, fitted: Fitted, confidence: float) -> Curv
         quantile=spread.quantile,
         confidence=confidence,
         band=band,
-        numerical_error=_numerical_error(fitted, shifted),
+        numerical_error=family.error(u, shifted),
         warnings=(*warnings, *spread.warnings, *confounded(values, spread.covariance, spread.quantile)),
         notes=notes,
         per_modulus=phi,
@@ -216,25 +217,23 @@ def _stated(scene: Scene, data: Data, fitted: Fitted, confidence: float) -> Curv
 
 def _background(data: Data, remaining: FloatArray, shifted: FloatArray) -> dict[str, float]:
     """Baseline [N] at the contact point, and tilt [N/m]."""
-    columns = {"baseline": np.ones_like(shifted), "tilt": shifted}
-    columns = {name: column for name, column in columns.items() if name in data.names}
-    if not columns:
-        return {}
-    matrix = np.stack(list(columns.values()), axis=1)
-    length = np.linalg.norm(matrix, axis=0)
-    solved = np.linalg.lstsq(matrix / length, remaining, rcond=None)[0] / length
-    return dict(zip(columns, solved.tolist(), strict=True))
+    powers = [power for power, name in enumerate(("baseline", "tilt")) if name in data.names]
+    size = float(np.ptp(shifted))
+    level, tilt = (*polyfit(shifted / size, remaining, powers), 0.0, 0.0)[:2] if powers else (0.0, 0.0)
+    return {"baseline": float(level), "tilt": float(tilt) / size}
 
 
-def _by_u(family: Family, u: float, shifted: FloatArray, modulus: float) -> FloatArray:
-    """Derivative of the force by u, shape (n,), by central differences."""
-    step = _STEP * family.size(u)
+def _derivatives(family: Family, u: float, shifted: FloatArray, modulus: float) -> tuple[FloatArray, FloatArray]:
+    """Derivatives of the force of the contact by depth and u, each of shape (n,), by central differences."""
 
-    def force(at: float) -> FloatArray:
+    def force(at: float, move: float = 0.0) -> FloatArray:
         factor = modulus if family.is_scaled else family.factor(at)
-        return factor * family.at(at).extended(shifted)
+        return factor * family.at(at).extended(shifted + move)
 
-    return (force(u + step) - force(u - step)) / (2 * step)
+    move = _STEP * max(abs(float(shifted.max())), 1e-6 * float(np.ptp(shifted)))
+    step = _STEP * family.size(u)
+    by_depth = (force(u, move) - force(u, -move)) / (2 * move)
+    return by_depth, (force(u + step) - force(u - step)) / (2 * step)
 
 
 def _changes(values: dict[str, float], family: Family, by_u: float, by_modulus: float) -> FloatArray:
@@ -246,13 +245,6 @@ def _changes(values: dict[str, float], family: Family, by_u: float, by_modulus: 
         if family.is_scaled:
             matrix[row, names.index("youngs_modulus")] = by_modulus
     return matrix
-
-
-def _numerical_error(fitted: Fitted, shifted: FloatArray) -> float:
-    shape = fitted.family.at(fitted.u)
-    if isinstance(fitted.family, Adhering):
-        return adhesive_error(fitted.family, fitted.u, shifted)
-    return shape.error if isinstance(shape, ForceCurve) else 0.0
 
 
 def _words(
