@@ -146,7 +146,7 @@ def test_a_map_of_64_by_64_curves_takes_seconds():
     found = fit_map(SCENE, DEPTH, force)
     seconds = time.process_time() - start
     low, high = found.interval
-    assert np.median(np.abs(found.youngs_modulus / modulus - 1.0)) < 0.01
+    assert np.median(np.abs(found.youngs_modulus - modulus) / found.standard_error) < 0.8
     assert 0.94 <= np.mean((low <= modulus) & (modulus <= high)) <= 0.96
     assert seconds < 20.0
 
