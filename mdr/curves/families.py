@@ -111,7 +111,7 @@ def elastic_family(scene: Scene, names: Sequence[str], reach: float, about: floa
     """The family of a scene without adhesion, up to a depth [m]; about a value of the varied number, if it is given."""
     varied = [name for name in names if name == "thickness" or "." in name]
     if not varied:
-        return Family(curve_to(scene, reach))
+        return Family(longest_curve(scene, reach))
     (name,) = varied
     guess = about or number_of(scene, name)
     factors = _SECOND if about else _THICKNESSES if name == "thickness" else _MODULI

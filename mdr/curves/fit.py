@@ -231,8 +231,10 @@ def _derivatives(family: Family, u: float, shifted: FloatArray, modulus: float) 
         return factor * family.at(at).extended(shifted + move)
 
     move = _STEP * max(abs(float(shifted.max())), 1e-6 * float(np.ptp(shifted)))
-    step = _STEP * family.size(u)
     by_depth = (force(u, move) - force(u, -move)) / (2 * move)
+    if not family.varied:
+        return by_depth, np.zeros_like(by_depth)
+    step = _STEP * family.size(u)
     return by_depth, (force(u + step) - force(u - step)) / (2 * step)
 
 

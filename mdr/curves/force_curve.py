@@ -139,11 +139,13 @@ class ForceCurve:
         return _cached(self.scene.replace(layer=layer, indenter=indenter), self._method)
 
 
+@lru_cache(maxsize=256)
 def curve_to(scene: Scene, reach: float) -> ForceCurve:
     """The elastic curve of the scene up to a depth [m]; the last 64 are cached."""
     return _cached(scene.replace(loading=IndentationDepths([reach]), effects=(), beyond_small_strains=True), Mdr())
 
 
+@lru_cache(maxsize=256)
 def longest_curve(scene: Scene, reach: float) -> ForceCurve:
     """The elastic curve up to a depth [m], halved until the indenter is that long.
 
