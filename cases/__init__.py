@@ -1,16 +1,14 @@
-"""The case registry and the engine around it: what is claimed, how far methods agree, what accuracy costs.
+"""Cases: scenes, methods and claims; answers, verdicts; what accuracy costs and where methods break.
 
-- ``library``: the cases, one file each
-- ``declare``: how a case is written and who solves it
-- ``run``: carrying it out, once, anywhere, without loss
-- ``judgement``: what a case may claim, and the tests behind a verdict
-- ``references``: reference numbers in extended precision, with the scripts that compute them
-- ``results``: the records of a run, how a check can end, the files
-- ``gate``: numbers and times against accepted ones
-- ``measurements``: what accuracy costs, where methods break, what matters in a scene; answers to an accuracy
+- an *answer* (``answers``): what one method said to one scene, one line of a file;
+- a *claim* (``claims``, ``convergence``): yields the tasks it needs beside the case's scenes, and judges the answers;
+- a *verdict* (``verdicts``): a claim on one scene, judged by one rule (``rules``); a whole run is in ``runs``.
 
-``solve(scene, accuracy=1e-4)`` tries methods from cheap to fine. `cases.run.propagation` carries the
-uncertainty of inputs to every quantity.
+``case`` says how a case is written, ``library`` holds the cases, one file each. ``run`` solves tasks, ``gate`` compares
+a run with accepted answers, ``foreign`` adds methods of installed packages, ``cost`` and ``measurements`` are studies.
+
+``solve(scene, accuracy=1e-4)`` tries methods from cheap to fine. `cases.run.propagation` carries the uncertainty of
+inputs to every quantity.
 """
 
 from importlib import import_module

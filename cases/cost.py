@@ -12,8 +12,6 @@ from cases.studies import CostOfAccuracy, Point
 from cases.verdicts import Status
 from contact import InvalidInput
 
-TOLERANCES = tuple(10.0**-k for k in range(1, 11))
-
 
 @dataclass(frozen=True, kw_only=True)
 class WorkStudy:
@@ -127,35 +125,6 @@ def pareto_front(points: Sequence[Point], noise: float) -> list[Point]:
 def cheapest(points: Iterable[Point], tolerance: float) -> Point | None:
     """Return the setting behind T*(tau), the smallest time with U <= tau; None when tau was not reached."""
     return min((point for point in points if bound_of(point) <= tolerance), key=lambda p: p.seconds, default=None)
-
-
-def of_method(study: CostOfAccuracy, method: str) -> list[Point]:
-    """Return the settings of one method that gave an answer."""
-    return [point for point in study.points if point.method == method and point.bound is not None]
-
-
-def methods_of(study: CostOfAccuracy) -> tuple[str, ...]:
-    """Return the methods with at least one answer, in the order they were tried."""
-    return tuple(dict.fromkeys(point.method for point in study.points if point.bound is not None))
-
-
-def speed_up(study: CostOfAccuracy, fast: str, other: str, tolerance: float, *, cold: bool = False) -> float | None:
-    """Return T* of ``other`` over T* of ``fast``, or the ratio of first solutions; None unless both reach it."""
-    ours, theirs = (cheapest(of_method(study, method), tolerance) for method in (fast, other))
-    if ours is None or theirs is None:
-        return None
-    seconds = [point.cold_seconds if cold else point.seconds for point in (ours, theirs)]
-    return seconds[1] / seconds[0] if seconds[0] else None
-
-
-def crossover(study: CostOfAccuracy, fast: str, other: str) -> float | None:
-    """Return the smallest tolerance where the fast method still wins; None where it never does."""
-    wins = []
-    for tolerance in TOLERANCES:
-        ours, theirs = (cheapest(of_method(study, method), tolerance) for method in (fast, other))
-        if ours is not None and (theirs is None or ours.seconds < theirs.seconds):
-            wins.append(tolerance)
-    return min(wins, default=None)
 
 
 def price_of_a_digit(cheap: Point, accurate: Point) -> float:

@@ -1,4 +1,1 @@
-"""Running cases: tasks, executors, stored answers, judgement.
-
-Enters: selected cases. Leaves: solved tasks and judged claims. Read `runner` first.
-"""
+"""Solving tasks anywhere, once, without loss: `runner` plans and judges, `solve_task` solves, `keys` names answers."""

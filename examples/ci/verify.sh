@@ -9,7 +9,8 @@
 # the project's own folder as the current one.
 # Exit code: that of contact-verify (0 passed, 1 a check failed, 2 interrupted, 3 internal error, 4 usage, 5 nothing ran,
 # 6 open verdicts with --strict).
-# Keep these files of the folder as artefacts: report.html (open it in a browser), summary.md, junit.xml, run.json, answers.jsonl.
+# Keep these files of the folder as artefacts: report.html (open it in a browser), summary.md, junit.xml, run.json and
+# answers.jsonl.
 set -u
 out=${1:?"usage: verify.sh FOLDER [options of contact-verify run]"}
 shift

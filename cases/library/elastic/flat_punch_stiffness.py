@@ -54,9 +54,6 @@ STIFFNESS = {
 }
 
 HERMANOWICZ_RATIOS = tuple(float(r) for r in np.geomspace(0.1, 30, 25))
-PRESSURE_AT = (0.0, 0.2, 0.4, 0.6, 0.8, 0.9, 0.95)
-# p / p_mean at the radii PRESSURE_AT on a bonded layer with nu = 0.5, by a/h.
-PRESSURE = {ratio: numbers("pressure")[scene_name("bonded nu=0.5", ratio)] for ratio in (0.5, 1.0, 2.0, 5.0)}
 
 
 def punch(label: str, ratio: float) -> CaseScene:

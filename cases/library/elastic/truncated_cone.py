@@ -45,7 +45,7 @@ from cases.library._layers import (
     prescribed_radii,
     scene_name,
 )
-from cases.library._methods import EQUATION, EVERY, MDR, QUICK_FEM
+from cases.library._methods import EQUATION, EVERY, MDR
 from cases.library._reasons import reasons
 from cases.library._references import numbers
 from cases.library._requirements import VERY_COARSE, required
@@ -102,27 +102,6 @@ RESOLVED = tuple(s for s in LAYER_SCENES if float(s.parameters["a_over_h"]) <= 2
 THIN = tuple(s for s in LAYER_SCENES if float(s.parameters["a_over_h"]) > 2)
 PATH_SCENES = tuple(path_scene(label, ratio) for label in LAYERS for ratio in (0.3, 1.0, 3.0, 10.0))
 HALF_SPACE_SCENES = tuple(half_space_scene(flat) for flat in HALF_SPACE_FLATS)
-
-# Fig. 7: g(x; h) is the relation of depth and contact radius, so finite elements can draw it too.
-
-FIGURE_LAYERS = ("unbonded", "bonded nu=0.45", "bonded nu=0.5")
-SYMBOL_RADII = np.array([0.65, 0.9])
-
-
-def profile_scene(label: str, ratio: float) -> CaseScene:
-    """Return a scene that walks the contact radius from b to a."""
-    base = cone_scene(label, ratio)
-    scene = base.scene.replace(loading=ContactRadii(values=ratio * THICKNESS * SYMBOL_RADII))
-    return CaseScene(
-        name=f"{base.name}, symbols",
-        parameters=base.parameters,
-        scene=scene,
-        methods=(QUICK_FEM,),
-        nightly=() if ratio in QUICK_RATIOS.get(label, ()) else ("fem",),
-    )
-
-
-FIGURE_SCENES = tuple(profile_scene(label, ratio) for label in FIGURE_LAYERS for ratio in RATIOS)
 
 
 def half_space_depth(scene: Scene) -> list[float]:
@@ -284,9 +263,9 @@ CASE = Case(
     name="truncated_cone",
     title="Indentation by a truncated cone",
     question="Do MDR and finite elements agree on a profile with a kink, from the half-space to the thin layer?",
-    equations=("Eq. (4)", "Eq. (8)", "Eq. (9)", "Eq. (35)", "Fig. 7"),
+    equations=("Eq. (4)", "Eq. (8)", "Eq. (9)", "Eq. (35)"),
     text=text_of(__doc__),
-    scenes=(*LAYER_SCENES, *PATH_SCENES, *HALF_SPACE_SCENES, *FIGURE_SCENES),
+    scenes=(*LAYER_SCENES, *PATH_SCENES, *HALF_SPACE_SCENES),
     methods=EVERY,
     claims=(*EXACT, *AGREEMENTS, *INVARIANTS, *ORDERS),
     ablations=(AblationStudy(scene=scene_name("bonded nu=0.45", 2.0), nightly=("fem",)),),

@@ -2,19 +2,13 @@ import math
 
 import pytest
 
-from cases.cost import cheapest, crossover, error_bound, methods_of, pareto_front, price_of_a_digit, speed_up
-from cases.studies import CostOfAccuracy, Point
+from cases.cost import cheapest, error_bound, pareto_front, price_of_a_digit
+from cases.studies import Point
 from contact import InvalidInput
 
 
 def run(label, bound, seconds, method="mdr"):
-    return Point(method=method, setting=label, bound=bound, seconds=seconds, cold_seconds=10 * seconds)
-
-
-def study(*points):
-    return CostOfAccuracy(
-        case="c", scene="s", quantity="q", reference="r", reference_error=0.0, noise=0.0, points=tuple(points)
-    )
+    return Point(method=method, setting=label, bound=bound, seconds=seconds)
 
 
 def front_of(runs, null_spread):
@@ -53,20 +47,6 @@ def test_front_keeps_ties_within_the_null_spread():
     pair = [run("p", 1e-6, 1.00), run("q", 1e-6, 1.02)]
     assert front_of(pair, 0.05) == ["p", "q"]
     assert front_of(pair, 0.0) == ["p"]
-
-
-def test_crossover_is_the_smallest_tolerance_where_the_fast_method_wins():
-    both = study(*FAST, *SLOW)
-    assert crossover(both, "mdr", "fem") == pytest.approx(1e-6, rel=1e-12, abs=0.0)
-    assert crossover(study(run("never", 1.0, 1.0), *SLOW), "mdr", "fem") is None
-
-
-def test_speed_ups_compare_settings_that_reach_the_tolerance():
-    both = study(*FAST, *SLOW)
-    assert methods_of(both) == ("mdr", "fem")
-    assert speed_up(both, "mdr", "fem", 1e-5) == pytest.approx(10.0, rel=1e-12, abs=0.0)
-    assert speed_up(both, "mdr", "fem", 1e-5, cold=True) == pytest.approx(10.0, rel=1e-12, abs=0.0)
-    assert speed_up(both, "mdr", "fem", 1e-9) is None
 
 
 def test_price_of_a_digit():
