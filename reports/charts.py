@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterable, Sequence
 from functools import partial
+from textwrap import shorten
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -31,6 +32,8 @@ SHOWN_QUANTITIES = (
     "contact_stiffness",
     "indentation_depth",
 )
+# Letters of a scene beside a row: more leave no room for the axes.
+LONGEST = 40
 Place = tuple[float, float]
 
 
@@ -115,7 +118,8 @@ def _draw_agreement(found: Sequence[Verdict]) -> Figure:
     axes.axvspan(left, 1.0, color=TINT, zorder=0.5)
     axes.axvline(1.0, color=VERMILLION, linewidth=1.2)
     axes.set(xscale="log", xlabel="difference / tolerance", xlim=(left, right), ylim=(len(found) - 0.5, -0.5))
-    axes.set_yticks(range(len(found)), [f"{v.scene}, {quantity_words(v.quantity)}, {who(v.methods)}" for v in found])
+    names = [f"{shorten(v.scene, LONGEST)}, {quantity_words(v.quantity)}, {who(v.methods)}" for v in found]
+    axes.set_yticks(range(len(found)), names)
     axes.grid(visible=False, axis="y")
     mark_decades(axes.xaxis)
     return drawing

@@ -51,7 +51,8 @@ def write_report(run: Run, directory: Path, *, single_file: bool = False) -> Pat
         pictures = {case.name: [_placed(one, directory) for one in of_case(run, case)] for case in cases}
         answered = zip(QUESTIONS, (_agreement(run), _cost(run), _breakdown(run)), front(run), strict=True)
         questions = [(asked, words, one and _placed(one, directory)) for asked, words, one in answered]
-    common = {"run": run, "pictures": pictures, "names": set(pictures)}
+    judged = grouped(run.judged.verdicts, lambda verdict: verdict.case)
+    common = {"run": run, "pictures": pictures, "names": set(pictures), "judged_of": judged}
     for case in () if single_file else cases:
         text = _rendered("case.html", case=case, address=_page_name, **common)
         write_whole(directory / CASES / _page_name(case.name), text)

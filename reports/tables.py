@@ -305,13 +305,13 @@ def effects(found: Sequence[Effect]) -> Table | None:
             "effect": lambda one: one.part,
             "scene": lambda one: one.scene,
             "method": lambda one: display_name(one.method),
-            "costs": _cost_of,
+            "costs": lambda one: f"{100 * one.share_of_time:.0f} % of {duration(one.seconds)}",
             "changes": lambda one: (
                 ", ".join(f"{quantity_words(name)} by {small(100 * v)} %" for name, v in one.changes.items())
                 or one.remark
             ),
             "may be left out at": lambda one: (
-                ", ".join(percent(tau) for tau in DROPPED_AT if _droppable(one, tau)) or "none"
+                ", ".join(percent(tau) for tau in DROPPED_AT if one.may_be_dropped(tau)) or "none"
             ),
         },
         title="What each effect costs and changes",
@@ -319,16 +319,6 @@ def effects(found: Sequence[Effect]) -> Table | None:
         "be left out where no quantity changes by more than the accuracy asked for.",
         words=6,
     )
-
-
-def _cost_of(one: Effect) -> str:
-    if one.seconds_without is None or not one.seconds:
-        return ""
-    return f"{100 * max(0.0, 1 - one.seconds_without / one.seconds):.0f} % of {duration(one.seconds)}"
-
-
-def _droppable(one: Effect, accuracy: float) -> bool:
-    return bool(one.changes) and max(one.changes.values()) <= accuracy
 
 
 def answers(found: Sequence[Answer]) -> Table | None:

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Final
 
@@ -20,8 +20,8 @@ from numpy.typing import ArrayLike
 from bem.flat_punch import IntegralEquation
 from contact import Adhesion, IndentationDepths, NotConvergedError, Paraboloid, Scene, Sphere
 from contact.records.validation import BoolArray, FloatArray
-from mdr.curves.contact_point import Data, Fitted, least_squares, modulus_and_residual, rough_indentation
-from mdr.curves.families import CurveShape
+from mdr.curves.contact_point import Data, Fitted, check_contact, least_squares, modulus_and_residual, rough_indentation
+from mdr.curves.families import CurveShape, Family
 from mdr.curves.force_curve import longest_curve
 from mdr.equilibria import solve_elastic
 from mdr.spring_bed import Springs
@@ -46,8 +46,6 @@ _BEYOND: Final = 0.02
 _NO_PULL_OFF: Final = 1e-5
 # Relative difference of moduli in which two ends of least squares are the same one.
 _SAME: Final = 1e-2
-# Step of the slope over the length of the branch. At a tenth of it the straight pieces of the table show.
-_STEP: Final = 1e-4
 # Range of adhesive forces [m] in the Tabor parameter: 0.2 to 0.5 nm in the literature.
 RANGE_OF_FORCES: Final = 3e-10
 
@@ -108,14 +106,9 @@ class BranchShape:
         """phi [m^2]; points in contact beyond pull-off have the force of pull-off."""
         return np.where(self.attached, np.interp(np.asarray(depth, dtype=np.float64), self.depths, self.forces), 0.0)
 
-    def with_slope(self, depth: ArrayLike) -> tuple[FloatArray, FloatArray]:
-        """phi [m^2] and d(phi)/d(depth) [m]."""
-        d, step = np.asarray(depth, dtype=np.float64), _STEP * float(self.depths[-1] - self.depths[0])
-        return self.extended(d), (self.extended(d + step) - self.extended(d - step)) / (2 * step)
-
 
 @dataclass(frozen=True)
-class Adhering:
+class Adhering(Family):
     """Curves of withdrawal over u: sqrt(w/E) with a free work of adhesion, ln E with a known one.
 
     Attributes:
@@ -123,6 +116,8 @@ class Adhering:
         work: Work of adhesion [J/m^2] where it is known.
         attached: Which points are in contact, shape (n,).
         elastic_error: Relative error of the force without adhesion.
+        varied: What u stands for.
+        is_scaled: Whether the modulus is free beside u.
         starts: First values of u.
     """
 
@@ -130,17 +125,9 @@ class Adhering:
     work: float | None
     attached: BoolArray
     elastic_error: float
-    starts: Sequence[float] = field(default=())
-
-    @property
-    def varied(self) -> str:
-        """What u stands for."""
-        return "work_of_adhesion" if self.work is None else "youngs_modulus"
-
-    @property
-    def is_scaled(self) -> bool:
-        """Whether the modulus is free beside u."""
-        return self.work is None
+    varied: str
+    is_scaled: bool
+    starts: Sequence[float]
 
     def root(self, u: float) -> float:
         """sqrt(w/E) [m^(1/2)]."""
@@ -160,6 +147,17 @@ class Adhering:
             return max(u, 0.0) ** 2 * modulus, 2 * max(u, 0.0) * modulus, max(u, 0.0) ** 2
         return self.factor(u), self.factor(u), 0.0
 
+    def size(self, u: float) -> float:
+        """The root itself or a usual one, or one of a logarithm."""
+        return max(abs(u), self.starts[len(self.starts) // 2]) if self.work is None else 1.0
+
+    def error(self, u: float, depth: FloatArray) -> float:
+        """That of the elastic contact, and of the table by its change with every other radius."""
+        coarse = replace(self, table=self.table.every_other()).at(u).extended(depth)
+        fine = self.at(u).extended(depth)
+        largest = float(np.abs(fine).max(initial=1e-300))
+        return self.elastic_error + float(np.abs(coarse - fine)[self.attached].max(initial=0.0)) / (3 * largest)
+
 
 def fit_adhesive(scene: Scene, data: Data) -> Fitted:
     """Values of least squares of a curve of withdrawal.
@@ -177,7 +175,9 @@ def fit_adhesive(scene: Scene, data: Data) -> Fitted:
         reach = 4 * way if data.has_free_point else max(4 * way, 2 * data.deepest)
         curve = longest_curve(scene, reach)
         table = table_of(curve.scene)
-        family = Adhering(table, work, attached, curve.error, _first_values(table, work, data, way))
+        varied = "work_of_adhesion" if work is None else "youngs_modulus"
+        starts = _first_values(table, work, data, way)
+        family = Adhering(table, work, attached, curve.error, varied, work is None, starts)
         trials = {}
         for u in family.starts:
             first = float(table.branch(family.root(u))[0][0])
@@ -248,25 +248,18 @@ def _best(data: Data, ends: Sequence[Fitted]) -> Fitted:
             "check the tip of the scene and the sign of the force (pressing is positive)"
         )
     best = possible[0]
+    residual = modulus_and_residual(data, best.family, best.indentation, best.u)[1]
+    check_contact(data, float(data.remaining @ data.remaining) - best.squares, residual)
     limit = best.squares * (1 + 3 / data.force.size) + 1e-12 * float(data.force @ data.force)
     for end, modulus in zip(possible[1:], moduli[1:], strict=True):
         if end.squares <= limit and abs(modulus / moduli[0] - 1) > _SAME:
-            change = modulus_and_residual(data, best.family, best.indentation, best.u)[1]
-            change = change - modulus_and_residual(data, end.family, end.indentation, end.u)[1]
+            change = residual - modulus_and_residual(data, end.family, end.indentation, end.u)[1]
             if float(change @ change) > 9 * limit / data.force.size or modulus == 0.0:
                 raise NotConvergedError(
                     f"two sets of values fit this curve equally well (E = {moduli[0]:.4g} and {modulus:.4g} Pa); "
                     "include the baseline before pull-off, or fix the work of adhesion or the contact point"
                 )
     return best
-
-
-def adhesive_error(family: Adhering, u: float, depth: FloatArray) -> float:
-    """Relative error of the force: of the elastic contact, and of the table by its change with every other radius."""
-    coarse = replace(family, table=family.table.every_other()).at(u).extended(depth)
-    fine = family.at(u).extended(depth)
-    largest = float(np.abs(fine).max(initial=1e-300))
-    return family.elastic_error + float(np.abs(coarse - fine)[family.attached].max(initial=0.0)) / (3 * largest)
 
 
 def tabor_sentence(scene: Scene, modulus: float, work: float) -> str:

@@ -118,16 +118,29 @@ def rough_indentation(data: Data) -> float:
     phi = coarse.projected(powers[power][trial])
     square = float(phi @ phi)
     residual = coarse.remaining - phi * (float(phi @ coarse.remaining) / square if square else 0.0)
-    freedom = max(coarse.depth.size - len(data.names), 1)
-    ordered = residual[np.argsort(coarse.depth, kind="stable")]
+    check_contact(coarse, float(gains.max()), residual)
+    return float(trials[trial])
+
+
+def check_contact(data: Data, gain: float, residual: FloatArray) -> None:
+    """Refuse contacts that decrease the sum of squares by no more than scatter does.
+
+    Args:
+        data: The curve.
+        gain: Decrease of the sum of squares by the contact beside the background [N^2].
+        residual: Of the fit with a contact [N], shape (n,).
+
+    Raises:
+        InvalidInput: With the remedy.
+    """
+    freedom = max(data.depth.size - len(data.names), 1)
+    ordered = residual[np.argsort(data.depth, kind="stable")]
     variance = float(residual @ residual) / freedom * correlation_factor(ordered)
-    gain = float(gains.max())
-    if not gain > _CONTACT**2 * variance or not gain > 1e-20 * float(coarse.force @ coarse.force):
+    if not gain > _CONTACT**2 * variance or not gain > 1e-20 * float(data.force @ data.force):
         raise InvalidInput(
             "no contact in the curve: the force does not rise above its scatter and a straight line as the depth "
             "grows; check columns and signs (pressing is positive), or fit without tilt (--with contact_point)"
         )
-    return float(trials[trial])
 
 
 def correlation_factor(residual: FloatArray) -> float:
@@ -196,7 +209,7 @@ def least_squares(data: Data, family: Family, trials: dict[float, FloatArray]) -
 def _polished(data: Data, family: Family, indentation: float, u: float) -> Fitted:
     """Levenberg and Marquardt over the depth of indentation and u."""
     free_point, varies = data.has_free_point, bool(family.varied)
-    unit = abs(u) if abs(u) > 0.0 and family.is_scaled and family.varied == "work_of_adhesion" else 1.0
+    unit = family.size(u)
 
     def unpacked(x: FloatArray) -> tuple[float, float]:
         point = indentation * float(x[0]) if free_point else indentation
@@ -207,6 +220,6 @@ def _polished(data: Data, family: Family, indentation: float, u: float) -> Fitte
 
     start = np.array([1.0] * free_point + [u / unit] * varies)
     if start.size:
-        start = leastsq(residual, start, xtol=1e-9, ftol=1e-12, maxfev=400)[0]
+        start = leastsq(residual, start, xtol=1e-9, ftol=1e-12, maxfev=400, full_output=True)[0]
     end = residual(start)
     return Fitted(*unpacked(start), float(end @ end), family)

@@ -14,7 +14,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Sequence
-from typing import Any, Final, NamedTuple, Protocol
+from typing import Any, Final, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -40,57 +40,46 @@ class CurveShape(Protocol):
     def extended(self, depth: ArrayLike) -> FloatArray:
         """phi = F/E [m^2] at depths [m] of any size, zero where nothing touches."""
 
-    def with_slope(self, depth: ArrayLike) -> tuple[FloatArray, FloatArray]:
-        """phi [m^2] and d(phi)/d(depth) [m]."""
 
+class Family:
+    """Force curves over one further number u; here one curve alone.
 
-class Family(Protocol):
-    """Force curves of a scene over one further number u."""
+    Attributes:
+        varied: Name of the parameter that u stands for, empty where there is none.
+        is_scaled: Whether the factor E is linear and free.
+        starts: First values of u.
+    """
 
-    @property
-    def varied(self) -> str:
-        """Name of the parameter that u stands for, empty where there is none."""
-
-    @property
-    def is_scaled(self) -> bool:
-        """Whether the factor E is linear and free."""
-
-    @property
-    def starts(self) -> Sequence[float]:
-        """First values of u."""
-
-    def at(self, u: float) -> CurveShape:
-        """phi at u."""
-
-    def factor(self, u: float) -> float:
-        """E [Pa] at u where it is not free."""
-
-    def value(self, u: float, modulus: float) -> tuple[float, float, float]:
-        """The parameter p in SI, and its derivatives by u and by E."""
-
-
-class Plain(NamedTuple):
-    """One curve, times Young's modulus."""
-
-    shape: CurveShape
     varied: str = ""
     is_scaled: bool = True
     starts: Sequence[float] = (0.0,)
 
+    def __init__(self, shape: CurveShape) -> None:
+        """The family of one curve."""
+        self._shape = shape
+
     def at(self, u: float) -> CurveShape:
-        """The curve itself."""
-        return self.shape
+        """phi at u."""
+        return self._shape
 
     def factor(self, u: float) -> float:
-        """One, and not used."""
+        """E [Pa] at u where it is not free."""
         return 1.0
 
     def value(self, u: float, modulus: float) -> tuple[float, float, float]:
-        """Nothing is varied."""
+        """The parameter in SI, and its derivatives by u and by E."""
         return 0.0, 0.0, 0.0
 
+    def size(self, u: float) -> float:
+        """Change of u that counts as large."""
+        return 1.0
 
-class Solved:
+    def error(self, u: float, depth: FloatArray) -> float:
+        """Relative error of the force by the computation, at depths [m]."""
+        return float(getattr(self.at(u), "error", 0.0))
+
+
+class Solved(Family):
     """Curves of a scene at several values of a modulus or thickness, and splines over the logarithm between them."""
 
     def __init__(self, scene: Scene, name: str, values: Sequence[float], reach: float) -> None:
@@ -122,7 +111,7 @@ def elastic_family(scene: Scene, names: Sequence[str], reach: float, about: floa
     """The family of a scene without adhesion, up to a depth [m]; about a value of the varied number, if it is given."""
     varied = [name for name in names if name == "thickness" or "." in name]
     if not varied:
-        return Plain(curve_to(scene, reach))
+        return Family(longest_curve(scene, reach))
     (name,) = varied
     guess = about or number_of(scene, name)
     factors = _SECOND if about else _THICKNESSES if name == "thickness" else _MODULI

@@ -12,11 +12,12 @@ from dataclasses import dataclass, replace
 from typing import Final, Literal
 
 import numpy as np
+from numpy.polynomial.polynomial import polyfit
 
 from contact import Adhesion, InvalidInput, NotConvergedError, Scene
 from contact.answer.small_strains import depth_note
 from contact.records.validation import FloatArray
-from mdr.curves.adhesion import Adhering, adhesive_error, fit_adhesive, points_beyond, tabor_sentence
+from mdr.curves.adhesion import Adhering, fit_adhesive, points_beyond, tabor_sentence
 from mdr.curves.contact_point import (
     FURTHEST,
     Data,
@@ -29,13 +30,12 @@ from mdr.curves.contact_point import (
 from mdr.curves.families import (
     BACKGROUND,
     Family,
-    Plain,
     Solved,
     changed,
     check_parameters,
     elastic_family,
 )
-from mdr.curves.force_curve import ForceCurve, curve_to, longest_curve
+from mdr.curves.force_curve import curve_to, longest_curve
 from mdr.curves.formulas import formulas_for
 from mdr.curves.result import CurveFit, FormulaFit, confounded, spread_of
 
@@ -176,27 +176,26 @@ def _stated(scene: Scene, data: Data, fitted: Fitted, confidence: float) -> Curv
             f"needs {len(contact_names) + _SPARE_POINTS}; measure more points in contact"
         )
     shifted = data.depth - point
-    phi, slope = family.at(u).with_slope(shifted)
+    phi = family.at(u).extended(shifted)
     line = _background(data, data.force - modulus * phi, shifted)
     varied, by_u, by_modulus = family.value(u, modulus)
     known = line | {"contact_point": point, family.varied: varied}
     values = {name: known.get(name, modulus) for name in data.names}
-    derivative = -(modulus * slope + line.get("tilt", 0.0))
-    columns = {"contact_point": derivative, "baseline": np.ones_like(shifted), "tilt": shifted}
-    columns |= {family.varied: _by_u(family, u, shifted, modulus)} if family.varied else {}
+    by_depth, change = _derivatives(family, u, shifted, modulus)
+    columns = {"contact_point": -by_depth - line["tilt"], "baseline": np.ones_like(shifted), "tilt": shifted}
+    columns |= {family.varied: change}  # "" where nothing is varied
     jacobian = np.stack([columns.get(name, phi) for name in values], axis=1)
-    fitted_force = modulus * phi + line.get("baseline", 0.0) + line.get("tilt", 0.0) * shifted
+    fitted_force = modulus * phi + line["baseline"] + line["tilt"] * shifted
     order = np.argsort(data.depth, kind="stable")
     spread = spread_of(
         jacobian, (data.force - fitted_force)[order], pressed[order], float(np.ptp(data.force)), confidence
     )
     changes = _changes(values, family, by_u, by_modulus)
-    covariance = changes @ spread.covariance @ changes.T
-    errors = dict(zip(values, np.sqrt(np.maximum(np.diag(covariance), 0.0)).tolist(), strict=True))
-    if "work_of_adhesion" in values:
-        raw = float(spread.covariance[list(values).index("work_of_adhesion")][list(values).index("work_of_adhesion")])
-        errors["work_of_adhesion"] = math.hypot(errors["work_of_adhesion"], modulus * raw)  # w = E u^2 near u = 0
-    band = spread.quantile * np.sqrt(np.maximum(np.sum((jacobian @ spread.covariance) * jacobian, axis=1), 0.0))
+    raw, band = spread.errors(values), spread.band(jacobian)
+    spread = spread._replace(covariance=changes @ spread.covariance @ changes.T)
+    errors = spread.errors(values)
+    if "work_of_adhesion" in values:  # w = E u^2 is flat at u = 0
+        errors["work_of_adhesion"] = math.hypot(errors["work_of_adhesion"], modulus * raw["work_of_adhesion"] ** 2)
     warnings, notes = _words(scene, data, fitted, values, modulus)
     return CurveFit(
         scene=scene,
@@ -205,12 +204,12 @@ def _stated(scene: Scene, data: Data, fitted: Fitted, confidence: float) -> Curv
         fitted=fitted_force,
         values=values,
         standard_error=errors,
-        covariance=covariance,
+        covariance=spread.covariance,
         quantile=spread.quantile,
         confidence=confidence,
         band=band,
-        numerical_error=_numerical_error(fitted, shifted),
-        warnings=(*warnings, *spread.warnings, *confounded(values, covariance, spread.quantile)),
+        numerical_error=family.error(u, shifted),
+        warnings=(*warnings, *spread.warnings, *confounded(values, spread.covariance, spread.quantile)),
         notes=notes,
         per_modulus=phi,
     )
@@ -218,25 +217,25 @@ def _stated(scene: Scene, data: Data, fitted: Fitted, confidence: float) -> Curv
 
 def _background(data: Data, remaining: FloatArray, shifted: FloatArray) -> dict[str, float]:
     """Baseline [N] at the contact point, and tilt [N/m]."""
-    columns = {"baseline": np.ones_like(shifted), "tilt": shifted}
-    columns = {name: column for name, column in columns.items() if name in data.names}
-    if not columns:
-        return {}
-    matrix = np.stack(list(columns.values()), axis=1)
-    length = np.linalg.norm(matrix, axis=0)
-    solved = np.linalg.lstsq(matrix / length, remaining, rcond=None)[0] / length
-    return dict(zip(columns, solved.tolist(), strict=True))
+    powers = [power for power, name in enumerate(("baseline", "tilt")) if name in data.names]
+    size = float(np.ptp(shifted))
+    level, tilt = (*polyfit(shifted / size, remaining, powers), 0.0, 0.0)[:2] if powers else (0.0, 0.0)
+    return {"baseline": float(level), "tilt": float(tilt) / size}
 
 
-def _by_u(family: Family, u: float, shifted: FloatArray, modulus: float) -> FloatArray:
-    """Derivative of the force by u, shape (n,), by central differences."""
-    step = _STEP * (max(abs(u), abs(family.starts[len(family.starts) // 2])) if family.varied[0] == "w" else 1.0)
+def _derivatives(family: Family, u: float, shifted: FloatArray, modulus: float) -> tuple[FloatArray, FloatArray]:
+    """Derivatives of the force of the contact by depth and u, each of shape (n,), by central differences."""
 
-    def force(at: float) -> FloatArray:
+    def force(at: float, move: float = 0.0) -> FloatArray:
         factor = modulus if family.is_scaled else family.factor(at)
-        return factor * family.at(at).extended(shifted)
+        return factor * family.at(at).extended(shifted + move)
 
-    return (force(u + step) - force(u - step)) / (2 * step)
+    move = _STEP * max(abs(float(shifted.max())), 1e-6 * float(np.ptp(shifted)))
+    by_depth = (force(u, move) - force(u, -move)) / (2 * move)
+    if not family.varied:
+        return by_depth, np.zeros_like(by_depth)
+    step = _STEP * family.size(u)
+    return by_depth, (force(u + step) - force(u - step)) / (2 * step)
 
 
 def _changes(values: dict[str, float], family: Family, by_u: float, by_modulus: float) -> FloatArray:
@@ -248,13 +247,6 @@ def _changes(values: dict[str, float], family: Family, by_u: float, by_modulus: 
         if family.is_scaled:
             matrix[row, names.index("youngs_modulus")] = by_modulus
     return matrix
-
-
-def _numerical_error(fitted: Fitted, shifted: FloatArray) -> float:
-    shape = fitted.family.at(fitted.u)
-    if isinstance(fitted.family, Adhering):
-        return adhesive_error(fitted.family, fitted.u, shifted)
-    return shape.error if isinstance(shape, ForceCurve) else 0.0
 
 
 def _words(
@@ -293,7 +285,7 @@ def _by_formulas(scene: Scene, data: Data, own: float) -> tuple[FormulaFit, ...]
     """Each formula fitted to the same curve with the same background."""
     found, rough = [], rough_indentation(data)
     for formula in formulas_for(scene):
-        best = _search(data, Plain(formula), rough, math.inf)
+        best = _search(data, Family(formula), rough, math.inf)
         modulus, _ = modulus_and_residual(data, best.family, best.indentation, best.u)
         found.append(FormulaFit(formula=formula, youngs_modulus=modulus, bias=modulus / own - 1.0))
     return tuple(found)

@@ -88,10 +88,6 @@ class ForceCurve:
             )
         return self.extended(d)
 
-    def per_modulus_slope(self, depth: ArrayLike) -> FloatArray:
-        """d(phi)/d(depth) = k_N/E [m]."""
-        return self.with_slope(depth)[1]
-
     def extended(self, depth: ArrayLike) -> FloatArray:
         """phi [m^2], beyond the reach as a power of the depth."""
         d = np.asarray(depth, dtype=np.float64)
@@ -106,14 +102,13 @@ class ForceCurve:
         phi[touches] = np.exp(np.minimum(log_force, 700.0))
         return phi
 
-    def with_slope(self, depth: ArrayLike) -> tuple[FloatArray, FloatArray]:
-        """phi [m^2] and its derivative [m]."""
+    def per_modulus_slope(self, depth: ArrayLike) -> FloatArray:
+        """d(phi)/d(depth) = k_N/E [m]."""
         d, phi = np.asarray(depth, dtype=np.float64), self.extended(depth)
-        touches = d > 0.0
-        slope = np.zeros_like(d)
+        slope, touches = np.zeros_like(d), d > 0.0
         inside = np.clip(np.log(d[touches]), self._nodes[0][0], self._nodes[0][-1])
         slope[touches] = self._power(inside) * phi[touches] / d[touches]
-        return phi, slope
+        return slope
 
     def depth_of(self, per_modulus: ArrayLike) -> FloatArray:
         """Depth [m] at F/E [m^2], zero where that is at most zero."""
@@ -144,11 +139,13 @@ class ForceCurve:
         return _cached(self.scene.replace(layer=layer, indenter=indenter), self._method)
 
 
+@lru_cache(maxsize=256)
 def curve_to(scene: Scene, reach: float) -> ForceCurve:
     """The elastic curve of the scene up to a depth [m]; the last 64 are cached."""
     return _cached(scene.replace(loading=IndentationDepths([reach]), effects=(), beyond_small_strains=True), Mdr())
 
 
+@lru_cache(maxsize=256)
 def longest_curve(scene: Scene, reach: float) -> ForceCurve:
     """The elastic curve up to a depth [m], halved until the indenter is that long.
 

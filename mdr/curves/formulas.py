@@ -49,18 +49,6 @@ class Formula:
         """phi [m^2], as `per_modulus`."""
         return self.per_modulus(depth)
 
-    def per_modulus_slope(self, depth: ArrayLike) -> FloatArray:
-        """d(phi)/d(depth) [m]."""
-        d = np.maximum(np.asarray(depth, dtype=np.float64), 0.0)
-        x = (d / self.length) ** self.share
-        powers = self.power + self.share * np.arange(len(self.coefficients))
-        terms = np.polynomial.polynomial.polyval(x, powers * np.array(self.coefficients))
-        return np.where(np.asarray(depth) > 0.0, self.factor * d ** (self.power - 1.0) * terms, 0.0)
-
-    def with_slope(self, depth: ArrayLike) -> tuple[FloatArray, FloatArray]:
-        """phi and its derivative together."""
-        return self.per_modulus(depth), self.per_modulus_slope(depth)
-
 
 HERTZ = "Hertz 1882"
 SNEDDON = "Sneddon 1965"

@@ -16,9 +16,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import accumulate, combinations
-from typing import Final, Literal
+from typing import Final, Literal, NamedTuple
 
 import numpy as np
 from scipy.optimize import least_squares, nnls
@@ -26,7 +26,7 @@ from scipy.optimize import least_squares, nnls
 from contact import ForceHistory, InvalidInput, KelvinVoigt, NotConvergedError, Scene, StandardSolid
 from contact.answer.small_strains import depth_note
 from contact.records.validation import FloatArray
-from contact.scene.effects import Viscoelasticity
+from contact.scene.effects import Relaxation, Viscoelasticity
 from mdr.curves.contact_point import correlation_factor
 from mdr.curves.force_curve import ForceCurve, longest_curve
 from mdr.curves.result import CurveFit, confounded, spread_of
@@ -47,43 +47,28 @@ _FALLS: Final = 0.05
 _LEAST: Final = 1e-9
 # Halvings of the search for t1. With 30 the rounding of t1 shows in derivatives.
 _HALVINGS: Final = 42
+# Evaluations of a search. Twenty are usual; a curve that needs more than this has a flat minimum.
+_EVALUATIONS: Final = 80
+# Name of the factor of a relaxation function whose shape is kept.
+_SCALE: Final = "instantaneous_shear_modulus"
 # Relative step of derivatives by the parameters. A hundredth of it is lost in that rounding.
 _STEP: Final = 1e-5
 
 
-@dataclass(frozen=True)
-class Solid:
-    """A relaxation function.
+def creep_of(solid: Relaxation) -> tuple[float, FloatArray, FloatArray]:
+    """J(t) = J_inf - sum_j r_j exp(-t/lambda_j): J_inf [1/Pa], r_j [1/Pa] and lambda_j [s], each of shape (k,).
 
-    Attributes:
-        long_term: G_inf [Pa].
-        moduli: G_j [Pa], shape (m,).
-        times: tau_j [s], shape (m,).
-        viscosity: eta [Pa s].
+    With D(s) = G_inf + eta s + sum_j G_j s tau_j/(1 + s tau_j) its transform is 1/(s D), and D(-1/lambda_j) = 0. The
+    zeros are eigenvalues of the equations of the strains in the dashpots. A dashpot eta has no branches beside it.
     """
-
-    long_term: float
-    moduli: FloatArray
-    times: FloatArray
-    viscosity: float = 0.0
-
-    def creep(self) -> tuple[float, FloatArray, FloatArray]:
-        """J(t) = J_inf - sum_j r_j exp(-t/lambda_j): J_inf [1/Pa], r_j [1/Pa] and lambda_j [s], each of shape (k,).
-
-        With D(s) = G_inf + eta s + sum_j G_j s tau_j/(1 + s tau_j) its transform is 1/(s D), and D(-1/lambda_j) = 0.
-        """
-        unit = float(np.exp(np.mean(np.log(self.times)))) if self.times.size else self.viscosity / self.long_term
-        factors = [np.polynomial.Polynomial([1.0, tau / unit]) for tau in self.times]
-        product = math.prod(factors, start=np.polynomial.Polynomial([1.0]))
-        zeros = np.polynomial.Polynomial([self.long_term, self.viscosity / unit]) * product
-        for j, (modulus, tau) in enumerate(zip(self.moduli, self.times, strict=True)):
-            others = math.prod(factors[:j] + factors[j + 1 :], start=np.polynomial.Polynomial([1.0]))
-            zeros += np.polynomial.Polynomial([0.0, modulus * tau / unit]) * others
-        s = np.real(zeros.roots()) / unit
-        slope = self.viscosity + sum(
-            modulus * tau / (1 + s * tau) ** 2 for modulus, tau in zip(self.moduli, self.times, strict=True)
-        )
-        return 1 / self.long_term, -1 / (s * slope), -1 / s
+    m, moduli, times = solid.moduli.size, solid.moduli, solid.times
+    if solid.viscosity > 0.0:
+        s = np.array([-solid.long_term_modulus / solid.viscosity])
+    else:
+        shares = np.broadcast_to(moduli / solid.instantaneous_modulus, (m, m))
+        s = np.linalg.eigvals((shares - np.eye(m)) / times[:, None]).real
+    slope = solid.viscosity + (moduli * times / (1 + s[:, None] * times) ** 2).sum(axis=1)
+    return 1 / solid.long_term_modulus, -1 / (s * slope), -1 / s
 
 
 def convolved(time: FloatArray, values: FloatArray, tau: float) -> FloatArray:
@@ -94,7 +79,7 @@ def convolved(time: FloatArray, values: FloatArray, tau: float) -> FloatArray:
     return np.array(list(accumulate(steps, lambda q, step: q * step[0] + step[1], initial=float(values[0]))))
 
 
-def force_of_depth(curve: ForceCurve, solid: Solid, time: FloatArray, depth: FloatArray) -> FloatArray:
+def force_of_depth(curve: ForceCurve, solid: Relaxation, time: FloatArray, depth: FloatArray) -> FloatArray:
     """F [N] at the instants, shape (n,), of depths [m] that grow, rest, and fall once.
 
     Args:
@@ -106,7 +91,7 @@ def force_of_depth(curve: ForceCurve, solid: Solid, time: FloatArray, depth: Flo
     fine = _refined(time)
     d = np.interp(fine, time, depth)
     phi = curve.extended(d)
-    force = solid.long_term * phi
+    force = solid.long_term_modulus * phi
     for modulus, tau in zip(solid.moduli, solid.times, strict=True):
         force = force + modulus * convolved(fine, phi, tau)
     force = force + solid.viscosity * np.gradient(phi, fine)
@@ -117,7 +102,7 @@ def force_of_depth(curve: ForceCurve, solid: Solid, time: FloatArray, depth: Flo
     return 3 * np.maximum(force[::_STEPS], 0.0) if turn < depth.size - 1 else 3 * force[::_STEPS]
 
 
-def _withdrawn(solid: Solid, time: FloatArray, d: FloatArray, phi: FloatArray, start: int) -> FloatArray:
+def _withdrawn(solid: Relaxation, time: FloatArray, d: FloatArray, phi: FloatArray, start: int) -> FloatArray:
     """F/3 [N] from the instant `start` on, with t1 by halving for all instants at once."""
     parts, depth_parts = ([convolved(time, values, tau) for tau in solid.times] for values in (phi, d))
     late, n = time[start:], start - 1
@@ -130,7 +115,7 @@ def _withdrawn(solid: Solid, time: FloatArray, d: FloatArray, phi: FloatArray, s
 
     def unloaded(t1: FloatArray) -> FloatArray:
         """int_t1^t G(t - s) d(d(s)), which falls with t1 while the contact grew."""
-        total = solid.long_term * (d[start:] - np.interp(t1, time, d))
+        total = solid.long_term_modulus * (d[start:] - np.interp(t1, time, d))
         total = total + solid.viscosity * np.gradient(d, time)[start:]
         for g, tau, part in zip(solid.moduli, solid.times, depth_parts, strict=True):
             total = total + g * (part[start:] - np.exp(-(late - t1) / tau) * at(d, tau, part, t1))
@@ -142,15 +127,15 @@ def _withdrawn(solid: Solid, time: FloatArray, d: FloatArray, phi: FloatArray, s
         above = unloaded(middle) > 0.0
         low, high = np.where(above, middle, low), np.where(above, high, middle)
     t1 = (low + high) / 2
-    total = solid.long_term * np.interp(t1, time, phi)
+    total = solid.long_term_modulus * np.interp(t1, time, phi)
     for g, tau, part in zip(solid.moduli, solid.times, parts, strict=True):
         total = total + g * np.exp(-(late - t1) / tau) * at(phi, tau, part, t1)
     return np.where(np.minimum.accumulate(t1 > time[0]), total, 0.0)
 
 
-def depth_of_force(curve: ForceCurve, solid: Solid, time: FloatArray, force: FloatArray) -> FloatArray:
+def depth_of_force(curve: ForceCurve, solid: Relaxation, time: FloatArray, force: FloatArray) -> FloatArray:
     """Depth [m] at the instants, shape (n,), under forces [N] that do not fall."""
-    final, shares, times = solid.creep()
+    final, shares, times = creep_of(solid)
     phi = final * force - sum(
         (r * convolved(time, force, tau) for r, tau in zip(shares, times, strict=True)), np.zeros_like(force)
     )
@@ -171,70 +156,75 @@ def _turn(depth: FloatArray) -> int:
     return int(high[-1])
 
 
+class Parameter(NamedTuple):
+    """A fitted number, `scale` times x, or exp(x) of a time.
+
+    Attributes:
+        name: As in the scene.
+        scale: In SI.
+        low: Least x.
+        high: Largest x.
+    """
+
+    name: str
+    scale: float
+    low: float = -math.inf
+    high: float = math.inf
+
+    def value(self, x: float) -> float:
+        """The number in SI."""
+        return math.exp(x) if self.is_time else self.scale * x
+
+    @property
+    def is_time(self) -> bool:
+        """Whether x is its logarithm."""
+        return self.name.startswith("relaxation_time")
+
+
 @dataclass(frozen=True)
 class _Problem:
-    """A scene whose relaxation is fitted, in units of its own guess and of the measured data."""
+    """Measured data and what is fitted: moduli and times first, in the order G_inf, G_j .., tau_j ..."""
 
     scene: Scene
+    given: Relaxation
     curve: ForceCurve
     time: FloatArray
     depth: FloatArray
     force: FloatArray
-    names: tuple[str, ...]
+    parameters: tuple[Parameter, ...]
     response: Literal["force", "depth"]
-    branches: int
-    unit: float
 
     @property
     def measured(self) -> FloatArray:
         return self.force if self.response == "force" else self.depth
 
     @property
-    def has_dashpot(self) -> bool:
-        return isinstance(self.scene.effect(Viscoelasticity), KelvinVoigt)
+    def names(self) -> list[str]:
+        return [one.name for one in self.parameters]
 
-    def solid(self, x: FloatArray) -> Solid:
-        """The relaxation function at [G_inf, G_j .., ln tau_j .., d0, f0] in units."""
-        m, given = self.branches, relaxation_times(self.scene)
-        if self.has_dashpot:
-            return Solid(x[0] * self.unit, np.empty(0), np.empty(0), x[1] * self.unit * float(np.ptp(self.time)))
-        times = np.exp(x[m + 1 : 2 * m + 1]) if "times" in self.names else given
-        return Solid(x[0] * self.unit, x[1 : m + 1] * self.unit, times)
+    def values(self, x: FloatArray) -> dict[str, float]:
+        """Each parameter in SI."""
+        return {one.name: one.value(float(x_i)) for one, x_i in zip(self.parameters, x, strict=True)}
 
-    def offsets(self, x: FloatArray) -> tuple[float, float]:
-        """Contact point [m] and baseline [N]."""
-        rest = x[self.fixed_size :].tolist()
-        point = rest.pop(0) * float(np.ptp(self.depth)) if "contact_point" in self.names else 0.0
-        return point, rest.pop(0) * float(np.ptp(self.force)) if "baseline" in self.names else 0.0
-
-    @property
-    def fixed_size(self) -> int:
-        """Number of moduli and times."""
-        return 2 if self.has_dashpot else 1 + self.branches * (2 if "times" in self.names else 1)
-
-    def bounds(self) -> tuple[FloatArray, FloatArray]:
-        """Least and largest x: moduli are positive, times between a tenth of a step and 100 times the span."""
-        size = self.fixed_size + sum(name in self.names for name in ("contact_point", "baseline"))
-        lower, upper = np.full(size, -np.inf), np.full(size, np.inf)
-        lower[: 2 if self.has_dashpot else 1 + self.branches] = _LEAST
-        if "times" in self.names and not self.has_dashpot:
-            times = slice(1 + self.branches, 1 + 2 * self.branches)
-            lower[times] = math.log(0.1 * float(np.diff(self.time).min()))
-            upper[times] = math.log(100 * float(np.ptp(self.time)))
-        return lower, upper
+    def solid(self, values: dict[str, float]) -> Relaxation:
+        """The relaxation function of the values."""
+        given, found = self.given, np.array(list(values.values()))
+        if _SCALE in values:
+            share = found[0] / given.instantaneous_modulus
+            return replace(given, long_term_modulus=share * given.long_term_modulus, moduli=share * given.moduli)
+        if given.viscosity > 0.0:
+            return replace(given, long_term_modulus=found[0], viscosity=found[1])
+        m = given.moduli.size
+        times = found[1 + m : 1 + 2 * m] if any(one.is_time for one in self.parameters) else given.times
+        return replace(given, long_term_modulus=found[0], moduli=found[1 : 1 + m], times=times)
 
     def model(self, x: FloatArray) -> FloatArray:
         """Force [N] or depth [m] at the instants, shape (n,)."""
-        point, level = self.offsets(x)
+        values = self.values(x)
+        solid, point, level = self.solid(values), values.get("contact_point", 0.0), values.get("baseline", 0.0)
         if self.response == "force":
-            return force_of_depth(self.curve, self.solid(x), self.time, self.depth - point) + level
-        return point + depth_of_force(self.curve, self.solid(x), self.time, self.force - level)
-
-
-def relaxation_times(scene: Scene) -> FloatArray:
-    """Relaxation times [s] of the scene, shape (m,)."""
-    effect = scene.effect(Viscoelasticity)
-    return np.asarray(effect.relaxation.times) if effect is not None else np.empty(0)
+            return force_of_depth(self.curve, solid, self.time, self.depth - point) + level
+        return point + depth_of_force(self.curve, solid, self.time, self.force - level)
 
 
 def fit_history(
@@ -255,7 +245,8 @@ def fit_history(
         time: [s], shape (n,), increasing.
         depth: [m], shape (n,): it grows, rests, and may fall once.
         force: [N], shape (n,), positive where the indenter presses.
-        parameters: "moduli", and any of "times", "contact_point", "baseline".
+        parameters: "moduli", or "scale" for one factor of all of them (a normalised table G(t)/G_0 is kept), and any of
+            "times", "contact_point", "baseline".
         confidence: Of the intervals.
 
     Raises:
@@ -265,22 +256,16 @@ def fit_history(
     t, d, f = (np.asarray(values, dtype=np.float64) for values in (time, depth, force))
     problem = _problem(scene, t, d, f, tuple(parameters))
     size = float(np.ptp(problem.measured))
+    lower, upper = (np.array([getattr(one, end) for one in problem.parameters]) for end in ("low", "high"))
 
     def misfit(x: FloatArray) -> FloatArray:
         return np.asarray((problem.model(x) - problem.measured) / size)
 
     ends = []
     for start in _starts(problem):
-        lower, upper = problem.bounds()
+        first, step = np.clip(start, lower + 1e-9, upper - 1e-9), np.full(start.size, _STEP)
         ends.append(
-            least_squares(
-                misfit,
-                np.clip(start, lower + 1e-9, upper - 1e-9),
-                bounds=(lower, upper),
-                x_scale="jac",
-                diff_step=np.full(start.size, _STEP),
-                max_nfev=80,
-            )
+            least_squares(misfit, first, bounds=(lower, upper), x_scale="jac", diff_step=step, max_nfev=_EVALUATIONS)
         )
         if ends[-1].success and correlation_factor(ends[-1].fun) == 1.0:
             break
@@ -307,9 +292,10 @@ def _problem(scene: Scene, t: FloatArray, d: FloatArray, f: FloatArray, names: t
             f"poissons_ratio = {nu:g}: histories are fitted for incompressible layers (0.5), where all springs relax "
             "alike; for others finite elements solve the history of a given material (solve --method fem)"
         )
-    if "moduli" not in names or set(names) - set(HISTORY_PARAMETERS):
+    if ("moduli" in names) == ("scale" in names) or set(names) - {*HISTORY_PARAMETERS, "scale"}:
+        others = ", ".join(HISTORY_PARAMETERS[1:])
         raise InvalidInput(
-            f"parameters = {', '.join(names)}: fit moduli, and any of {', '.join(HISTORY_PARAMETERS[1:])}"
+            f"parameters = {', '.join(names)}: fit moduli (or scale, their common factor), with {others}"
         )
     if not (t.ndim == 1 and t.shape == d.shape == f.shape and t.size > 8 and np.isfinite([t, d, f]).all()):
         raise InvalidInput("a history needs one finite time, depth and force for each of more than 8 points")
@@ -318,9 +304,28 @@ def _problem(scene: Scene, t: FloatArray, d: FloatArray, f: FloatArray, names: t
         raise InvalidInput(f"time = {t[row]:g} s at point {row + 1} follows {t[row - 1]:g} s: times have to increase")
     response: Literal["force", "depth"] = "depth" if isinstance(scene.loading, ForceHistory) else "force"
     _check_course(d if response == "force" else f, response)
-    curve = longest_curve(scene, 2.0 * max(float(np.ptp(d)), float(d.max())))
-    phi = float(curve.extended(np.array([max(float(np.ptp(d)), float(d.max()))]))[0])
-    return _Problem(scene, curve, t, d, f, names, response, relaxation_times(scene).size, float(np.ptp(f)) / (3 * phi))
+    reach = max(float(np.ptp(d)), float(d.max()))
+    curve = longest_curve(scene, 2 * reach)
+    modulus = float(np.ptp(f)) / (3 * float(curve.extended(np.array([reach]))[0]))
+    fitted = [*_of_solid(effect, names, modulus, t)]
+    fitted += [Parameter("contact_point", float(np.ptp(d)))] * ("contact_point" in names)
+    fitted += [Parameter("baseline", float(np.ptp(f)))] * ("baseline" in names)
+    return _Problem(scene, effect.relaxation, curve, t, d, f, tuple(fitted), response)
+
+
+def _of_solid(effect: Viscoelasticity, names: Sequence[str], modulus: float, t: FloatArray) -> list[Parameter]:
+    """Moduli and times of the effect, of the size of a modulus [Pa] and of the times [s] that were measured."""
+    if "scale" in names:
+        return [Parameter(_SCALE, modulus, _LEAST)]
+    span = float(np.ptp(t))
+    if isinstance(effect, KelvinVoigt):
+        return [Parameter("shear_modulus", modulus, _LEAST), Parameter("viscosity", modulus * span, _LEAST)]
+    alone, m = isinstance(effect, StandardSolid), effect.relaxation.moduli.size
+    moduli = ["maxwell_shear_modulus"] if alone else [f"shear_moduli[{j}]" for j in range(m)]
+    times = ["relaxation_time"] if alone else [f"relaxation_times[{j}]" for j in range(m)]
+    ends = math.log(0.1 * float(np.diff(t).min())), math.log(100 * span)
+    found = [Parameter(name, modulus, _LEAST) for name in ("long_term_shear_modulus", *moduli)]
+    return found + [Parameter(name, 1.0, *ends) for name in times if "times" in names]
 
 
 def _check_course(given: FloatArray, response: str) -> None:
@@ -337,38 +342,45 @@ def _check_course(given: FloatArray, response: str) -> None:
 
 def _starts(problem: _Problem) -> list[FloatArray]:
     """First values: non-negative moduli by linear least squares, of sets of trial times and contact points the best."""
-    m, names, given = problem.branches, problem.names, relaxation_times(problem.scene)
+    names, given = problem.names, problem.given
     turn = _turn(problem.depth) + 1 if problem.response == "force" else problem.time.size
     time, depth, force = problem.time[:turn], problem.depth[:turn], problem.force[:turn]
     span, way = float(np.ptp(time)), float(np.ptp(depth))
     grid = np.geomspace(max(float(np.median(np.diff(time))), 1e-4 * span), span, _TRIAL_TIMES).tolist()
-    sets = list(combinations(grid, m)) if "times" in names and not problem.has_dashpot else [tuple(given.tolist())]
+    fits_times = any(one.is_time for one in problem.parameters)
+    sets = list(combinations(grid, given.times.size)) if fits_times else [tuple(given.times.tolist())]
     points = [depth.max() - way * share for share in _TRIAL_POINTS] if "contact_point" in names else [0.0]
     rated: list[tuple[float, int, list[float]]] = []
     for point in points:
-        phi = 3 * problem.unit * problem.curve.extended(depth - point)
+        phi = 3 * problem.curve.extended(depth - point)
         level = [np.ones_like(phi), -np.ones_like(phi)] if "baseline" in names else []
         columns = {tau: convolved(time, phi, tau) for tau in {tau for times in sets for tau in times}}
         for times in sets:
-            matrix = np.stack([phi, *(columns[tau] for tau in times), *(one * np.ptp(force) for one in level)], axis=1)
-            found, misfit = nnls(matrix, force)
-            x = [*found[: m + 1], *(np.log(times) if "times" in names else ())]
-            x = [found[0], 0.1] if problem.has_dashpot else x
-            x += [point / float(np.ptp(problem.depth))] * ("contact_point" in names)
-            x += [(found[-2] - found[-1]) * np.ptp(force) / np.ptp(problem.force)] if level else []
-            rated.append((float(misfit), len(rated), x))
-    return [np.array(x) for *_, x in sorted(rated)[:_STARTS]]
+            parts = [phi, *(columns[tau] for tau in times), *level]
+            if _SCALE in names:
+                shares = np.array([given.long_term_modulus, *given.moduli]) / given.instantaneous_modulus
+                parts = [np.tensordot(shares, parts[: shares.size], 1), *level]
+            sizes = np.array([float(np.abs(part).max()) or 1.0 for part in parts])
+            found, misfit = nnls(np.stack(parts, axis=1) / sizes, force)
+            found = found / sizes
+            known = [*found[: len(parts) - len(level)], *([0.1 * found[0] * span] if given.viscosity else [])]
+            known += [*times] * fits_times + [point] * ("contact_point" in names)
+            known += [found[-2] - found[-1]] if level else []
+            rated.append((float(misfit), len(rated), known))
+    return [
+        np.array(
+            [math.log(v) if one.is_time else v / one.scale for one, v in zip(problem.parameters, known, strict=True)]
+        )
+        for *_, known in sorted(rated)[:_STARTS]
+    ]
 
 
 def _stated(problem: _Problem, x: FloatArray, jacobian: FloatArray, confidence: float) -> CurveFit:
     """Parameters in SI with their intervals, and warnings."""
-    values, scale = _parameters(problem, x)
-    fitted = problem.model(x)
-    point, _ = problem.offsets(x)
-    residual, pressed = problem.measured - fitted, problem.depth > point
-    spread = spread_of(jacobian / scale, residual, pressed, float(np.ptp(problem.measured)), confidence)
-    errors = dict(zip(values, np.sqrt(np.maximum(np.diag(spread.covariance), 0.0)).tolist(), strict=True))
-    band = np.sqrt(np.maximum(np.sum((jacobian / scale @ spread.covariance) * (jacobian / scale), axis=1), 0.0))
+    values, fitted = problem.values(x), problem.model(x)
+    jacobian = jacobian / [values[one.name] if one.is_time else one.scale for one in problem.parameters]
+    point, size = values.get("contact_point", 0.0), float(np.ptp(problem.measured))
+    spread = spread_of(jacobian, problem.measured - fitted, problem.depth > point, size, confidence)
     note = depth_note(problem.scene, float(problem.depth.max()) - point)
     warnings = (*([note] if note else []), *spread.warnings, *confounded(values, spread.covariance, spread.quantile))
     return CurveFit(
@@ -377,36 +389,13 @@ def _stated(problem: _Problem, x: FloatArray, jacobian: FloatArray, confidence: 
         force=problem.force,
         fitted=fitted,
         values=values,
-        standard_error=errors,
+        standard_error=spread.errors(values),
         covariance=spread.covariance,
         quantile=spread.quantile,
         confidence=confidence,
-        band=spread.quantile * band,
+        band=spread.band(jacobian),
         numerical_error=problem.curve.error,
         warnings=warnings,
         time=problem.time,
         response=problem.response,
     )
-
-
-def _parameters(problem: _Problem, x: FloatArray) -> tuple[dict[str, float], FloatArray]:
-    """Parameters in SI by their names in the scene, and their derivatives by x."""
-    solid, m = problem.solid(x), problem.branches
-    point, level = problem.offsets(x)
-    if problem.has_dashpot:
-        found = [
-            ("shear_modulus", solid.long_term, problem.unit),
-            ("viscosity", solid.viscosity, solid.viscosity / x[1]),
-        ]
-    else:
-        one = isinstance(problem.scene.effect(Viscoelasticity), StandardSolid)
-        found = [("long_term_shear_modulus", solid.long_term, problem.unit)]
-        found += [
-            ("maxwell_shear_modulus" if one else f"shear_moduli[{j}]", float(solid.moduli[j]), problem.unit)
-            for j in range(m)
-        ]
-        times = solid.times.tolist() if "times" in problem.names else []
-        found += [("relaxation_time" if one else f"relaxation_times[{j}]", tau, tau) for j, tau in enumerate(times)]
-    found += [("contact_point", point, float(np.ptp(problem.depth)))] * ("contact_point" in problem.names)
-    found += [("baseline", level, float(np.ptp(problem.force)))] * ("baseline" in problem.names)
-    return {name: value for name, value, _ in found}, np.array([scale for *_, scale in found])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Final, Literal, NamedTuple
 
@@ -138,6 +138,15 @@ class Spread(NamedTuple):
     covariance: FloatArray
     quantile: float
     warnings: tuple[str, ...]
+
+    def errors(self, names: Iterable[str]) -> dict[str, float]:
+        """Standard error of each parameter."""
+        return dict(zip(names, np.sqrt(np.maximum(np.diag(self.covariance), 0.0)).tolist(), strict=True))
+
+    def band(self, jacobian: FloatArray) -> FloatArray:
+        """Half width of the interval of the fitted curve, shape (n,)."""
+        variance = np.sum((jacobian @ self.covariance) * jacobian, axis=1)
+        return np.asarray(self.quantile * np.sqrt(np.maximum(variance, 0.0)))
 
 
 def spread_of(jacobian: FloatArray, residual: FloatArray, pressed: BoolArray, size: float, confidence: float) -> Spread:

@@ -76,13 +76,12 @@ class Request:
             raise InvalidInput("--pressure-accuracy is asked besides an --accuracy of the numbers; give both")
         if self.samples and not self.uncertain:
             raise InvalidInput("--samples: of what? name the inputs with --uncertain")
-        asked = {
-            "--over": self.over,
-            "--advise": self.advise,
-            "--uncertain": self.uncertain,
-            "--against": self.against,
-        }
-        several = [name for name, value in asked.items() if value]
+        if self.advise and self.outputs:
+            raise InvalidInput("--write: --advise writes no file; leave one of them out")
+        if self.over and self.accuracy is not None:
+            raise InvalidInput("--accuracy: --over states the error of each answer instead; leave one of them out")
+        modes = ("over", "advise", "uncertain", "against")
+        several = [f"--{name}" for name in modes if getattr(self, name)]
         if len(several) > 1:
             raise InvalidInput(f"{' and '.join(several)}: ask one at a time")
 
@@ -177,6 +176,8 @@ def _uncertain(scene: Scene, scene_file: Path, request: Request) -> Solution:
 
     inputs = read_inputs(request.uncertain, scene, with_units=uses_units(scene_file))
     found = propagate(scene, inputs, method=request.solver(), samples=request.samples)
+    if request.accuracy is not None:
+        _refuse_less(found.answer, request.accuracy, request.pressure_accuracy)
     _show_answer(found.answer)
     show_table(propagated_table(found), on=console())
     return found.answer

@@ -5,6 +5,7 @@ import pytest
 
 from contact import (
     Adhesion,
+    Cone,
     ElasticBase,
     FlatPunch,
     Friction,
@@ -116,14 +117,17 @@ def test_curves_of_a_map_keep_their_own_points():
     assert alone == pytest.approx([5e3] * 3, rel=0.02, abs=0.0)
 
 
+@pytest.mark.filterwarnings("error")
 @pytest.mark.parametrize("seed", range(10))
-def test_noise_and_drift_show_no_contact(seed):
+@pytest.mark.parametrize("effects", [(), (Adhesion(work_of_adhesion=1e-4),)], ids=["elastic", "adhesive"])
+def test_noise_and_drift_show_no_contact(seed, effects):
     draw = np.random.default_rng(seed)
     depth = np.linspace(-2e-6, 1e-6, 300)
     white, drift = draw.normal(0, 1e-10, 300), 1e-3 * depth
-    for force in (white, drift + white, -hertz(depth) + white, np.zeros(300)):
-        with pytest.raises(InvalidInput, match="no contact in the curve"):
-            fit_curve(HALF_SPACE, depth, force)
+    wave = 5e-10 * np.sin(depth / 1e-7 + seed)
+    for force in (white, drift + white, -1e-2 * np.clip(depth, 0, None) + white, wave + white, np.zeros(300)):
+        with pytest.raises((InvalidInput, NotConvergedError), match=r"no contact|no values describe|press deeper"):
+            fit_curve(HALF_SPACE.replace(effects=effects), depth, force)
 
 
 def test_an_offset_and_a_tilt_are_fitted_by_default():
@@ -400,3 +404,35 @@ def test_withdrawal_is_read_for_scenes_with_adhesion(tmp_path):
     (curve,) = load_curves(file, direction="withdrawal")
     assert curve.force.max() == pytest.approx(0.8e-9 * FORCE.max(), rel=0.05, abs=0.0)
     assert "withdrawal is used" in curve.notes[-1]
+
+
+def random_curve(draw):
+    """A random tip and layer, the modulus, and a noisy curve with offset, tilt and 0 to 99.5 % of baseline."""
+    tips = (TIP, Sphere(radius=5e-6), Cone(slope=0.36), FlatPunch(radius=2e-6))
+    nu, support = draw.choice([0.5, 0.45, 0.3]), draw.choice(["bonded", "unbonded"])
+    layer = Layer(thickness=10 ** draw.uniform(-6, -4.5), youngs_modulus=1e3, poissons_ratio=nu, support=support)
+    if draw.integers(4) == 0:
+        layer = Layer.half_space(youngs_modulus=1e3, poissons_ratio=nu)
+    deepest, modulus = 0.3 * min(layer.thickness, 2e-6) * draw.uniform(0.3, 1.0), 10 ** draw.uniform(2, 6)
+    scene = HALF_SPACE.replace(layer=layer, indenter=tips[draw.integers(4)], loading=IndentationDepths([deepest]))
+    depth = np.linspace(deepest * (1 - 10 ** draw.uniform(0, 2.3)), deepest, int(draw.choice([1500, 3000])))
+    force = ForceCurve(scene)(depth, modulus)
+    line = 0.3 * draw.standard_normal() + 0.2 * draw.standard_normal() * depth / np.ptp(depth)
+    noise = 10 ** draw.uniform(-3.5, -1.3) * draw.standard_normal(depth.size)
+    return scene, modulus, depth + 1e-6 * draw.uniform(-1, 1), force + force.max() * (line + noise)
+
+
+@pytest.mark.slow
+def test_intervals_cover_random_tips_layers_and_baselines_and_nothing_is_silently_wrong():
+    draw, distances = np.random.default_rng(2711), []
+    for _ in range(200):
+        scene, modulus, depth, force = random_curve(draw)
+        try:
+            found = fit_curve(scene, depth, force, formulas=False)
+        except InvalidInput:
+            continue
+        low, high = found.interval("youngs_modulus")
+        distances.append(2 * abs(found.youngs_modulus - modulus) / (high - low))
+    assert len(distances) > 180
+    assert 0.91 <= np.mean(np.array(distances) <= 1.0) <= 0.99
+    assert max(distances) < 3.0

@@ -199,6 +199,20 @@ def test_two_methods_are_compared_beside_the_errors_they_state(hertz, capsys):
     assert "ask one at a time" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (["--advise", "--write", "a.csv"], "--advise writes no file"),
+        (["--over", "youngs_modulus=1e6..2e6:2", "--accuracy", "1e-4"], "--over states the error of each answer"),
+        (["--uncertain", "youngs_modulus=3%", "--method", "fake", "--accuracy", "1e-20"], "asked for 1.0e-20"),
+    ],
+)
+def test_no_option_is_left_aside_in_silence(hertz, options, words, capsys, monkeypatch):
+    monkeypatch.setattr(solve_command, "build_guarded", lambda *_: FakeHertz(stated=1e-2))
+    assert run(["solve", hertz, *options]) in (1, 4)
+    assert words in capsys.readouterr().err.replace("\n", " ")
+
+
 def test_pictures_are_written_in_three_formats(hertz, tmp_path):
     begins = {".svg": b"<svg", ".png": b"\x89PNG", ".pdf": b"%PDF"}
     files = [tmp_path / f"answer{ending}" for ending in begins]
