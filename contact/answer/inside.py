@@ -239,7 +239,7 @@ def _largest(radii: ArrayLike, depths: ArrayLike, value: Callable[[FloatArray, F
             if closer[i] > top:
                 best, top = around[:, [i]], closer[i]
             width = width / 2.0
-        found.append(Extreme(*map(float, best[:, 0]), float(top)))
+        found.append(Extreme(float(best[0, 0]), float(best[1, 0]), float(top)))
     return max(found, key=lambda extreme: extreme.value)
 
 
@@ -250,7 +250,7 @@ def _points(radius: ArrayLike, depth: ArrayLike) -> list[FloatArray]:
         if np.ma.is_masked(value):
             raise InvalidInput(f"{name}: masked entries have no value; leave them out")
         try:
-            kind = np.asarray(value).dtype.kind
+            kind: str = np.asarray(value).dtype.kind
         except ValueError:
             kind = "ragged"
         if kind not in "iuf":
