@@ -6,7 +6,6 @@ import dataclasses
 from math import log2
 from typing import ClassVar, Final, Literal, Self, overload
 
-import numpy as np
 from pydantic import Field
 
 from bem.grid.answers import PRESCRIBED, GridSolver
@@ -28,7 +27,7 @@ from contact import (
     Unsupported,
     UnsupportedSceneError,
 )
-from contact.answer.accuracy import FIELDS
+from contact.answer.accuracy import asked_errors
 from contact.answer.no_contact import without_contact
 from contact.answer.one_thread import one_thread
 from contact.answer.small_strains import within_small_strains
@@ -88,9 +87,7 @@ class Bem(Record):
         machine = isinstance(scene.loading, Detachment) and scene.loading.controlled == "machine"
         kind = type(scene.loading).__name__
         reasons = {
-            f'a {type(scene.layer).__name__} has no periodic answer; use boundary="free"': (
-                periodic and not scene.layer.is_uniform
-            ),
+            'only uniform layers have periodic answers; use boundary="free"': periodic and not scene.layer.is_uniform,
             f"bem models adhesion only, not {next(iter(others), '')}; ask mdr or fem": bool(others),
             f"bem follows radii, depths, forces or a detachment, not {kind}; ask mdr": (
                 not isinstance(scene.loading, Detachment) and type(scene.loading) not in PRESCRIBED
@@ -171,7 +168,7 @@ class Bem(Record):
                 if points == ACCURACY_POINTS[-1]:
                     raise
                 continue
-            errors = {name: float(np.max(error)) for name, error in path.error_estimate.items() if name not in FIELDS}
+            errors = asked_errors(path)
             worst = max(errors, key=lambda name: errors[name])
             if errors[worst] <= accuracy:
                 return dataclasses.replace(path, settings=dict(path.settings) | {"accuracy": accuracy})
@@ -179,6 +176,7 @@ class Bem(Record):
             if reachable > accuracy:
                 break
         what = f"{points} points state {errors[worst]:.1e} of the {worst.replace('_', ' ')}"
-        more = f", {ACCURACY_POINTS[-1]} would about {reachable:.0e}" if points < ACCURACY_POINTS[-1] else ""
-        message = f"accuracy = {accuracy:g} was not reached: {what}{more}; ask for less, or mdr or fem"
-        raise NotConvergedError(message, {"stated_error": errors[worst]})
+        more = f"{ACCURACY_POINTS[-1]} would about {reachable:.0e}; ask for less, or mdr or fem"
+        raise NotConvergedError(
+            f"accuracy = {accuracy:g} was not reached: {what}, {more}", {"stated_error": errors[worst]}
+        )

@@ -150,8 +150,8 @@ class GridSolver:
         scalars, others = (of.branch.pull_off(control, y) for of, y in zip(pair, places, strict=True))
         floor = self._floor(radius)
         errors = {
-            "indentation_depth": self._stated(depth, other_depth, floor, in_sequence=True),
-            "normal_force": self._stated(force, other_force, floor, in_sequence=True),
+            "indentation_depth": self._stated(depth, other_depth, floor, path=True),
+            "normal_force": self._stated(force, other_force, floor, path=True),
         }
         for name, value in scalars.items():
             errors[name] = self._stated(np.array([value]), np.array([others[name]]), floor[:1])
@@ -215,17 +215,15 @@ class GridSolver:
         floor, errors = self._floor(found[0]), {}
         for name, one, two in zip(ContactPath.ARRAYS, found, other, strict=True):
             own = self._least if is_punch or (is_given and name == "contact_stiffness") else floor
-            errors[name] = self._stated(one, two, own, in_sequence=adheres)
+            errors[name] = self._stated(one, two, own, path=adheres)
         exact = [PRESCRIBED[type(self.scene.loading)], *(["contact_radius"] if is_punch else [])]
         return errors | {name: np.zeros(found.shape[1]) for name in exact}
 
     @staticmethod
-    def _stated(
-        one: FloatArray, other: FloatArray, floor: FloatArray | float, *, in_sequence: bool = False
-    ) -> FloatArray:
-        """Values of one sequence are relative to its largest magnitude."""
-        scale = np.abs(one).max() if in_sequence else one
-        return stated_error(one, other, scale=scale, floor=floor, sequence=in_sequence)
+    def _stated(one: FloatArray, other: FloatArray, floor: FloatArray | float, *, path: bool = False) -> FloatArray:
+        """Values of one path are relative to its largest magnitude."""
+        scale = np.abs(one).max() if path else one
+        return stated_error(one, other, scale=scale, floor=floor, sequence=path)
 
     @property
     def _least(self) -> float:

@@ -64,7 +64,8 @@ class ContactFields:
         last = 1.0 - 0.5 / self.punch.disc.radius
         share = np.minimum(radius / self.radius, 1.0 if self.edge == 0.0 else last)
         root = np.sqrt(np.maximum((1.0 - share) * (1.0 + share), np.finfo(float).tiny))
-        p = contact_modulus(self.pressing.layer) / (pi * self.radius) * self.over_half_space(share) / root
+        quotient = self._quotient(share**2) if self.edge is not None else self.state.depth * self.punch.quotient(share)
+        p = contact_modulus(self.pressing.layer) / (pi * self.radius) * quotient / root
         return np.where((radius <= self.radius) & (share < 1.0), p, 0.0)
 
     def surface_displacement(self, radius: FloatArray) -> FloatArray:
@@ -98,12 +99,6 @@ class ContactFields:
                 f"a contact of radius {self.radius:g} m would be pulled at r = {place:g} m, less than "
                 f"{BESIDE_KINKS:g} cells from an edge or a kink, where cells are too large to tell; take more points"
             )
-
-    def over_half_space(self, share: FloatArray) -> FloatArray:
-        """Pressure at r/a over that of the half-space under a unit depth [m]."""
-        if self.edge is None:
-            return self.state.depth * self.punch.quotient(share)
-        return np.asarray(self._quotient(share**2))
 
     @cached_property
     def cells(self) -> FloatArray:

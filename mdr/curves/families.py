@@ -131,7 +131,7 @@ def elastic_family(scene: Scene, names: Sequence[str], reach: float, about: floa
 
 def unit_of_parameter(name: str) -> str:
     """SI unit of a fitted parameter."""
-    if name.startswith("relaxation_times"):
+    if name.startswith("relaxation_time"):
         return "s"
     return "Pa s" if name == "viscosity" else UNITS.get(name, "Pa")
 

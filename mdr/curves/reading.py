@@ -268,7 +268,7 @@ def _si(one: Column, unit: str, file: str | Path) -> FloatArray:
 
 def _falls(depth: FloatArray, force: FloatArray) -> bool:
     """Whether the largest forces are at the least depths."""
-    high = force > force.min() + 0.7 * np.ptp(force)
+    high = force >= force.min() + 0.7 * np.ptp(force)
     return bool(np.mean(depth[high]) < 0.5 * (depth.min() + depth.max()))
 
 

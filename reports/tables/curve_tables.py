@@ -1,12 +1,9 @@
 """Fits of force curves as tables and CSV files."""
 
-from collections.abc import Sequence
-
 import numpy as np
 
 from cases.measurements.uncertain_fit import UncertainFit
 from cases.results.csv_table import csv_text
-from contact.records.validation import FloatArray
 from mdr.curves import CurveFit, MapFit
 from mdr.curves.families import unit_of_parameter
 from reports.words import Table, measured, scaled_unit, small, with_prefix
@@ -60,12 +57,18 @@ def formula_table(found: CurveFit) -> Table:
 
 
 def fit_csv(found: CurveFit) -> str:
-    """Depth, force, fit, half width of its band and residual of each point, SI."""
-    residual = found.force - found.fitted
-    return _csv(
-        ("depth [m]", "force [N]", "fitted [N]", "band [N]", "residual [N]"),
-        (found.depth, found.force, found.fitted, found.band, residual),
-    )
+    """One row per point, SI: what was measured and fitted, and in the same columns of all rows the fitted numbers."""
+    unit = "N" if found.response == "force" else "m"
+    columns = {"time [s]": found.time} if found.time.size else {}
+    columns |= {"depth [m]": found.depth, "force [N]": found.force, f"fitted [{unit}]": found.fitted}
+    columns |= {f"band [{unit}]": found.band, f"residual [{unit}]": found.measured - found.fitted}
+    columns |= {"modulus_at_depth [Pa]": found.modulus_at_depth}
+    for name, value in found.values.items():
+        numbers = zip(("", "_low", "_high"), (value, *found.interval(name)), strict=True)
+        columns |= {f"{name}{end} [{unit_of_parameter(name)}]": np.full(found.depth.shape, v) for end, v in numbers}
+    columns |= {"r_squared": np.full(found.depth.shape, found.r_squared)}
+    rows = zip(*(column.tolist() for column in columns.values()), strict=True)
+    return csv_text(columns, ([value if np.isfinite(value) else "" for value in row] for row in rows))
 
 
 def map_csv(found: MapFit) -> str:
@@ -82,11 +85,6 @@ def map_csv(found: MapFit) -> str:
         cells += [number, *(value if np.isfinite(value) else "" for value in place.tolist())]
         rows.append([*cells, reason if fit is None else "; ".join(fit.warnings)])
     return csv_text([*heads, "r_squared", "scatter [N]", "curve", "x [m]", "y [m]", "warnings"], rows)
-
-
-def _csv(heads: Sequence[str], columns: Sequence[FloatArray]) -> str:
-    rows = zip(*(column.tolist() for column in columns), strict=True)
-    return csv_text(heads, ([value if np.isfinite(value) else "" for value in row] for row in rows))
 
 
 def map_facts(found: MapFit) -> list[tuple[str, str]]:

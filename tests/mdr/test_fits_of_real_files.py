@@ -369,6 +369,20 @@ def test_curves_that_a_column_numbers_are_a_map_with_places(tmp_path):
     assert [curve.depth.size for curve in curves] == [100, 100]
 
 
+def test_a_map_is_written_with_intervals_places_and_a_picture(tmp_path, scene_file, capsys):
+    file, table = tmp_path / "map.csv", tmp_path / "out.csv"
+    lines = [f"{n},{n}.5,0,{line}" for n in (3, 4) for line in rows()] + [f"5,5.5,0,{d},0.0" for d in DEPTH]
+    file.write_text("\n".join(["curve,x [um],y [um],depth [nm],force [nN]", *lines]))
+    assert run(["fit", str(file), scene_file, "--map", "-w", str(table), "-w", str(tmp_path / "map.svg")]) == 0
+    out = capsys.readouterr().out
+    assert "2 of 3 fitted" in out
+    assert "not fitted: the first: no contact in the curve" in out
+    found = np.genfromtxt(table, delimiter=",", names=True, deletechars="", usecols=range(17))
+    assert found["contact_point_low_[m]"][0] < 0.0 < found["contact_point_high_[m]"][0]
+    assert found["x_[m]"].tolist() == [3.5e-6, 4.5e-6, 5.5e-6]
+    assert "Histogram" in (tmp_path / "map.svg").read_text()
+
+
 def test_a_history_is_read_whole_and_needs_times(tmp_path):
     file = tmp_path / "curve.csv"
     lines = [f"{0.1 * i:.1f},{line}" for i, line in enumerate([*rows(), *rows()[::-1]])]

@@ -17,6 +17,7 @@ from contact import (
 )
 from mdr import Mdr
 from mdr.curves import fit_history
+from reports.command_line import run
 
 LAYER = Layer(thickness=10e-6, youngs_modulus=9e3, poissons_ratio=0.5)
 TIME = np.concatenate([np.linspace(0, 1, 40), np.linspace(1, 6, 90)[1:], np.linspace(6, 7.5, 50)[1:]])
@@ -101,6 +102,34 @@ def test_times_that_are_kept_are_not_fitted_and_another_solid_warns(relaxed):
     assert found.values["shear_moduli[1]"] == pytest.approx(1e3, rel=5e-3, abs=0.0)
     other = fit_history(scene(SOLID, loading), TIME, DEPTH, relaxed[PRONY])
     assert any("residuals are not noise" in line for line in other.warnings)
+
+
+SCENE_FILE = """layer = {thickness = "10 um", youngs_modulus = "9 kPa", poissons_ratio = 0.5}
+indenter = {kind = "paraboloid", radius_of_curvature = "5 um"}
+loading = {kind = "depth_history", time = ["0 s", "1 s"], depth = ["0 nm", "100 nm"]}
+[[effects]]
+kind = "standard_solid"
+long_term_shear_modulus = "2 kPa"
+maxwell_shear_modulus = "1 kPa"
+viscosity = "1 kPa s"
+"""
+
+
+def test_the_command_fits_a_table_with_times_and_writes_every_number(tmp_path, capsys, relaxed):
+    scene_file, curve, table = tmp_path / "solid.toml", tmp_path / "curve.csv", tmp_path / "fit.csv"
+    scene_file.write_text(SCENE_FILE)
+    lines = [f"{t},{1e9 * d},{1e9 * f}" for t, d, f in zip(TIME, DEPTH, relaxed[SOLID], strict=True)]
+    curve.write_text("\n".join(["time [s],depth [nm],force [nN]", *lines]))
+    assert run(["fit", str(curve), str(scene_file), "--write", str(table), "--write", str(tmp_path / "a.svg")]) == 0
+    out = capsys.readouterr().out
+    assert "relaxation time" in out
+    found = np.genfromtxt(table, delimiter=",", names=True, deletechars="")
+    assert found["maxwell_shear_modulus_[Pa]"][0] == pytest.approx(2e3, rel=5e-3, abs=0.0)
+    assert found["relaxation_time_low_[s]"][0] <= found["relaxation_time_[s]"][0] == pytest.approx(1.0, rel=5e-3)
+    assert run(["fit", str(curve), str(scene_file), "--fit", "moduli", "--with", "contact_point"]) == 0
+    assert "relaxation time" not in capsys.readouterr().out
+    assert run(["fit", str(curve), str(scene_file), "--map"]) == 4
+    assert "fit single curves" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

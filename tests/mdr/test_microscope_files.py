@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from contact import IndentationDepths, InvalidInput, Layer, Paraboloid, Scene
+from examples.pyjibe_layer import layer_model
 from mdr.curves import ForceCurve, fit_curve, read_curve, read_map
-from mdr.curves.nanite_models import layer_model
 from mdr.curves.reading import Cantilever
 from reports.command_line import run
 
@@ -134,7 +134,7 @@ import sys, warnings
 warnings.simplefilter("ignore")
 import nanite
 from mdr.curves.reading import Cantilever
-from mdr.curves.nanite_models import register
+from examples.pyjibe_layer import register
 register()
 curve = nanite.load_group(sys.argv[1])[0]
 curve.apply_preprocessing(["compute_tip_position", "correct_force_offset", "correct_tip_offset"])

@@ -363,7 +363,7 @@ FAULTS = (
 OWN = SharedFault(
     "nothing: modulus of finite elements",
     "G of finite elements",
-    swap("fem_reference.discrete_layer.material:shear_modulus", times),
+    swap("fem_reference.materials:shear_modulus", times),
     ELASTIC,
 )
 
