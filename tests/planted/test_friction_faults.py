@@ -14,7 +14,7 @@ from cases.results.status import Status
 from cases.run.solve_task import solve
 from contact import NotConvergedError, UnsupportedSceneError
 from fem_reference import Fem
-from fem_reference.friction import step, walk
+from fem_reference.friction import step
 from mdr import inside
 from mdr.friction.growth import punches_of
 from mdr.friction.statement import _slip
@@ -72,13 +72,13 @@ def test_heat_given_back(monkeypatch):
 
 def test_new_points_forget_that_they_slid_on_the_way(monkeypatch):
     """The displacement of points ahead of the contact is not remembered when they touch."""
-    right = walk.advance
+    right = step.advance
 
     def wrong(contact, before, active, control):
         ahead = np.arange(len(before.radial)) >= before.active
         return right(contact, dataclasses.replace(before, radial=np.where(ahead, 0.0, before.radial)), active, control)
 
-    monkeypatch.setattr(walk, "advance", wrong)
+    monkeypatch.setattr(step, "advance", wrong)
     with pytest.raises(CAUGHT):
         friction.test_full_stick_is_that_of_mdr(0.0, "bonded", 1.0, friction.PARABOLOID)
 
@@ -111,7 +111,7 @@ def test_lower_layers_that_pull_where_they_push(monkeypatch):
 
     def wrong(kernel, wavenumber):
         found, alone = right(kernel, wavenumber), right(stack.StackKernel.single("bonded", 0.5), wavenumber)
-        return found._replace(uw=2.0 * alone.uw - found.uw)
+        return found[0], 2.0 * alone[1] - found[1], found[2]
 
     monkeypatch.setattr(stack.StackKernel, "beyond_half_space", wrong)
     punches_of.cache_clear()
