@@ -8,7 +8,6 @@ from contact.answer.method import Method as Method
 from contact.answer.method import Supported as Supported
 from contact.answer.method import Unsupported as Unsupported
 from contact.answer.method import other_layer as other_layer
-from contact.answer.method import refuse_other_layers as refuse_other_layers
 from contact.answer.paths import ContactPath as ContactPath
 from contact.answer.paths import CriticalPoint as CriticalPoint
 from contact.answer.paths import DetachmentPath as DetachmentPath

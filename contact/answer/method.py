@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from typing import ClassVar, Protocol, Self, TypeAlias, runtime_checkable
 
 from contact.answer.solution import Solution
-from contact.records.errors import UnsupportedSceneError
 from contact.scene.layer import ElasticLayer, Layer
 from contact.scene.scene import Scene
 
@@ -37,25 +36,10 @@ Support: TypeAlias = Supported | Unsupported
 
 
 def other_layer(method: str, layer: ElasticLayer) -> Unsupported | None:
-    """What a method answers that models plain layers only; None for those."""
+    """The refusal of a method that models plain layers only; None for those."""
     if isinstance(layer, Layer):
         return None
-    return Unsupported(_reason(method, layer))
-
-
-def refuse_other_layers(caller: str, layer: ElasticLayer) -> Layer:
-    """The layer, if it is a plain one.
-
-    Raises:
-        UnsupportedSceneError: With the kind of layer.
-    """
-    if isinstance(layer, Layer):
-        return layer
-    raise UnsupportedSceneError(_reason(caller, layer))
-
-
-def _reason(caller: str, layer: ElasticLayer) -> str:
-    return f"{caller} models one uniform layer or a half-space, not a {type(layer).__name__}; ask mdr"
+    return Unsupported(f"{method} models one uniform layer or a half-space, not a {type(layer).__name__}; ask mdr")
 
 
 @runtime_checkable

@@ -113,9 +113,9 @@ class Solution(Evidence):
 
     def _repr_html_(self) -> str:
         """First and last values with units and stated errors, and the curve where matplotlib is installed."""
-        rows = [("quantity", "first ... last", "stated error")]
-        rows += [(name.replace("_", " "), *self._cells(name)) for name in (*self.ARRAYS, *self.SCALARS)]
-        table = "".join(f"<tr>{''.join(f'<td>{escape(cell)}</td>' for cell in row)}</tr>" for row in rows)
+        rows = [(name.replace("_", " "), *self._cells(name)) for name in (*self.ARRAYS, *self.SCALARS)]
+        table = "<tr><th>quantity</th><th>first ... last</th><th>stated error</th></tr>"
+        table += "".join(f"<tr>{''.join(f'<td>{escape(cell)}</td>' for cell in row)}</tr>" for row in rows)
         head = f"<b>{type(self).__name__}</b> by {escape(self.method)}, {self._states()}"
         scene = escape(scene_line(self.scene))
         notes = "".join(f"<p>{escape(note)}</p>" for note in self.notes)
@@ -148,8 +148,7 @@ class Solution(Evidence):
         stated = self.stated_error(y)
         if stated is not None:
             label = f"stated error, at most {np.max(stated):.1g} {UNITS[y]}"
-            middle, band = getattr(self, y), stated
-            ends = ((middle + side * band) * self.factor(y) for side in (-1, 1))
+            ends = ((getattr(self, y) + side * stated) * self.factor(y) for side in (-1, 1))
             axes.fill_between(getattr(self, x) * self.factor(x), *ends, alpha=0.25, linewidth=0, label=label)
         self._draw(axes, x, y)
         axes.set(xlabel=self.label(x), ylabel=self.label(y))

@@ -270,7 +270,18 @@ class Spheroconical(Sloped, Pointed):
 
 
 @record
-class TruncatedCone(Sloped):
+class Truncated(Profile):
+    """A profile that is flat up to b, where its slope jumps."""
+
+    flat_radius: PositiveLength
+
+    @property
+    def kinks(self) -> tuple[float, ...]:
+        return (self.flat_radius,)
+
+
+@record
+class TruncatedCone(Sloped, Truncated):
     """Eq. (35): flat up to b, then f(r) = slope (r - b).
 
     Attributes:
@@ -278,7 +289,6 @@ class TruncatedCone(Sloped):
         slope: tan(theta) [-].
     """
 
-    flat_radius: PositiveLength
     slope: _Slope
 
     def height(self, radius: ArrayLike) -> FloatArray:
@@ -287,13 +297,9 @@ class TruncatedCone(Sloped):
     def slope_at(self, radius: ArrayLike) -> FloatArray:
         return np.where(np.asarray(radius) >= self.flat_radius, self.slope, 0.0)
 
-    @property
-    def kinks(self) -> tuple[float, ...]:
-        return (self.flat_radius,)
-
 
 @record
-class TruncatedParaboloid(Profile):
+class TruncatedParaboloid(Truncated):
     """A worn paraboloid: flat up to b, then f(r) = (r^2 - b^2) / (2 R).
 
     Attributes:
@@ -301,7 +307,6 @@ class TruncatedParaboloid(Profile):
         radius_of_curvature: R [m].
     """
 
-    flat_radius: PositiveLength
     radius_of_curvature: PositiveLength
 
     def height(self, radius: ArrayLike) -> FloatArray:
@@ -311,10 +316,6 @@ class TruncatedParaboloid(Profile):
     def slope_at(self, radius: ArrayLike) -> FloatArray:
         r = np.asarray(radius, dtype=np.float64)
         return np.where(r >= self.flat_radius, r / self.radius_of_curvature, 0.0)
-
-    @property
-    def kinks(self) -> tuple[float, ...]:
-        return (self.flat_radius,)
 
 
 @record
