@@ -11,7 +11,7 @@ import numpy as np
 
 from contact import NotConvergedError, Solution, UnsupportedSceneError
 from contact.answer.accuracy import shortfalls
-from fem_reference.discrete_layer.settings import Discretisation
+from fem_reference.settings import Discretisation
 
 # Stated errors of P4P3 fall like this power of the growth on graded meshes.  It chooses the next mesh only: a wrong
 # value costs attempts, no accuracy.

@@ -39,15 +39,19 @@ from contact.answer.no_contact import without_contact
 from contact.answer.one_thread import one_thread
 from contact.answer.small_strains import within_small_strains
 from fem_reference.adaptive import meshes_that_fit, settings_for, solve_to_accuracy
-from fem_reference.discrete_layer.material import contact_modulus
-from fem_reference.discrete_layer.problem import LayerProblem
-from fem_reference.discrete_layer.settings import Discretisation
-from fem_reference.discrete_layer.solving.linear_solver import BACKENDS
-from fem_reference.elastic.answer import contact_path
-from fem_reference.elastic.equilibria import RadiusSearch, elastic_equilibria, refuse_other_contacts
-from fem_reference.elastic.path import ContactSolver, FemEquilibrium, flat_punch_equilibria
-from fem_reference.elastic.prescribed_radius import PrescribedContact, solve_contact
-from fem_reference.elastic.surface_fields import FemFields
+from fem_reference.equilibria import (
+    FemEquilibrium,
+    RadiusSearch,
+    contact_path,
+    elastic_equilibria,
+    flat_punch_equilibria,
+    refuse_other_contacts,
+)
+from fem_reference.fields import FemFields
+from fem_reference.materials import contact_modulus
+from fem_reference.prescribed_contact import ContactSolver, PrescribedContact, solve_contact
+from fem_reference.settings import Discretisation
+from fem_reference.solver import BACKENDS
 from fem_reference.stated import path_with_errors
 
 Answer: TypeAlias = ContactPath | DetachmentPath | ImpactHistory | HistoryPath
@@ -180,15 +184,15 @@ class Fem:
             refuse_other_contacts(scene, states, coarser)
             fields: Fields = FemFields(states, modulus, coarser)
         else:
-            from fem_reference.elastic.stick.adhered_punch import AdheredFemFields  # noqa: PLC0415 - only stick loads it
+            from fem_reference.friction.answers import AdheredFemFields  # noqa: PLC0415 - only listed effects load
 
-            fields = AdheredFemFields(states, modulus, coarser, layer=scene.layer)
+            fields = AdheredFemFields(states, modulus, coarser)
         path, companion = (contact_path(scene, each, fields, asdict(self), log) for each in (states, coarser))
         answer = path_with_errors(path, companion, states, coarser)
         if sticks:
-            from fem_reference.elastic.stick.adhered_punch import with_shear_error  # noqa: PLC0415
+            from fem_reference.friction.answers import with_shear_error  # noqa: PLC0415
 
-            return with_shear_error(answer, scene.layer, states[0], coarser[0])
+            return with_shear_error(answer, states, coarser)
         return answer
 
     def _states(
@@ -196,10 +200,7 @@ class Fem:
     ) -> list[FemEquilibrium]:
         """Equilibria at one resolution."""
         if scene.effect(Friction) is not None:
-            from fem_reference.elastic.stick.adhered_punch import AdheredProblem  # noqa: PLC0415 - only stick loads it
-
-            solve = self._solver(scene, settings, log, AdheredProblem)
-            return flat_punch_equilibria(scene, scene.indenter.flat_radius, solve)
+            return flat_punch_equilibria(scene, self._solver(scene, settings, log, sticks=True))
         solve = self._solver(scene, settings, log)
         if scene.effects:
             from fem_reference.adhesion.equilibria import adhesive_equilibria  # noqa: PLC0415 - only listed effects load
@@ -217,19 +218,19 @@ class Fem:
 
     def _rubbed(self, scene: Scene, log: StageLog, settings: Discretisation) -> ContactPath | HistoryPath:
         if isinstance(scene.loading, DepthHistory | ForceHistory):
-            from fem_reference.elastic.friction.histories import rubbed_history  # noqa: PLC0415 - only listed effects
+            from fem_reference.friction.answers import rubbed_history  # noqa: PLC0415 - only listed effects load
 
             return rubbed_history(scene, settings, asdict(self), log)
-        from fem_reference.elastic.friction.answers import rubbed_path  # noqa: PLC0415 - only listed effects load
+        from fem_reference.friction.answers import rubbed_path  # noqa: PLC0415 - only listed effects load
 
         return rubbed_path(scene, settings, asdict(self), log)
 
     def _moved(
         self, scene: Scene, loading: Impact | DepthHistory | ForceHistory, log: StageLog
     ) -> Callable[[Discretisation], Answer]:
-        from fem_reference.in_time.history import HistorySolver  # noqa: PLC0415 - only scenes in time load it
-        from fem_reference.in_time.impact import ImpactSolver  # noqa: PLC0415
-        from fem_reference.in_time.setup import HistorySetup  # noqa: PLC0415
+        from fem_reference.histories import HistorySolver  # noqa: PLC0415 - only scenes in time load it
+        from fem_reference.impacts import ImpactSolver  # noqa: PLC0415
+        from fem_reference.strips import HistorySetup  # noqa: PLC0415
 
         def attempt(settings: Discretisation) -> ImpactHistory | HistoryPath:
             """The answer, and its companions with half the cells and with half the steps as well."""
@@ -256,13 +257,11 @@ class Fem:
         finer = asdict(self.discretisation.refined())
         return replace(self, **{name: value for name, value in finer.items() if name != "coarsening"})
 
-    def _solver(
-        self, scene: Scene, settings: Discretisation, log: StageLog, kind: type[LayerProblem] = LayerProblem
-    ) -> ContactSolver:
+    def _solver(self, scene: Scene, settings: Discretisation, log: StageLog, *, sticks: bool = False) -> ContactSolver:
         """Solves the contact of a given radius [m]."""
 
         def solve(radius: float) -> PrescribedContact:
-            return solve_contact(scene, radius, settings, log, backend=self.solver, kind=kind)
+            return solve_contact(scene, radius, settings, log, backend=self.solver, sticks=sticks)
 
         return solve
 

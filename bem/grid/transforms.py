@@ -14,7 +14,7 @@ from typing import Any, Final, Literal
 
 import numpy as np
 
-from contact.answer.compiled_files import compiled
+from bem.compiled_files import compiled
 from contact.records.validation import FloatArray
 
 # Unused numbers after each row, one cache line: without them all rows of a power of two numbers begin at the same place

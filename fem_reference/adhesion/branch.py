@@ -25,7 +25,7 @@ from numpy.polynomial.chebyshev import chebder, chebfit, chebval
 from contact.records.validation import FloatArray
 from contact.scene.loading import Controlled
 from fem_reference.adhesion.superposed import punch_pressure, superposed
-from fem_reference.elastic.prescribed_radius import PrescribedContact
+from fem_reference.prescribed_contact import PrescribedContact
 
 # What is interpolated along the branch, with the power of the contact radius that turns it into SI lengths.
 POWERS = {"stiffness": 1, "stiffness_slope": 0, "smooth_depth": 1, "profile_force": 2}

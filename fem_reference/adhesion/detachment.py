@@ -31,9 +31,8 @@ from fem_reference.adhesion.equilibria import (
     branch_samples,
     work_of_adhesion,
 )
-from fem_reference.discrete_layer.material import contact_modulus
-from fem_reference.elastic.path import ContactSolver
-from fem_reference.elastic.prescribed_radius import PrescribedContact
+from fem_reference.materials import contact_modulus
+from fem_reference.prescribed_contact import ContactSolver, PrescribedContact
 from fem_reference.stated import FLOOR
 
 # Relative tolerance of the search for an extremum.

@@ -12,10 +12,10 @@ from contact import Adhesion, ContactRadii, FlatPunch, IndentationDepths, Invali
 from contact.records.validation import FloatArray
 from contact.scene.extent import first_radius
 from fem_reference.adhesion.branch import InterpolatedBranch, solve_branch
-from fem_reference.discrete_layer.indenter import height
-from fem_reference.discrete_layer.material import contact_modulus
-from fem_reference.elastic.path import ContactSolver, FemEquilibrium
-from fem_reference.elastic.prescribed_radius import PrescribedContact
+from fem_reference.equilibria import FemEquilibrium
+from fem_reference.materials import contact_modulus
+from fem_reference.prescribed_contact import ContactSolver, PrescribedContact
+from fem_reference.profiles import height
 
 # Chebyshev points of a piece at a growth of 1/2, and the power of the growth by which they become more. Not measured:
 # half and twice.

@@ -18,8 +18,8 @@ from numpy.polynomial.legendre import legval, legvander
 
 from contact import Profile
 from contact.records.validation import FloatArray
-from fem_reference.discrete_layer.indenter import shape
-from fem_reference.elastic.prescribed_radius import PrescribedContact
+from fem_reference.prescribed_contact import PrescribedContact
+from fem_reference.profiles import shape
 
 # Gauss points between two breakpoints, where f' is mostly a low polynomial of sin(theta): closed forms of cones and
 # paraboloids are met to 1e-13 (tests/fem_reference/test_adhesive_branch.py).

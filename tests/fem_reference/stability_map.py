@@ -20,8 +20,8 @@ from fem_reference import Fem
 from fem_reference.adhesion.branch import solve_branch
 from fem_reference.adhesion.detachment import slope_root
 from fem_reference.adhesion.equilibria import branch_samples
-from fem_reference.discrete_layer.settings import Discretisation
-from fem_reference.elastic.prescribed_radius import PrescribedContact, solve_contact
+from fem_reference.prescribed_contact import PrescribedContact, solve_contact
+from fem_reference.settings import Discretisation
 
 # a/h at the ends of the branch's pieces: below the first the layer is a half-space, beyond the last a row of
 # independent springs.

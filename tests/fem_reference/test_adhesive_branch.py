@@ -26,8 +26,8 @@ from fem_reference import Fem
 from fem_reference.adhesion.branch import BranchPiece, InterpolatedBranch, chebyshev_points
 from fem_reference.adhesion.equilibria import branch_of
 from fem_reference.adhesion.superposed import superposed
-from fem_reference.discrete_layer.indenter import ScaledIndenter
-from fem_reference.elastic.prescribed_radius import solve_contact
+from fem_reference.prescribed_contact import solve_contact
+from fem_reference.profiles import ScaledIndenter
 from mdr import Mdr
 from tests.drawn_scenes import scene_of
 

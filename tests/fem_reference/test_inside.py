@@ -200,7 +200,7 @@ def test_files_carry_all_fields_to_the_library_of_paraview(path, tmp_path, endin
 
 
 def test_settings_name_the_mesh(path):
-    assert path.settings["mesh"] == path.fields.states[0].contact.layer_mesh.fingerprint
+    assert path.settings["mesh"] == path.fields.states[0].contact.layer.section.fingerprint
 
 
 def test_refusals_by_name(path, tmp_path):
