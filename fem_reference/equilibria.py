@@ -8,7 +8,7 @@ dF/da = 0 at given depth, so ``F(delta) = F_0 + k_N (delta - delta_0)`` errs onl
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -126,23 +126,8 @@ def targets_of(scene: Scene) -> tuple[FloatArray, bool]:
     return loading.values / (1.0 if by_depth else contact_modulus(scene.layer)), by_depth
 
 
-@dataclass
-class RadiusSearch:
-    """Radii [m] of depths [m] or forces / E* [m^2], each searched once for all resolutions."""
-
-    scene: Scene
-    log: StageLog
-    _found: dict[float, float] = field(default_factory=dict)
-
-    def radius(self, target: float, *, by_depth: bool) -> float:
-        """Radius near which a load is carried."""
-        if target not in self._found:
-            self._found[target] = searched_radius(self.scene, target, self.log, by_depth=by_depth)
-        return self._found[target]
-
-
 def elastic_equilibria(
-    scene: Scene, solve: ContactSolver, coarsening: float, search: RadiusSearch
+    scene: Scene, solve: ContactSolver, coarsening: float, search: Callable[[float], float]
 ) -> list[FemEquilibrium]:
     """States without adhesion at prescribed radii, depths or forces.
 
@@ -150,7 +135,7 @@ def elastic_equilibria(
         scene: the scene.
         solve: contact of a given radius [m].
         coarsening: of the companion's cells, see `Discretisation`.
-        search: finds the radii of loads.
+        search: radius [m] near which a load is carried, see `searched_radius`.
     """
     if isinstance(scene.loading, ContactRadii):
         return [smooth_equilibrium(solve(float(a))) for a in scene.loading.values]
@@ -162,12 +147,12 @@ def elastic_equilibria(
     most_left = MOST_LEFT if coarsening == 1.0 else np.inf
     states = []
     for target in map(float, targets):
-        start = search.radius(target, by_depth=by_depth)
+        start = search(target)
         try:
             states.append(state_at_load(scene, target, start, narrowest, solve, by_depth=by_depth, most_left=most_left))
         except NotConvergedError:
             # The load of contacts with tension inside may depend on their radius in any way.
-            state = smooth_equilibrium(quick_solution(scene, start, search.log))
+            state = smooth_equilibrium(quick_solution(scene, start, StageLog()))
             _refuse_pulled(scene, state, state)
             raise
     return states
@@ -217,14 +202,14 @@ def state_at_load(
     raise NotConvergedError("the contact radius does not settle", {"load_defect": abs(defect - 1)})
 
 
-def searched_radius(scene: Scene, target: float, log: StageLog, *, by_depth: bool) -> float:
+def searched_radius(scene: Scene, log: StageLog, target: float) -> float:
     """Radius [m] of a depth [m] or a force / E* [m^2], to about 1e-5, by quick solutions.
 
     Raises:
         InvalidInput: contact would reach the end of the profile.
         NotConvergedError: the radius does not settle.
     """
-    indenter, flat = scene.indenter, scene.indenter.flat_radius
+    indenter, flat, by_depth = scene.indenter, scene.indenter.flat_radius, targets_of(scene)[1]
 
     def load_at(radius: float) -> tuple[float, float]:
         contact = quick_solution(scene, radius, log)

@@ -6,17 +6,26 @@ from dataclasses import replace
 
 import numpy as np
 
-from contact import DepthHistory, FlatPunch, ForceHistory, HistoryPath, InvalidInput, Scene, UnsupportedSceneError
+from contact import (
+    DepthHistory,
+    FlatPunch,
+    ForceHistory,
+    HistoryPath,
+    InvalidInput,
+    Scene,
+    StageLog,
+    UnsupportedSceneError,
+)
 from contact.answer.solution import Setting
 from contact.records.validation import FloatArray
 from contact.scene.extent import first_radius
 from contact.stated import SAFETY
 from fem_reference.equilibria import refuse_touching_at
 from fem_reference.materials import contact_modulus, shear_modulus
-from fem_reference.motions import CondensedLayer, Samples, segments, simulate_prescribed
+from fem_reference.motions import CondensedLayer, HistorySetup, Resolution, Samples, segments, simulate_prescribed
 from fem_reference.profiles import height
+from fem_reference.settings import Discretisation
 from fem_reference.stated import FLOOR, exact_names
-from fem_reference.strips import HistorySetup, Resolution
 
 # Instants of the companion to either side, among which the largest change is stated. Not measured: half and twice.
 WINDOW = 6
@@ -31,11 +40,19 @@ PILOT_STEPS = 4
 class HistorySolver:
     """One prescribed history at any resolution."""
 
-    def __init__(self, scene: Scene, loading: DepthHistory | ForceHistory, settings: dict[str, Setting]) -> None:
-        self._scene, self._loading, self._settings = scene, loading, settings
+    def __init__(
+        self, scene: Scene, loading: DepthHistory | ForceHistory, settings: dict[str, Setting], log: StageLog
+    ) -> None:
+        self._scene, self._loading, self._settings, self._log = scene, loading, settings, log
         self._by_depth = isinstance(loading, DepthHistory)
         self._values: FloatArray = loading.depth if isinstance(loading, DepthHistory) else loading.force
         self._radius: float | None = None
+
+    def attempt(self, settings: Discretisation) -> HistoryPath:
+        """The answer with its stated errors."""
+        setups = HistorySetup.resolutions(self._scene, settings, str(self._settings["solver"]), self._log)
+        half_both, half_cells, path = (self.answer(*each) for each in setups)
+        return self.with_errors(path, half_cells, half_both, setups[-1][0])
 
     def answer(self, setup: HistorySetup, resolution: Resolution) -> HistoryPath:
         """The response at the steps of this resolution; it states no errors yet.

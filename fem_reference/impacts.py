@@ -7,17 +7,17 @@ from functools import partial
 
 import numpy as np
 
-from contact import FlatPunch, Impact, ImpactHistory, KelvinVoigt, NotConvergedError, Viscoelasticity
+from contact import FlatPunch, Impact, ImpactHistory, KelvinVoigt, NotConvergedError, Scene, StageLog, Viscoelasticity
 from contact.answer.solution import Setting
 from contact.records.validation import FloatArray
 from contact.scene.extent import first_radius
 from contact.stated import SAFETY
 from fem_reference.equilibria import refuse_touching_at
 from fem_reference.materials import contact_modulus, shear_modulus
-from fem_reference.motions import CondensedLayer, FallingBody, Samples, simulate_impact
+from fem_reference.motions import CondensedLayer, FallingBody, HistorySetup, Resolution, Samples, simulate_impact
 from fem_reference.profiles import height
+from fem_reference.settings import Discretisation
 from fem_reference.stated import FLOOR, exact_names, relative_change
-from fem_reference.strips import HistorySetup, Resolution
 
 # Steps of a pilot in the time that contact is expected to take; more than half as many tell how long it lasts.
 PILOT_STEPS = 60
@@ -39,9 +39,15 @@ EDGE_READING = 0.1
 class ImpactSolver:
     """One impact at any resolution."""
 
-    def __init__(self, loading: Impact, settings: dict[str, Setting]) -> None:
-        self._loading, self._settings = loading, settings
+    def __init__(self, scene: Scene, loading: Impact, settings: dict[str, Setting], log: StageLog) -> None:
+        self._scene, self._loading, self._settings, self._log = scene, loading, settings, log
         self._planned: tuple[float, float] | None = None
+
+    def attempt(self, settings: Discretisation) -> ImpactHistory:
+        """The answer with its stated errors."""
+        setups = HistorySetup.resolutions(self._scene, settings, str(self._settings["solver"]), self._log)
+        half_both, half_cells, fine = (self.answer(*each) for each in setups)
+        return self.with_errors(fine, half_cells, half_both, setups[-1][0])
 
     def answer(self, setup: HistorySetup, resolution: Resolution) -> ImpactHistory:
         """From first touch to the loss of contact; it states no errors yet."""

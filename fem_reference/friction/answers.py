@@ -25,14 +25,22 @@ from contact.stated import SAFETY
 from fem_reference.contact_set import edge_radius
 from fem_reference.equilibria import FemEquilibrium
 from fem_reference.fields import FemFields
-from fem_reference.friction.growth import Growing, GrowthRecord, Point, StripMaker
-from fem_reference.friction.step import RubbedContact, RubbedState
-from fem_reference.friction.walk import followed, stick_radius
+from fem_reference.friction.growth import Growing, GrowthRecord, StripMaker
+from fem_reference.friction.step import RubbedContact, RubbedState, followed, stick_radius
 from fem_reference.materials import contact_modulus
 from fem_reference.settings import Discretisation
 
 # A strip is used for contacts down to this share of its largest.
 SERVED = 0.5
+# Names of the numbers of a state in an answer.
+QUANTITIES = {
+    "radius": "contact_radius",
+    "depth": "indentation_depth",
+    "force": "normal_force",
+    "stiffness": "contact_stiffness",
+    "stick": "stick_radius",
+    "heat": "dissipated_energy",
+}
 # Error of an edge radius read from pressures, in cells (`contact_set.EDGE_POLYNOMIAL`).
 EDGE_UNCERTAIN = 0.1
 
@@ -107,7 +115,9 @@ class RubbedFields:
         return contact.radius * contact.surface.top.evaluate(nodal, radius / contact.radius)
 
 
-def rubbed_path(scene: Scene, settings: Discretisation, written: Mapping[str, Setting], log: StageLog) -> FrictionPath:
+def rubbed_path(
+    scene: Scene, settings: Discretisation, *, written: Mapping[str, Setting], log: StageLog
+) -> FrictionPath:
     """Equilibria at prescribed radii, depths or forces, each reached from the undeformed layer by loading alone.
 
     Raises:
@@ -116,68 +126,45 @@ def rubbed_path(scene: Scene, settings: Discretisation, written: Mapping[str, Se
     values: FloatArray = scene.loading.values  # type: ignore[attr-defined]  # `Fem.supports` lets equilibria pass only
     maker = StripMaker(scene, settings, str(written["solver"]), log)
     modulus, open_steps = contact_modulus(scene.layer), set(range(len(values)))
-    points: dict[int, Point] = {}
+    name = {ContactRadii: "radius", IndentationDepths: "depth", NormalForces: "force"}[type(scene.loading)]
+    scaled = values / (modulus if name == "force" else 1.0)
+    points: dict[int, tuple[dict[str, float], dict[str, float]]] = {}
     blends: dict[int, Blend] = {}
     meshes: list[str] = []
     while open_steps:
         contacts = maker.fitted(float(max(values[step] for step in open_steps)))
         with log.stage("grow"):
             growth = GrowthRecord.of(*contacts)
-        for step, depth in _depths(scene, growth, modulus, open_steps).items():
-            fine, coarse = (Blend.at(strip, depth, modulus) for strip in (growth.fine, growth.coarse))
-            points[step], blends[step] = growth.at_depth(depth), fine
-            points[step].error.update(_traction_errors(fine, coarse) | {"base_force_defect": base_force_defect(fine)})
+        for step in _served(growth, name, scaled, open_steps):
+            numbers, errors = growth.numbers(name, scaled[step]), growth.errors(name, scaled[step])
+            fine, coarse = (Blend.at(strip, numbers["depth"], modulus) for strip in (growth.fine, growth.coarse))
+            checks = {**_traction_errors(fine, coarse), "base_force_defect": base_force_defect(fine)}
+            points[step], blends[step] = (numbers, {QUANTITIES[n]: e for n, e in errors.items()} | checks), fine
         open_steps -= set(points)
         meshes.append(contacts[0].surface.fingerprint)
-    ordered = [points[step] for step in range(len(values))]
+    found = {n: np.array([points[step][0][n] for step in range(len(values))]) for n in QUANTITIES}
     return FrictionPath(
         scene=scene,
         method="fem",
         settings={**written, "mesh": ", ".join(meshes)},
-        error_estimate=_stated(scene, ordered, settings),
+        error_estimate={n: np.array([points[step][1][n] for step in range(len(values))]) for n in points[0][1]},
         cost=log.cost(unknowns=max(blend.contact.surface.unknowns for blend in blends.values())),
         stages=log.records,
-        contact_radius=np.array([point.radius for point in ordered]),
-        indentation_depth=np.array([point.depth for point in ordered]),
-        normal_force=modulus * np.array([point.force for point in ordered]),
-        contact_stiffness=modulus * np.array([point.stiffness for point in ordered]),
-        stick_radius=np.array([point.stick_radius for point in ordered]),
-        dissipated_energy=modulus * np.array([point.heat for point in ordered]),
+        contact_radius=found["radius"],
+        indentation_depth=found["depth"],
+        normal_force=modulus * found["force"],
+        contact_stiffness=modulus * found["stiffness"],
+        stick_radius=found["stick"],
+        dissipated_energy=modulus * found["heat"],
         fields=RubbedFields(tuple(blends[step] for step in range(len(values)))),
     )
 
 
-def _depths(scene: Scene, growth: GrowthRecord, modulus: float, open_steps: set[int]) -> dict[int, float]:
-    """Depths [m] of the steps that these strips serve: the largest, and those of more than `SERVED` of its radius."""
-    kinds = {ContactRadii: "radius", IndentationDepths: "depth", NormalForces: "force"}
-    name, fine, depths = kinds[type(scene.loading)], growth.fine, {}
-    values = scene.loading.values / (modulus if name == "force" else 1.0)  # type: ignore[attr-defined]
-    largest = max(open_steps, key=lambda step: values[step])
-    for step in open_steps:
-        value = float(values[step])
-        if step == largest or np.interp(value, getattr(fine, name), fine.radius) >= SERVED * fine.radius[-1]:
-            depths[step] = value if name == "depth" else growth.depth_of(name, value)
-    return depths
-
-
-def _stated(scene: Scene, points: list[Point], settings: Discretisation) -> dict[str, FloatArray]:
-    """Relative errors; a prescribed quantity has none, and its error adds to the others."""
-    errors = {name: np.array([point.error[name] for point in points]) for name in points[0].error}
-    everywhere = settings.truncation + (1.0 / settings.half_space_thickness if scene.layer.is_half_space else 0.0)
-    depth, radius, force = (errors[name] for name in ("indentation_depth", "contact_radius", "normal_force"))
-    # dF/F = (k delta/F) d delta/delta.
-    exponent = np.array([point.stiffness * point.depth / point.force for point in points])
-    if isinstance(scene.loading, ContactRadii):
-        errors["normal_force"] = force + exponent * depth
-        errors["contact_stiffness"] = errors["contact_stiffness"] + exponent * depth
-        errors["contact_radius"] = np.zeros_like(radius)
-    elif isinstance(scene.loading, IndentationDepths):
-        errors["indentation_depth"] = np.zeros_like(depth)
-    else:
-        errors["indentation_depth"] = force / exponent
-        errors["normal_force"] = np.zeros_like(force)
-    prescribed = {name for name, error in errors.items() if not error.any()} | {"base_force_defect"}
-    return {name: error + (0.0 if name in prescribed else everywhere) for name, error in errors.items()}
+def _served(growth: GrowthRecord, name: str, values: FloatArray, open_steps: set[int]) -> list[int]:
+    """Steps that these strips serve: the largest, and those of more than `SERVED` of its radius."""
+    fine, largest = growth.fine, max(open_steps, key=lambda step: float(values[step]))
+    radii = np.interp(values, getattr(fine, name), fine.radius)
+    return [step for step in open_steps if step == largest or radii[step] >= SERVED * fine.radius[-1]]
 
 
 def _traction_errors(fine: Blend, coarse: Blend) -> dict[str, float]:
@@ -201,7 +188,7 @@ def base_force_defect(blend: Blend) -> float:
 
 
 def rubbed_history(
-    scene: Scene, settings: Discretisation, written: Mapping[str, Setting], log: StageLog
+    scene: Scene, settings: Discretisation, *, written: Mapping[str, Setting], log: StageLog
 ) -> FrictionHistory:
     """A history at its own instants, from the undeformed layer; Coulomb friction does not depend on the rate.
 

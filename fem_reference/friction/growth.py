@@ -18,11 +18,11 @@ from contact import Friction, IndentationDepths, InvalidInput, NormalForces, Not
 from contact.records.validation import FloatArray
 from contact.scene.extent import first_radius
 from contact.stated import SAFETY
-from fem_reference.friction.step import RubbedContact, RubbedState
-from fem_reference.friction.walk import grown, stick_radius
+from fem_reference.friction.step import RubbedContact, RubbedState, grown, stick_radius
 from fem_reference.materials import contact_modulus
 from fem_reference.profiles import height, shape
 from fem_reference.settings import Discretisation
+from fem_reference.stated import LEAST_SHARE
 from fem_reference.surface import RUBBED_STRIDE, STRIP_CELLS, condense, strip_section
 
 # Share of its strip that the largest contact fills: a few nodes beyond it are needed to follow its growth.
@@ -50,8 +50,6 @@ HEAT_ORDER = 1.5
 FEWEST_STUCK = 8
 # Error of an extrapolated stick radius, in cells.
 STICK_UNCERTAIN = 0.2
-# Depths, relative to the one of interest, over which the largest change is stated: at one depth it may vanish.
-NEARBY = (0.7, 0.85, 1.0)
 
 
 @dataclass(frozen=True)
@@ -209,19 +207,6 @@ class Growing:
 
 
 @dataclass(frozen=True)
-class Point:
-    """Numbers of one depth; lengths [m], forces over E*, with relative errors by the names of a contact path."""
-
-    depth: float
-    radius: float
-    force: float
-    stiffness: float
-    stick_radius: float
-    heat: float
-    error: dict[str, float]
-
-
-@dataclass(frozen=True)
 class GrowthRecord:
     """The contact on two strips."""
 
@@ -233,55 +218,72 @@ class GrowthRecord:
         """Let it grow on each."""
         return cls(Growing(fine, grown(fine)), Growing(coarse, grown(coarse)))
 
-    def at_depth(self, depth: float) -> Point:
-        """All numbers at one depth [m]."""
-        (force, force_error), (stiffness, stiffness_error), (radius, radius_error) = (
-            self._extrapolated(name, depth) for name in ("force", "stiffness", "radius")
-        )
-        heat, heat_error = self._extrapolated("heat", depth, HEAT_ORDER)
-        cell = self.fine.contact.radius * float(self.fine.contact.surface.radii[1]) / radius
-        radius_error = radius_error / radius + self.fine.edge_error * cell
-        stick, stick_error = self._stick(depth, cell)
-        exponent = self.fine.local(np.log(self.fine.radius), depth)[1]
-        error = {
-            "contact_radius": radius_error,
-            "indentation_depth": radius_error / exponent,
-            "normal_force": force_error / force,
-            "contact_stiffness": stiffness_error / stiffness,
-            "stick_radius": radius_error + stick_error,
-            "dissipated_energy": heat_error,
-        }
-        return Point(depth, radius, force, stiffness, stick * radius, heat * force * depth, error)
+    def numbers(self, name: str, value: float, *, extrapolated: bool = True) -> dict[str, float]:
+        """Radius, depth [m], force/E* [m^2], stiffness/E* [m], stick radius [m] and heat/E* [m^3] in one state.
 
-    def depth_of(self, name: str, value: float) -> float:
+        Args:
+            name: "radius", "depth" or "force", which is prescribed.
+            value: of that quantity.
+            extrapolated: whether the cells' leading error is subtracted, else the finer strip answers.
+        """
+        depth = value if name == "depth" else self._depth_of(name, value, extrapolated)
+        found = {each: self._at(each, depth, extrapolated) for each in ("radius", "force", "stiffness", "heat")}
+        heat, stick = found["heat"] * found["force"] * depth, self._stick(depth, found["radius"], extrapolated)
+        return found | {"depth": depth, "stick": stick * found["radius"], "heat": heat} | {name: value}
+
+    def _depth_of(self, name: str, value: float, extrapolated: bool) -> float:
         """The depth [m] at which radius [m] or force/E* [m^2] has a value."""
 
         def missing(log_depth: float) -> float:
             """Relative difference from the value at a depth."""
-            return self._extrapolated(name, math.exp(log_depth))[0] / value - 1.0
+            return self._at(name, math.exp(log_depth), extrapolated) / value - 1.0
 
         reached = np.log(self.fine.depth)
         return float(np.exp(brentq(missing, reached[0], reached[-1] + 0.1, xtol=1e-14)))
 
-    def _stick(self, depth: float, cell: float) -> tuple[float, float]:
-        """Stick radius over a, with its error; ``cell`` is the finer strip's over a.
+    def _at(self, name: str, depth: float, extrapolated: bool) -> float:
+        """A quantity at a depth, ``F_h + (F_h - F_2h) / (2^p - 1)``, or on the finer strip."""
+        fine, order = self.fine.at(name, depth), HEAT_ORDER if name == "heat" else 2.0
+        change = fine - self.coarse.at(name, depth) if extrapolated else 0.0
+        return fine + change / float(2.0**order - 1.0)
 
-        With too few nodes that stick, or that slide, its end is known to a cell.
-        """
+    def _stick(self, depth: float, radius: float, extrapolated: bool) -> float:
+        """Stick radius over a. With too few nodes that stick, or that slide, that of the finer strip."""
         fine, coarse = (float(np.interp(depth, strip.depth, strip.stick)) for strip in (self.fine, self.coarse))
         if min(fine, coarse) == 1.0:
-            return 1.0, 0.0
-        if min(fine, 1.0 - fine) < FEWEST_STUCK * cell:
-            return fine, abs(fine - coarse) + cell
-        stick, error = self._extrapolated("stick", depth)
-        return min(stick, 1.0), error + STICK_UNCERTAIN * cell
+            return 1.0
+        few = min(fine, 1.0 - fine) < FEWEST_STUCK * self.cell / radius
+        if few:
+            return fine if extrapolated else coarse
+        return min(self._at("stick", depth, extrapolated), 1.0)
 
-    def _extrapolated(self, name: str, depth: float, order: float = 2.0) -> tuple[float, float]:
-        """Value to the next order, and its error from the largest change against the finer strip nearby."""
-        fine, coarse = (
-            np.array([strip.at(name, share * depth) for share in NEARBY]) for strip in (self.fine, self.coarse)
-        )
-        change = (fine - coarse) / (2.0**order - 1.0)
-        relative = np.abs(change / fine) if name not in ("heat", "stick") else np.abs(change)
-        scale = abs(float(fine[-1])) if name not in ("heat", "stick") else 1.0
-        return float(fine[-1] + change[-1]), SAFETY * float(relative.max()) * scale
+    @property
+    def cell(self) -> float:
+        """Cell of the finer strip [m]."""
+        return self.fine.contact.radius * float(self.fine.contact.surface.radii[1])
+
+    def errors(self, name: str, value: float) -> dict[str, float]:
+        """Relative errors of `numbers`: changes against the finer strip, and what is read from its cells.
+
+        One change may vanish by accident: each is at least a share of the largest.
+        """
+        found, other = self.numbers(name, value), self.numbers(name, value, extrapolated=False)
+        change = {each: abs(other[each] / v - 1.0) if v else 0.0 for each, v in found.items() if each != name}
+        least = LEAST_SHARE * max(change[each] for each in change if each not in ("heat", "stick", "radius"))
+        cell = self.cell / found["radius"]
+        error = {each: SAFETY * max(moved, least) for each, moved in change.items()} | {name: 0.0}
+        # The edge may slide or stick within a cell, and dF/F = (k delta/F) d delta/delta.
+        exponent = found["stiffness"] * found["depth"] / found["force"]
+        edge = self.fine.edge_error * cell
+        if name == "radius":
+            depth = edge / self.fine.local(np.log(self.fine.radius), found["depth"])[1]
+            for each, power in (("depth", 1.0), ("force", exponent), ("stiffness", exponent)):
+                error[each] += power * depth
+        else:
+            error["radius"] += edge
+        if found["stick"] < found["radius"]:
+            near = min(found["stick"], found["radius"] - found["stick"]) < FEWEST_STUCK * self.cell
+            error["stick"] += edge + (1.0 if near else STICK_UNCERTAIN) * self.cell / max(found["stick"], self.cell)
+        else:
+            error["stick"] = error["radius"]
+        return error

@@ -26,7 +26,7 @@ from contact import (
     UnsupportedSceneError,
 )
 from fem_reference import Fem
-from fem_reference.friction import growth, step, walk
+from fem_reference.friction import growth, step
 from mdr import Mdr
 from mdr.friction.statement import friction_effect
 
@@ -96,7 +96,7 @@ def slope_on_strips(nu, support, depth):
         contact, logs = maker.contact(radius / 0.85, cells), []
         for mu in (0.0, 0.005, 0.01):
             rubbing = _with_coefficient(contact, mu)
-            strip = growth.Growing(rubbing, walk.grown(rubbing))
+            strip = growth.Growing(rubbing, step.grown(rubbing))
             logs.append(strip.local(np.log(strip.force), depth)[0])
         slopes = np.expm1(np.array(logs[1:]) - logs[0]) / [0.005, 0.01]
         found.append(float(2.0 * slopes[0] - slopes[1]))
@@ -221,7 +221,7 @@ def followed_strip(cells):
     scene = rubbed(0.2, layer(0.5), ContactRadii([2.0]))
     maker = growth.StripMaker(scene, Fem().discretisation, "superlu", growth.StageLog())
     contact = maker.contact(2.0, cells)
-    return contact, walk.followed(contact, [0.04, 0.02, 0.04, 0.01], by_depth=True)
+    return contact, step.followed(contact, [0.04, 0.02, 0.04, 0.01], by_depth=True)
 
 
 def test_work_is_stored_or_dissipated_with_second_order_in_the_cells():
@@ -240,7 +240,7 @@ def test_forces_converge_with_second_order_in_the_cells():
     scene = rubbed(0.3, layer(0.5), ContactRadii([2.0]))
     maker = growth.StripMaker(scene, Fem().discretisation, "superlu", growth.StageLog())
     contacts = [maker.contact(2.0, cells) for cells in (20, 40, 80)]
-    grown = [growth.Growing(contact, walk.grown(contact)) for contact in contacts]
+    grown = [growth.Growing(contact, step.grown(contact)) for contact in contacts]
     logs = [strip.local(np.log(strip.force), 0.06)[0] for strip in grown]
     assert math.log2((logs[1] - logs[0]) / (logs[2] - logs[1])) == pytest.approx(2.0, rel=0.0, abs=0.5)
     assert abs(logs[2] - logs[1]) < 2e-3
@@ -256,7 +256,7 @@ def test_forces_under_stick_converge_to_those_of_mdr_with_second_order(support):
     errors = []
     for cells in (40, 80):
         contact = maker.contact(5.0 / 0.9, cells)
-        strip = growth.Growing(contact, walk.grown(contact))
+        strip = growth.Growing(contact, step.grown(contact))
         errors.append(strip.local(np.log(strip.force), depth)[0] - math.log(force))
     assert math.log2(errors[0] / errors[1]) == pytest.approx(2.0, rel=0.0, abs=0.1)
     assert (4.0 * errors[1] - errors[0]) / 3.0 == pytest.approx(0.0, rel=0.0, abs=2e-5)

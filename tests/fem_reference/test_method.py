@@ -17,7 +17,7 @@ from contact import (
     Scene,
     TruncatedCone,
 )
-from fem_reference import Fem, adaptive, prescribed_contact
+from fem_reference import Fem, prescribed_contact, stated
 from tests.fem_reference.integral_equation import solve_contact, truncated_cone
 
 THICKNESS, MODULUS, SLOPE = 1e-3, 1e6, 0.1
@@ -100,7 +100,7 @@ def test_an_accuracy_of_the_pressure_is_asked_by_its_own_name():
 
 
 def test_an_accuracy_out_of_reach_names_the_quantity(monkeypatch):
-    monkeypatch.setattr(adaptive, "ATTEMPTS", 1)
+    monkeypatch.setattr(stated, "ATTEMPTS", 1)
     with pytest.raises(NotConvergedError, match=r"accuracy 1e-06 of the pressure was not reached"):
         Fem(accuracy=1e-2, pressure_accuracy=1e-6).solve(cone_scene(1))
 

@@ -22,12 +22,11 @@ from contact import (
     StandardSolid,
 )
 from fem_reference import Fem
-from fem_reference.adaptive import solve_to_accuracy
 from fem_reference.impacts import peak
 from fem_reference.materials import ShearRelaxation
 from fem_reference.memory import Top, proportional_modes
-from fem_reference.motions import MAX_STEPS, CondensedLayer, FallingBody, simulate_impact
-from fem_reference.strips import HistorySetup
+from fem_reference.motions import MAX_STEPS, CondensedLayer, FallingBody, HistorySetup, simulate_impact
+from fem_reference.stated import solve_to_accuracy
 
 QUICK = Fem(growth=1.0, edge_cell=1e-6, truncation=1e-7)
 G1 = 7.5e6

@@ -422,9 +422,8 @@ def seen_at_the_end(patch):
     """A touch or release that is over before the end of a step goes unseen."""
     from mdr.history import spring_bed
 
-    def wrong(course, span):
-        at_the_end = course.terms(np.arange(span.size), span)[0].sum(axis=0)
-        return np.where(at_the_end < 0, span, np.inf)
+    def wrong(course):
+        return np.where(course.values(np.ones((1, 1)))[0] < 0, 1.0, np.inf)
 
     patch.setattr(spring_bed, "first_fall", wrong)
 

@@ -14,7 +14,7 @@ from cases.results.status import Status
 from cases.run.solve_task import solve
 from contact import NotConvergedError, UnsupportedSceneError
 from fem_reference import Fem
-from fem_reference.friction import step, walk
+from fem_reference.friction import step
 from mdr import inside
 from mdr.friction.growth import punches_of
 from mdr.friction.statement import _slip
@@ -72,13 +72,13 @@ def test_heat_given_back(monkeypatch):
 
 def test_new_points_forget_that_they_slid_on_the_way(monkeypatch):
     """The displacement of points ahead of the contact is not remembered when they touch."""
-    right = walk.advance
+    right = step.advance
 
     def wrong(contact, before, active, control):
         ahead = np.arange(len(before.radial)) >= before.active
         return right(contact, dataclasses.replace(before, radial=np.where(ahead, 0.0, before.radial)), active, control)
 
-    monkeypatch.setattr(walk, "advance", wrong)
+    monkeypatch.setattr(step, "advance", wrong)
     with pytest.raises(CAUGHT):
         friction.test_full_stick_is_that_of_mdr(0.0, "bonded", 1.0, friction.PARABOLOID)
 
