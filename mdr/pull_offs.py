@@ -57,8 +57,8 @@ class PullOffTable:
     def lowest(self, softness: FloatArray, *, by_depth: FloatArray) -> FloatArray:
         """The y of each scene's lowest depth or force, shape (n,)."""
         y = self.end * np.linspace(0.0, 1.0, _SURVEY + 1)[1:]
-        both = [self.depth_and_force(y, one) for one in softness]
-        best = np.array([np.argmin(pair[0 if d else 1]) for pair, d in zip(both, by_depth, strict=True)])
+        depth, force = self.depth_and_force(y, softness[:, None])
+        best = np.where(by_depth[:, None], depth, force).argmin(axis=1)
         low, high = y[np.maximum(best - 1, 0)], y[np.minimum(best + 1, _SURVEY - 1)]
         for _ in range(_BISECTIONS):
             middle = 0.5 * (low + high)

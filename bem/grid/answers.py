@@ -154,7 +154,8 @@ class GridSolver:
             "normal_force": self._stated(force, other_force, floor, path=True),
         }
         for name, value in scalars.items():
-            errors[name] = self._stated(np.array([value]), np.array([others[name]]), floor[:1])
+            # Two grids share more of a pull-off, whose place they share as well.
+            errors[name] = self._stated(np.array([value]), np.array([others[name]]), SAFETY * floor[:1])
         if scalars["pull_off_contact_radius"] == others["pull_off_contact_radius"] == self.scene.indenter.flat_radius:
             errors["pull_off_contact_radius"] = np.array([HALF_SPACE_FLOOR])
         self._refuse_touching(pair[0], radius, errors)

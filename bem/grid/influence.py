@@ -82,6 +82,7 @@ def point_response(kernel: SurfaceKernel) -> PointResponse:
     return PointResponse(CubicSpline(np.log(rho), values), limit, logarithm)
 
 
+@lru_cache(maxsize=8)
 def rectangle_influence(offsets: int) -> FloatArray:
     """Half-space: displacement at cell offset (i, j), 0 <= i, j <= offsets, by a unit pressure on a unit cell.
 
@@ -100,7 +101,7 @@ def layer_influence(offsets: int, layer: ElasticLayer, cell_size: float) -> Floa
         return influence
     thickness = layer.surface.thickness / cell_size
     response = point_response(surface_kernel(layer))
-    influence += _cell_means(response, offsets, thickness) / (pi * thickness)
+    influence = influence + _cell_means(response, offsets, thickness) / (pi * thickness)
     if not layer.has_elastic_base:
         cells = np.arange(offsets + 1)
         influence[np.hypot(cells[:, None], cells) > REACH * thickness + 1.0] = 0.0

@@ -117,5 +117,4 @@ def pressed(
         q = np.where(contact, operator.displacement(v), 0.0)
         step = product / float(np.vdot(v, q))
         p, r = p + step * v, r - step * q
-    message = f"no pressure on the cells to {tolerance:.0e} in {MOST_STEPS} steps; take a larger tolerance"
-    raise NotConvergedError(message, {"residual": residual})
+    raise NotConvergedError(f"no pressure on cells to {tolerance:.0e} in {MOST_STEPS} steps", {"residual": residual})
