@@ -231,7 +231,7 @@ def _depth_of_force(
     for _ in range(60):
         state = solve_complementarity(matrix, depth * w - gap)
         defect = force - float(w @ state.pressure)
-        # A force far below the layer's own stresses is known to the rounding of its depth only.
+        # A force far below the layer's own stresses has the rounding of its depth.
         if abs(defect) <= 1e-10 * force or abs(change) <= 1e-14 * abs(depth):
             return state, depth
         act = state.active if state.active.any() else gap / w <= depth + 1e-12
