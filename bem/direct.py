@@ -296,10 +296,12 @@ class Density:
 
     def pressure(self, r: FloatArray, depth: float, *, is_singular: bool) -> FloatArray:
         """pi p(r)/E* = phi(a)/sqrt(a^2 - r^2) - int_r^a phi'(t)/sqrt(t^2 - r^2) dt at r < a [m], Eq. (9)."""
-        grid, edge = self.panels, self.edge @ [depth, -1.0] if is_singular else 0.0
+        grid = self.panels
         slope = 2 * legder(grid.series(self.phi @ [depth, -1.0])) / (grid.high - grid.low)  # d phi/ds
         smooth = grid.abel(slope, np.maximum(r, _AXIS * self.a), self.kernel.sizes.slopes, beyond=True)
-        return np.asarray(edge / np.sqrt((self.a - r) * (self.a + r)) - smooth)
+        if not is_singular:
+            return -smooth
+        return np.asarray(self.edge @ [depth, -1.0] / np.sqrt((self.a - r) * (self.a + r)) - smooth)
 
     def displacement(self, r: FloatArray, depth: float) -> FloatArray:
         """w(r) = (2/pi) int_0^r W(t)/sqrt(r^2 - t^2) dt at r > a [m], W = depth - g_hs inside, -psi outside."""

@@ -17,12 +17,12 @@ from scipy.optimize import toms748
 from bem.direct import Density, Kernel, Sizes
 from bem.kernels.moduli import contact_modulus
 from bem.numerics import EPS, gauss
+from contact import ContactPath
 from contact.answer.method import Supported, Unsupported
 from contact.answer.no_contact import without_contact
 from contact.answer.one_circle import never_touches_beside, no_single_circle, refuse_touching_path
 from contact.answer.one_thread import one_thread
 from contact.answer.small_strains import within_small_strains
-from contact.answer.solution import ContactPath
 from contact.answer.stages import StageLog
 from contact.records.errors import InvalidInput, UnsupportedSceneError
 from contact.records.record import Record, record
@@ -253,7 +253,8 @@ class DirectFields(NamedTuple):
         """w(r) [m]: depth - f(r) inside, Eq. (13) outside."""
         (a, depth), outside = self.contacts[step].state[:2], radius > self.contacts[step].state[0]
         w = np.asarray(depth - self.solver.scene.indenter.height(np.minimum(radius, a)))
-        w[outside] = self.contacts[step].density.displacement(radius[outside], depth)
+        if outside.any():
+            w[outside] = self.contacts[step].density.displacement(radius[outside], depth)
         return w
 
 

@@ -45,11 +45,6 @@ CLOSE: Final = 12
 MOST_POINTS: Final = 4.0
 
 
-def kernel_of(layer: ElasticLayer) -> SurfaceKernel:
-    """The kernel of a layer that is no half-space: chi and 1 - chi over q = k h, h the surface material's thickness."""
-    return surface_kernel(layer)
-
-
 @dataclass(frozen=True, eq=False)
 class PointResponse:
     """V(rho) of one layer, rho = r/h.
@@ -102,7 +97,7 @@ def layer_influence(offsets: int, layer: ElasticLayer, cell_size: float) -> Floa
     if layer.is_half_space:
         return influence
     thickness = layer.surface.thickness / cell_size
-    response = point_response(kernel_of(layer))
+    response = point_response(surface_kernel(layer))
     influence += _cell_means(response, offsets, thickness) / (pi * thickness)
     if not layer.has_elastic_base:
         cells = np.arange(offsets + 1)
@@ -135,7 +130,7 @@ def layer_symbol(wavenumber: FloatArray, layer: ElasticLayer, cell_size: float) 
     k = np.where(wavenumber == 0.0, 1.0, wavenumber)
     if layer.is_half_space:
         return np.where(wavenumber == 0.0, 0.0, 2.0 / k)
-    h, kernel = layer.surface.thickness / cell_size, kernel_of(layer)
+    h, kernel = layer.surface.thickness / cell_size, surface_kernel(layer)
     zero = 0.0 if layer.has_elastic_base else 2.0 * h * kernel.zero_mode
     values, place = np.unique(k, return_inverse=True)
     grid = np.geomspace(values[0], values[-1] * (1.0 + 1e-12), min(SAMPLES, values.size) + 4)

@@ -34,7 +34,7 @@ from bem.numerics import Octaves, barycentric
 from contact.records.errors import NotConvergedError
 from contact.records.validation import FloatArray
 from contact.scene.graded_layer import GradedLayer
-from contact.scene.layer_stack import ElasticBase
+from contact.scene.layer import ElasticBase
 
 # Depth times |k| below which nothing is felt: exp(-2 DEEP cos(15 degrees)) is 1e-17, with half of it 1e-9.
 DEEP = 21.0

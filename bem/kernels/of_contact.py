@@ -17,7 +17,7 @@ from bem.kernels.protocol import SurfaceKernel
 from bem.kernels.stack import StackKernel
 from bem.numerics import Octaves
 from contact.records.validation import FloatArray
-from contact.scene.elastic_layer import ElasticLayer
+from contact.scene.layer import ElasticLayer
 
 # Units per thickness of a graded layer. With 4 wide contacts need more wave numbers, with 16 narrow ones do.
 _GRADED_UNITS = 8.0
@@ -118,7 +118,7 @@ def contact_kernel(layer: ElasticLayer) -> ContactKernel:
     if layer.is_half_space:
         return ContactKernel(None)
     # Poisson's ratio has no influence on one layer without bond.
-    slides = layer.is_uniform and layer.support == "unbonded"  # type: ignore[attr-defined]
+    slides = layer.is_uniform and layer.support == "unbonded"
     return _kernel(StackKernel.single("unbonded", 0.0) if slides else surface_kernel(layer))
 
 

@@ -13,10 +13,8 @@ from bem.kernels.protocol import SurfaceKernel
 from bem.kernels.stack import Sheet, StackKernel
 from contact.records.errors import UnsupportedSceneError
 from contact.records.record import Record
-from contact.scene.elastic_layer import ElasticLayer
 from contact.scene.graded_layer import GradedLayer
-from contact.scene.layer import Layer
-from contact.scene.layer_stack import ElasticBase, LayerStack
+from contact.scene.layer import ElasticBase, ElasticLayer, Layer, LayerStack
 
 if TYPE_CHECKING:
     from bem.kernels.graded import GradedKernel

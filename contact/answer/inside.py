@@ -14,7 +14,7 @@ from contact.answer.one_thread import one_thread
 from contact.records.errors import InvalidInput
 from contact.records.validation import FloatArray
 from contact.scene.effects import Adhesion
-from contact.scene.layer_stack import LayerStack
+from contact.scene.layer import LayerStack
 from contact.scene.profiles import FlatPunch
 from contact.scene.scene import Scene
 

@@ -20,7 +20,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from contact.answer.solution import ContactPath
+from contact.answer.paths import ContactPath
 from contact.records.errors import UnsupportedSceneError
 from contact.records.validation import FloatArray
 from contact.scene.profiles import Profile

@@ -43,8 +43,12 @@ def detached(layer, indenter, control, points=96):
 
 
 @ALL_LAYERS
-@pytest.mark.parametrize("control", ["displacement", "force"])
-@pytest.mark.parametrize("indenter", [SPHERE, PUNCH, CONE, Cone(slope=0.1)], ids=lambda i: type(i).__name__)
+@pytest.mark.parametrize("control", ["displacement", pytest.param("force", marks=pytest.mark.slow)])
+@pytest.mark.parametrize(
+    "indenter",
+    [SPHERE, PUNCH, *(pytest.param(tip, marks=pytest.mark.slow) for tip in (CONE, Cone(slope=0.1)))],
+    ids=lambda i: type(i).__name__,
+)
 def test_stated_errors_of_pull_off_cover_the_difference_to_mdr(layer, indenter, control):
     exact = Mdr().solve(scene(layer, indenter, Detachment(control=control)))
     path = detached(layer, indenter, control)
@@ -230,7 +234,9 @@ def test_measured_profiles_on_layers_pull_off_within_their_stated_errors():
         assert abs(getattr(cells, name) / getattr(exact, name) - 1) <= cells.error_estimate[name][0], name
 
 
-@pytest.mark.parametrize(("kink", "work"), [(0.4, np.exp(-8.5)), (0.8, np.exp(-6.0))])
+@pytest.mark.parametrize(
+    ("kink", "work"), [(0.4, np.exp(-8.5)), pytest.param(0.8, np.exp(-6.0), marks=pytest.mark.slow)]
+)
 def test_pull_off_near_a_kink_of_a_measured_profile_is_sharp(kink, work):
     """Within 0.3 % of it, against MDR. Dividing by the half-space's answer, which has the kinks: 2e-3 and 2e-2 off."""
     indenter = Tabulated(radii=[0.0, 0.2, 0.4, 0.6, 0.8, 1.0], heights=[0.0, 0.002, 0.009, 0.021, 0.038, 0.062])

@@ -20,11 +20,11 @@ from contact import (
     NormalForces,
     Paraboloid,
     Scene,
+    Solution,
     Sphere,
     TruncatedCone,
     UnsupportedSceneError,
 )
-from contact.files.storage import load_solution, save_solution
 from fem_reference import Fem
 from fem_reference.friction import growth, step
 from mdr import Mdr
@@ -268,8 +268,8 @@ def touching_then_pressed():
 
 
 def test_an_answer_with_friction_is_stored_and_read(tmp_path, touching_then_pressed):
-    save_solution(tmp_path / "path.h5", touching_then_pressed)
-    again = load_solution(tmp_path / "path.h5")
+    touching_then_pressed.save(tmp_path / "path.h5")
+    again = Solution.load(tmp_path / "path.h5")
     assert isinstance(again, FrictionPath)
     assert again.stick_radius[1] == touching_then_pressed.stick_radius[1] > 0.0
 

@@ -17,7 +17,7 @@ from contact import (
     Scene,
     TruncatedCone,
 )
-from fem_reference import Fem, prescribed_contact
+from fem_reference import Fem, prescribed_contact, stated
 from tests.fem_reference.integral_equation import solve_contact, truncated_cone
 
 THICKNESS, MODULUS, SLOPE = 1e-3, 1e6, 0.1

@@ -29,8 +29,8 @@ from contact import (
     TruncatedParaboloid,
     UnsupportedSceneError,
 )
-from contact.scene.depth_functions import DEPTH_FUNCTIONS
 from contact.scene.effects import EFFECTS, Viscoelasticity
+from contact.scene.graded_layer import DEPTH_FUNCTIONS
 from contact.scene.profiles import PROFILES
 from fem_reference import Fem
 from fem_reference.materials import at_depths, relaxation_of
