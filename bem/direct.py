@@ -250,16 +250,11 @@ class Density:
         return np.column_stack([np.ones(excess.size), transform(self.profile, excess, self.kernel.sizes.slopes)])
 
     def _solved(self) -> FloatArray:
-        """phi at the nodes: by a matrix of nodes or, where these are fewer, of wave numbers.
-
-        (1 - P Q)^-1 = 1 + P (1 - Q P)^-1 Q, P of nodes times wave numbers.
-        """
+        """phi at the nodes."""
         k, weight = self.kernel.waves(2 * self.a)
-        Q = np.cos(np.multiply.outer(k, self.t)) * self.w
-        P = (Q / self.w).T * weight
-        if k.size < self.t.size and not self.kernel.is_graded:
-            return np.asarray(self.load + P @ np.linalg.solve(np.eye(k.size) - Q @ P, Q @ self.load))
-        return np.asarray(np.linalg.solve(np.eye(self.t.size) - P @ Q - self._tail(self.t), self.load))
+        waves = np.cos(np.multiply.outer(k, self.t))
+        matrix = (waves.T * weight) @ (waves * self.w) + self._tail(self.t)
+        return np.asarray(np.linalg.solve(np.eye(self.t.size) - matrix, self.load))
 
     def psi(self, x: FloatArray) -> FloatArray:
         """int_0^a L(x, t) phi(t) dt at x >= 0 [m], also outside the contact, shape (x.size, 2)."""

@@ -280,12 +280,13 @@ class RadiusSearch:
         for number in range(_MOST_STEPS):
             f = self.logarithm(self.springs, quantity, new) - y
             worst = float(np.abs(f).max(initial=0.0))
-            if worst < 16 * EPS or (worst < 1e-12 and worst > 0.5 * missed):
-                break
             if number > 0:
                 with np.errstate(all="ignore"):
                     secant = np.nan_to_num((f - f_old) / (new - old), nan=1.0)
                 slope = np.where(np.abs(new - old) > 1e-8, np.clip(secant, least, most), slope)
-            missed, old, f_old, new = worst, new, f, new - f / slope
+            old, f_old, new = new, f, new - f / slope
+            if worst < 16 * EPS or (worst < 1e-12 and worst > 0.5 * missed):
+                break
+            missed = worst
         found = self.place(new)  # what doubles cannot tell from the flat end is put there
         return np.where(found - tip.flat < 8 * EPS * tip.flat, tip.flat, found)

@@ -161,7 +161,7 @@ def largest_radius(scene: Scene, pressing: Pressing) -> float:
     return indenter.max_radius
 
 
-def followed(of: AdheringIndenter, values: FloatArray) -> FloatArray:
+def followed(contacts: AdheringIndenter, values: FloatArray) -> FloatArray:
     """Radii [m] at prescribed depths [m] or forces [N] in their order, from out of contact; zero without contact.
 
     Adhesion of this type has no reach: an approaching indenter snaps in as it touches, at zero depth, to the smallest
@@ -171,22 +171,22 @@ def followed(of: AdheringIndenter, values: FloatArray) -> FloatArray:
     Raises:
         InvalidInput: If a force pulls that no contact can carry, or the contact outgrows the indenter.
     """
-    places, y, quantity = [], 0.0, prescribed_quantity(of.scene.loading)
-    stable = of.branch.solutions(quantity, values).T
+    places, y, quantity = [], 0.0, prescribed_quantity(contacts.scene.loading)
+    stable = contacts.branch.solutions(quantity, values).T
     for entry, value in enumerate(values.tolist()):
-        y = _next_place(of, quantity, value, stable[entry][np.isfinite(stable[entry])], y)
+        y = _next_place(contacts, quantity, value, stable[entry][np.isfinite(stable[entry])], y)
         if y == 0.0 and quantity == FORCE:
             raise InvalidInput(
                 f"loading.values = {value:g} (entry {entry}): no contact carries this tension; "
                 "press first, and pull less than the pull-off force"
             )
         places.append(y)
-    return of.branch.radius(np.array(places))
+    return contacts.branch.radius(np.array(places))
 
 
-def _next_place(of: AdheringIndenter, quantity: int, value: float, stable: FloatArray, y: float) -> float:
+def _next_place(contacts: AdheringIndenter, quantity: int, value: float, stable: FloatArray, y: float) -> float:
     """y of the branch where the edge goes next, from y, of the stable equilibria at the prescribed value."""
-    indenter, branch = of.scene.indenter, of.branch
+    indenter, branch = contacts.scene.indenter, contacts.branch
     if y == 0.0:
         if value < 0.0:
             return 0.0
@@ -196,12 +196,13 @@ def _next_place(of: AdheringIndenter, quantity: int, value: float, stable: Float
         return float(stable[stable <= y].max(initial=0.0))
     wider = stable[stable >= y]
     if not wider.size and not isinstance(indenter, FlatPunch):
-        raise InvalidInput(f"loading.values = {value:g}: the contact reaches the end of the indenter at {of.end:g} m")
+        end = contacts.end
+        raise InvalidInput(f"loading.values = {value:g}: the contact reaches the end of the indenter at {end:g} m")
     return float(wider.min(initial=branch.end))
 
 
-def start_of_withdrawal(of: AdheringIndenter) -> float:
+def start_of_withdrawal(contacts: AdheringIndenter) -> float:
     """Radius [m] as given, at the punch's edge, or pressed as hard as the contact can pull."""
-    if of.scene.loading.initial_contact_radius is not None or isinstance(of.scene.indenter, FlatPunch):  # type: ignore[attr-defined]
-        return of.end
-    return of.branch.widest(FORCE, of.branch.strength)
+    if contacts.scene.loading.initial_contact_radius is not None or isinstance(contacts.scene.indenter, FlatPunch):  # type: ignore[attr-defined]
+        return contacts.end
+    return contacts.branch.widest(FORCE, contacts.branch.strength)

@@ -112,23 +112,23 @@ class GridSolver:
 
     def adhering(self) -> ContactPath:
         """Contacts with adhesion at prescribed radii, or depths or forces in their order."""
-        found, other = (self._followed(of) for of in self._branches())
+        found, other = (self._followed(contacts) for contacts in self._branches())
         return self._path(list(zip(found, other, strict=True)), adheres=True)
 
-    def _followed(self, of: AdheringIndenter) -> list[_Fields]:
+    def _followed(self, contacts: AdheringIndenter) -> list[_Fields]:
         """What is prescribed is inserted as it is: a flat punch may be held below its fold."""
         loading = self.scene.loading
         values = np.array(loading.values)  # type: ignore[attr-defined]
-        radius = values if isinstance(loading, ContactRadii) else followed(of, values)
+        radius = values if isinstance(loading, ContactRadii) else followed(contacts, values)
         found = []
         for a, value in zip(radius.tolist(), values.tolist(), strict=True):
-            state = of.at(a)
+            state = contacts.at(a)
             if isinstance(loading, IndentationDepths):
                 state = state._replace(depth=value)
             elif isinstance(loading, NormalForces):
                 load = value / contact_modulus(self.scene.layer)
                 state = state._replace(depth=(load + state.moment) / state.stiffness)
-            found.append(self._adhering(of.pressing, state))
+            found.append(self._adhering(contacts.pressing, state))
         return found
 
     def _adhering(self, pressing: Pressing, state: PressedState) -> _Fields:
@@ -145,9 +145,9 @@ class GridSolver:
         assert isinstance(loading, Detachment)
         start, control = start_of_withdrawal(pair[0]), CONTROLS.index(loading.controlled)
         radius = np.asarray(start * np.linspace(1.0, 0.0, STATES, endpoint=False) ** 2, dtype=np.float64)
-        (depth, force), (other_depth, other_force) = (of.equilibria(radius) for of in pair)
-        places = [float(of.branch.position(np.array([start]))[0]) for of in pair]
-        scalars, others = (of.branch.pull_off(control, y) for of, y in zip(pair, places, strict=True))
+        (depth, force), (other_depth, other_force) = (contacts.equilibria(radius) for contacts in pair)
+        places = [float(contacts.branch.position(np.array([start]))[0]) for contacts in pair]
+        scalars, others = (one.branch.pull_off(control, y) for one, y in zip(pair, places, strict=True))
         floor = self._floor(radius)
         errors = {
             "indentation_depth": self._stated(depth, other_depth, floor, path=True),
@@ -233,13 +233,13 @@ class GridSolver:
         """Of depth and force at contact radii [m]."""
         return self._least + shared_error(self.pressing.cells, radius / self.scene.layer.surface.thickness)
 
-    def _refuse_touching(self, of: AdheringIndenter, radius: FloatArray, errors: dict[str, FloatArray]) -> None:
+    def _refuse_touching(self, contacts: AdheringIndenter, radius: FloatArray, errors: dict[str, FloatArray]) -> None:
         """Refuse a withdrawal of which some state is touched outside its circle, as coarse discs show it."""
         if self.scene.indenter.is_convex:
             return
         coarse = replace(self.pressing, cells=min(COARSE_CELLS, self.pressing.cells))
         for i in np.linspace(0, radius.size - 1, LOOKED_AT).astype(int).tolist():
-            state = of.at(float(radius[i]))
+            state = contacts.at(float(radius[i]))
             height = max(abs(state.depth), float(self.scene.indenter.height(state.radius)))
             tolerance = 2.0 * (float(errors["indentation_depth"][i]) + UNCERTAIN) * height
             displacement = self._adhering(coarse, state).surface_displacement

@@ -115,9 +115,7 @@ class ContactFields:
     def _scale(self) -> float:
         """Of pressures of the disc to those of the contact, whose radius is a little different."""
         load = self.solved.load
-        if self.edge != 0.0 or load <= 0.0:
-            return 1.0
-        return self.state.load / load * (self.solved.radius / self.radius) ** 2
+        return self.state.load / load * (self.solved.radius / self.radius) ** 2 if self.edge == 0.0 < load else 1.0
 
     @cached_property
     def _rings(self) -> tuple[FloatArray, FloatArray]:

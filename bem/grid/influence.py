@@ -37,6 +37,8 @@ BIAS: Final = -0.25
 NEAR: Final = 1e-3
 # Distance in thicknesses from which on a layer on a rigid base is at rest: exp(-0.739 * 48) = 4e-16.
 REACH: Final = 48.0
+# Wave number of the mean mode over 1/`longest`: chi/k is off by its square, and half of it changes nothing.
+LEAST_SHARE: Final = 1e-12
 # Mean of ln r over a unit square about its centre.
 MEAN_LOGARITHM: Final = (pi / 2 - 3.0 - log(2.0)) / 2
 # Cells from the loaded one within which means over cells are taken by Gauss points, and half of the most of them across
@@ -131,7 +133,9 @@ def layer_symbol(wavenumber: FloatArray, layer: ElasticLayer, cell_size: float) 
     if layer.is_half_space:
         return np.where(wavenumber == 0.0, 0.0, 2.0 / k)
     h, kernel = layer.surface.thickness / cell_size, surface_kernel(layer)
-    zero = 0.0 if layer.has_elastic_base else 2.0 * h * kernel.zero_mode
+    # chi/k no longer depends on k.
+    least = LEAST_SHARE / kernel.longest
+    zero = 0.0 if layer.has_elastic_base else 2.0 * h * float(kernel.chi(np.array([least]))[0]) / least
     values, place = np.unique(k, return_inverse=True)
     grid = np.geomspace(values[0], values[-1] * (1.0 + 1e-12), min(SAMPLES, values.size) + 4)
     chi = CubicSpline(np.log(grid), kernel.chi(grid * h))(np.log(values))[place].reshape(k.shape)

@@ -143,10 +143,10 @@ class Pressing:
         inner, here, outer = (self.punch(radius * exp(x), cells, radius) for x in (-e, 0.0, e))
         slope = flat.growth * log(outer.growth / inner.growth) / (2.0 * e)
         edge, degree = sqrt(flat.growth + slope), flat.degree - self.fewer
-        # phi_1 varies as the cells tell, about the value that the stiffness tells.
-        told = float(here.series(degree).sum())
+        # phi_1 varies as the series on these cells, about its value by the stiffness.
+        fitted = float(here.series(degree).sum())
         inside, outside = (
-            of.series(degree, edge / told * float(of.series(degree).sum())) / of.growth for of in (inner, outer)
+            one.series(degree, edge / fitted * float(one.series(degree).sum())) / one.growth for one in (inner, outer)
         )
         series = flat.series(degree, edge)
         # Q/kappa varies slowly where both go with a power of the radius.

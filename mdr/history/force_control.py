@@ -6,19 +6,20 @@ moves linearly. No end of a spring stands above the indenter, and a free one onl
 been larger all springs ever touched are touched, and F_e is the elastic force of the depth (Lee and Radok 1960,
 J. Appl. Mech. 27, 438; Ting 1966, J. Appl. Mech. 33, 845).
 
-Elsewhere the depth is less than F_e would make it. There it is a quadratic in time on each substep, whose two
-coefficients follow from the sum of displacements at the middle and at the end of the substep,
+Elsewhere the depth is less than F_e would make it. There it is a polynomial in time on each substep, whose values at
+Chebyshev's points t_i follow from the sums of displacements at these instants,
 
-    2 E* int u(x, t) y_1^2(x) dx = F_e(t),   u = delta - g in contact.
+    2 E* int u(x, t_i) y_1^2(x) dx = F_e(t_i),   u = delta - g in contact.
 
-Springs in contact take part with their depth alone, whatever the path to it, so that substeps err only by what free
-springs keep of it. Panels of springs end at the fronts of the last march, so that these sums are Gauss rules, and the
-march is repeated until the depth stays.
+Springs in contact take part with their depth alone, whatever the path to it. Panels of springs end at the fronts of the
+last march, so that these sums are Gauss rules, and the march is repeated until the depth stays: the sum is stationary
+in the fronts.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -27,62 +28,113 @@ from numpy.typing import NDArray
 from bem.numerics import EPS
 from contact import ForceHistory, NotConvergedError
 from contact.records.validation import FloatArray
+from mdr.history.fronts import Layout
 from mdr.history.spring_bed import Path, SpringBed, followed
 from mdr.history.spring_law import SpringLaw
 
-# Times as many substeps where the depth is known: they cost little, and what springs keep of them is as accurate.
-_MORE = 3
-# Newton steps of a substep; five are usual.
-_MOST_STEPS = 60
-# Share of the largest F_e to which it is met, and that may be missed.
-_TOLERANCE, _ACCEPTABLE = 1e-13, 1e-9
+# Samples of F_e in all intervals of a history and in each, and rounds that bring its turns sixteen times closer. A turn
+# off by 1e-6 of an interval costs 1e-9 of the depth.
+_SAMPLES, _MOST_SAMPLES, _ZOOMS = 2000, 33, 5
+# Share of an interval below which a turn is one with its end.
+_APART = 1e-6
+# Corrections of a substep, and halvings of one; eight and none are usual.
+_MOST_STEPS, _MOST_HALVINGS = 60, 6
+# Share of the largest F_e to which it is met, and that may be missed: it is stated. Before a contact ends free springs
+# alone may exceed F_e by the errors of the way so far.
+_TOLERANCE, _ACCEPTABLE = 1e-13, 1e-5
 # Springs among which the lowest is sought, and how often: each round comes twenty times closer.
 _AMONG, _ROUNDS = 41, 4
 # Share of all springs whose stiffness starts a substep in which hardly any touch.
 _LEAST = 1e-3
+# Shares of an interval before its end at which substeps begin while a force fades to zero: nothing presses in the last
+# one. With half as many 1e-6 is left.
+_FADES = 0.5 * 0.35 ** np.arange(1, 9)
 
 
 class Steps(NamedTuple):
-    """Instants at which depths are determined: two per substep.
+    """Substeps of a force history.
 
     Attributes:
-        time: [s], shape (1 + 2 substeps,).
+        time: Ends of substeps [s], shape (n + 1,).
         force: F there [N].
-        given: Indices of the instants of the history, shape (n,).
+        given: Indices of the instants of the history.
+        nodes: Shares of a substep at which depths are determined, shape (q,).
+        load: F_e [N] at these, shape (n, q).
+        start: F_e [N] at the first instant.
     """
 
     time: FloatArray
     force: FloatArray
     given: NDArray[np.intp]
+    nodes: FloatArray
+    load: FloatArray
+    start: float
+
+    @property
+    def instants(self) -> FloatArray:
+        """All nodes [s], shape (n, q)."""
+        return np.asarray(self.time[:-1, None] + np.diff(self.time)[:, None] * self.nodes)
+
+    @property
+    def from_rises(self) -> FloatArray:
+        """From rises at the nodes to coefficients of a polynomial in the share of a substep, without the constant."""
+        return np.asarray(np.linalg.inv(np.vander(self.nodes, self.nodes.size + 1, increasing=True)[:, 1:]))
+
+    def ways(self, depth: FloatArray) -> FloatArray:
+        """Coefficients of the depth in substeps [m], from depths at the first instant and all nodes."""
+        start, inner = depth[:: self.nodes.size][:-1, None], depth[1:].reshape(-1, self.nodes.size)
+        return np.column_stack([start, (inner - start) @ self.from_rises.T])
 
 
-def steps_of(law: SpringLaw, loading: ForceHistory, substeps: int, times: int) -> Steps:
-    """Substeps of each interval, shorter after each change of rate and before a release.
+def steps_of(law: SpringLaw, loading: ForceHistory, substeps: int, degree: int) -> Steps:
+    """Substeps of each interval, and of its parts before and after a turn of F_e.
 
     Args:
         law: Of the springs.
         loading: The force.
         substeps: Number of them. Half are shared out by duration, half to all intervals alike: short ones may be steep.
-        times: Multiplies the number in each interval.
+        degree: Of the depth in each.
     """
-    durations = np.diff(loading.time)
+    ends = np.sort(np.append(loading.time, turns(law, loading)))
+    force = np.interp(ends, loading.time, loading.force)
+    load = law.elastic_force(ends, force)
+    durations = np.diff(ends)
     share = (durations / durations.sum() + 1 / durations.size) / 2
-    load = law.elastic_force(loading.time, loading.force)
-    closed = never_larger(law, load)
-    counts = times * np.maximum(np.ceil(substeps * share), 2).astype(int)
-    instants = [loading.time[:1]]
-    for k, fewest in enumerate(counts.tolist()):
-        count = fewest * (_MORE if closed[k] and closed[k + 1] else 1)
-        s = np.arange(count + 1) / count
-        fades = loading.force[k + 1] <= 0 < loading.force[k]
-        way = s * s * (6 - 8 * s + 3 * s * s) if fades else s**1.5 if load[k] > 0 else s**4
-        ends = loading.time[k] + durations[k] * way
-        ends[-1] = loading.time[k + 1]
-        counts[k] = count
-        instants.append(np.column_stack([(ends[:-1] + ends[1:]) / 2, ends[1:]]).ravel())
-    time = np.concatenate(instants)
-    given = np.append(0, 2 * np.cumsum(counts))
-    return Steps(time, np.interp(time, loading.time, loading.force), given)
+    time = [ends[:1]]
+    for k, count in enumerate(np.ceil(substeps * share).astype(int).tolist()):
+        s = np.arange(1, count + 1) / count
+        way = s**2 if min(load[k], force[k]) > 0 else s**4
+        if force[k + 1] <= 0:
+            way = np.concatenate([way / 2, 1 - _FADES, [1.0]]) if force[k] > 0 else np.ones(1)
+        time.append(np.append(ends[k] + durations[k] * way[:-1], ends[k + 1]))
+    every = np.concatenate(time)
+    nodes = (1 - np.cos(np.pi * np.arange(1, degree + 1) / degree)) / 2
+    steps = Steps(
+        every,
+        np.interp(every, loading.time, loading.force),
+        np.searchsorted(every, loading.time),
+        nodes,
+        np.zeros(0),
+        0.0,
+    )
+    instants = np.append(every[0], steps.instants)
+    found = law.elastic_force(instants, np.interp(instants, loading.time, loading.force))
+    return steps._replace(load=found[1:].reshape(-1, degree), start=float(found[0]))
+
+
+def turns(law: SpringLaw, loading: ForceHistory) -> FloatArray:
+    """Instants [s] between those of the history where F_e leaves, or passes again, its largest value so far."""
+    count = int(np.clip(_SAMPLES // loading.time.size, 3, _MOST_SAMPLES))
+    grid = np.unique(np.linspace(loading.time[:-1], loading.time[1:], count))
+    turn = np.zeros(0)
+    for _ in range(_ZOOMS):
+        closed = never_larger(law, law.elastic_force(grid, np.interp(grid, loading.time, loading.force)))
+        change = np.flatnonzero(closed[1:] != closed[:-1])
+        turn = np.where(closed[change], grid[change], grid[change + 1])
+        grid = np.unique(np.append(grid, np.linspace(grid[change], grid[change + 1], 17)))
+    interval = np.clip(np.searchsorted(loading.time, turn) - 1, 0, loading.time.size - 2)
+    share = (turn - loading.time[interval]) / np.diff(loading.time)[interval]
+    return np.unique(turn[np.minimum(share, 1 - share) > _APART])
 
 
 def never_larger(law: SpringLaw, load: FloatArray) -> NDArray[np.bool_]:
@@ -97,95 +149,162 @@ class March:
 
     Attributes:
         law: Of the springs.
-        bed: The springs.
+        layout: Where they stand.
         weight: Stiffness of each in contact [N/m], shape (n,).
-        steps: Instants and forces.
-        load: F_e [N] at the instants.
-        closed: Depths [m] of the elastic layer under it.
-        known: Where these are the depths, of the same shape.
-        before: The path of an earlier march, from which each substep starts.
+        steps: Substeps.
+        closed: Depths [m] of the elastic layer under F_e at the first instant and all nodes, shape (1 + n q,).
+        known: Where these are the depths in whole substeps, shape (n,).
+        before: Depths at nodes in an earlier march, or guessed, from which substeps start, shape (n, q).
+        missed: Share of the largest F_e by which it is missed.
+        depth: Depths at nodes [m], shape (n, q).
+        fronts: Radii [m] at which contact ends at all nodes, negative where nothing touches, shape (n, q).
     """
 
     law: SpringLaw
-    bed: SpringBed
+    layout: Layout
     weight: FloatArray
     steps: Steps
-    load: FloatArray
     closed: FloatArray
     known: NDArray[np.bool_]
-    before: Path | None = None
+    before: FloatArray
+    missed: float = 0.0
+    depth: FloatArray = field(init=False)
+    fronts: FloatArray = field(init=False)
 
     def path(self) -> Path:
-        """Depths at all instants.
+        """Depths at all ends of substeps.
 
         Raises:
             NotConvergedError: If no depth carries the force.
         """
-        time, count = self.steps.time, self.steps.time.size
-        depth, speed, acceleration = np.zeros(count), np.zeros(count - 1), np.zeros(count - 1)
-        free, pace = np.zeros(count - 1, dtype=np.bool_), np.zeros(2)
-        depth[0] = self.closed[0]
-        for k in range(0, count - 1, 2):
-            first, whole = float(time[k + 1] - time[k]), float(time[k + 2] - time[k])
-            if not self.known[k + 1 : k + 3].all() and self.steps.force[k + 2] <= 0:
-                free[k : k + 2], pace = True, np.zeros(2)
-                for i, span in ((k + 1, first), (k + 2, whole - first)):
-                    self.bed.release(span)
-                    depth[i] = np.min(self.bed.surface + self.bed.g)
-                continue
-            if self.known[k + 1 : k + 3].all():
-                risen = (self.closed[k + 1 : k + 3] - depth[k]) / [first, whole]
-                a = 2 * (risen[1] - risen[0]) / (whole - first)
-                pace = np.array([risen[1] - whole * a / 2, a])
-                _, self.bed = self._displaced(float(depth[k]), pace, (first, whole))
+        (count, degree), steps = self.steps.load.shape, self.steps
+        bed = SpringBed.undeformed(self.law, self.layout.g, float(self.closed[0]))
+        ways, depth, free = (
+            np.zeros((count, degree + 1)),
+            np.full(count + 1, self.closed[0]),
+            np.zeros(count, dtype=np.bool_),
+        )
+        self.depth = np.zeros((count, degree))
+        trace = Trace(self.layout.radius)
+        for k, span in enumerate(np.diff(steps.time).tolist()):
+            free[k] = not self.known[k] and steps.force[k + 1] <= 0
+            if free[k]:
+                bed.release(span)
+                touching = np.zeros((degree, bed.g.size), dtype=np.bool_)
+            elif self.known[k]:
+                ways[k] = self._way(float(depth[k]), self.closed[1 + k * degree : 1 + (k + 1) * degree])
+                _, touching = bed.advance(ways[k], span, steps.nodes)
             else:
-                if self.before is not None and not self.before.free[k]:
-                    pace = np.array([self.before.speed[k], self.before.acceleration[k]])
-                pace, self.bed = self._met(float(depth[k]), pace, self.load[k + 1 : k + 3], (first, whole))
-            v, a = pace
-            speed[k : k + 2], acceleration[k : k + 2] = (v, v + a * first), a
-            depth[k + 1 : k + 3] = depth[k] + first * (v + first * a / 2), depth[k] + whole * (v + whole * a / 2)
-            pace = np.array([v + a * whole, 0.0])
-        return Path(time, depth, speed, acceleration, free)
+                ways[k], bed, touching = self._met(bed, float(depth[k]), k, span)
+            pressed = steps.force[k + 1] > 0 or self.known[k]
+            depth[k + 1] = ways[k].sum() if pressed else np.min(bed.surface + bed.g)
+            self.depth[k] = np.vander(steps.nodes, degree + 1, increasing=True) @ ways[k]
+            trace.instants.append(steps.instants[k])
+            trace.first.append(np.argmin(np.pad(touching, ((0, 0), (0, 1))), axis=1))
+            trace.times += [steps.time[k] + span * share for share, _ in bed.events]
+            trace.springs += [spring for _, spring in bed.events]
+        self.fronts = trace.fronts().reshape(count, degree)
+        return Path(steps.time, depth, ways, free)
 
-    def _displaced(self, depth: float, pace: FloatArray, spans: tuple[float, float]) -> tuple[FloatArray, SpringBed]:
-        """F_e [N] at the middle and the end of a substep and stiffness in contact [N/m], shape (2, 2), and the bed."""
-        bed, (v, a), found, before = self.bed.copy(), pace.tolist(), np.empty((2, 2)), 0.0
-        for i, span in enumerate(spans):
-            bed.advance(depth + before * (v + before * a / 2), (v + a * before, a), span - before)
-            found[:, i] = self.weight @ bed.surface, self.weight @ bed.touching
-            before = span
-        return found, bed
+    @cached_property
+    def _inverse(self) -> FloatArray:
+        return self.steps.from_rises
+
+    @cached_property
+    def _dashpots(self) -> tuple[FloatArray, FloatArray]:
+        """From values at the start and the nodes to integrals up to the nodes, and from rises to slopes there."""
+        nodes, order = np.append(0.0, self.steps.nodes), np.arange(1, self.steps.nodes.size + 2)
+        powers = np.vander(nodes, nodes.size, increasing=True)
+        slopes = powers[:, :-1] * order[:-1] @ self._inverse
+        return (nodes[1:, None] * powers[1:] / order) @ np.linalg.inv(powers), slopes
+
+    def _correction(self, missed: FloatArray, touching: NDArray[np.bool_], before: SpringBed) -> FloatArray:
+        """Change of depths at the nodes that changes F_e there by -missed, to first order.
+
+        Springs that let go keep nothing of the way before; on dashpots they keep all of it, dF_e = int K(t) dv(t) dt.
+        """
+        stiffness = np.append(before.touching @ self.weight, touching @ self.weight)
+        stiffness = np.maximum(stiffness, max(_LEAST * self.weight.sum(), stiffness.max() / 4))
+        if not self.law.viscosity:
+            return np.asarray(-missed / stiffness[1:])
+        integral, slope = self._dashpots
+        return -np.linalg.solve(integral @ (stiffness[:, None] * slope), missed)
+
+    def _way(self, start: float, depth: FloatArray) -> FloatArray:
+        """Coefficients of the polynomial through a depth at the start and depths at the nodes."""
+        return np.append(start, self._inverse @ (depth - start))
 
     def _met(
-        self, depth: float, pace: FloatArray, target: FloatArray, spans: tuple[float, float]
-    ) -> tuple[FloatArray, SpringBed]:
-        """Speed and acceleration that meet F_e [N] twice, by Newton's rule with Broyden's corrections, and the bed."""
-        largest, t = float(self.load.max()), np.array(spans)
-        scale = np.array([1 / t[1], 2 / t[1] ** 2])  # unknowns are parts of the way [m]
-        ways = np.column_stack([t * scale[0], t * t / 2 * scale[1]])
-        x, slopes, before, best = pace / scale, np.empty((2, 2)), np.zeros(2), (np.inf, pace, self.bed)
-        move = np.zeros(2)
-        for number in range(_MOST_STEPS):
-            (reached, stiffness), bed = self._displaced(depth, x * scale, spans)
-            missed = reached - target
+        self, before: SpringBed, start: float, k: int, span: float
+    ) -> tuple[FloatArray, SpringBed, NDArray[np.bool_]]:
+        """Way of substep k that meets F_e at its nodes, from the stiffness in contact; bed and contact."""
+        steps = self.steps
+        target, largest = steps.load[k], float(steps.load.max())
+        y = start + self.before[k] - (self.before[k - 1, -1] if k else self.closed[0])
+        halvings, best, move = 0, (np.inf, np.zeros(0), before, np.zeros(0, dtype=np.bool_)), np.zeros(y.size)
+        for _ in range(_MOST_STEPS):
+            bed, way = before.copy(), self._way(start, y + move)
+            surface, touching = bed.advance(way, span, steps.nodes)
+            missed = surface @ self.weight - target
             worst = float(np.abs(missed).max()) / largest
             if worst < best[0]:
-                best = worst, x * scale, bed
-            if worst <= _TOLERANCE:
-                break
-            if number == 0:
-                slopes = np.maximum(stiffness, _LEAST * self.weight.sum())[:, None] * ways
+                best, y = (worst, way, bed, touching), y + move
+                move = self._correction(missed, touching, before)
+                halvings = 0
             else:
-                slopes += np.outer(missed - before - slopes @ move, move) / (move @ move)
-            move = -np.linalg.solve(slopes, missed)
-            move *= min(1.0, 0.3 * self.bed.g.max() / max(float(np.abs(move).max()), 1e-300))
-            if float(np.abs(move).max()) <= EPS * abs(depth):
+                move, halvings = move / 2, halvings + 1
+            if worst <= _TOLERANCE or halvings > _MOST_HALVINGS:
                 break
-            x, before = x + move, missed
         if best[0] > _ACCEPTABLE:
             raise NotConvergedError("no depth carries the prescribed force", {"force": best[0]})
-        return best[1], best[2]
+        self.missed = max(self.missed, best[0])
+        return best[1], best[2], best[3]
+
+
+@dataclass
+class Trace:
+    """Springs beside the fronts at many instants, and when springs were touched or released.
+
+    Attributes:
+        radius: Where springs stand [m], shape (n,).
+        instants: Instants [s].
+        first: Number of the first free spring at each.
+        times: Instants of touches and releases [s].
+        springs: Numbers of the springs.
+    """
+
+    radius: FloatArray
+    instants: list[FloatArray] = field(default_factory=list)
+    first: list[NDArray[np.intp]] = field(default_factory=list)
+    times: list[FloatArray] = field(default_factory=lambda: [np.zeros(0)])
+    springs: list[NDArray[np.intp]] = field(default_factory=lambda: [np.zeros(0, dtype=np.intp)])
+
+    def fronts(self) -> FloatArray:
+        """Radii [m] at which contact ends at all instants, negative where nothing touches."""
+        instants, first = np.concatenate(self.instants), np.concatenate(self.first)
+        time, spring = np.concatenate(self.times), np.concatenate(self.springs)
+        found = [self._front(t, n, time, spring) if n else -1.0 for t, n in zip(instants, first, strict=True)]
+        return np.array(found)
+
+    def _front(self, t: float, first: int, time: FloatArray, spring: NDArray[np.intp]) -> float:
+        """Radius [m] at a time [s], interpolated in time between the springs beside the front.
+
+        Where the front turns before it passes the next spring, it is extrapolated from the last two.
+        """
+        inner, outer = first - 1, min(first, self.radius.size - 1)
+        last = [time[(spring == j) & (time <= t)].max(initial=-np.inf) for j in (inner, outer)]
+        later = [time[(spring == j) & (time > t)].min(initial=np.inf) for j in (inner, outer)]
+        recedes = last[1] > last[0]
+        passed, coming = (outer, inner) if recedes else (inner, outer)
+        before, after = max(last), later[0 if recedes else 1]
+        way = self.radius[coming] - self.radius[passed]
+        if after < later[1 if recedes else 0]:
+            return float(self.radius[passed] + way * (t - before) / (after - before))
+        beyond = min(max(2 * passed - coming, 0), self.radius.size - 1)
+        earlier = time[(spring == beyond) & (time < before)].max(initial=-np.inf)
+        pace = (self.radius[passed] - self.radius[beyond]) / (before - earlier)
+        share = pace * (t - before) / way if np.isfinite(pace) and way else 0.5
+        return float(self.radius[passed] + way * min(max(share, 0.0), 1.0))
 
 
 def resting_depth(law: SpringLaw, g: FloatArray, path: Path, k: int) -> float:
@@ -197,9 +316,8 @@ def resting_depth(law: SpringLaw, g: FloatArray, path: Path, k: int) -> float:
         path: Depths.
         k: Number of the instant.
     """
-    until = Path(path.time[: k + 1], path.depth[: k + 1], path.speed[:k], path.acceleration[:k], path.free[:k])
     for _ in range(_ROUNDS):
-        *_, bed = followed(law, g, until)
+        *_, bed = followed(law, g, path.until(k))
         height = bed.surface + g
         lowest = int(height.argmin())
         g = np.linspace(g[max(lowest - 1, 0)], g[min(lowest + 1, g.size - 1)], _AMONG)

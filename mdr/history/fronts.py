@@ -38,12 +38,12 @@ _APART = 1e-9
 KINK_POWER, _AXIS_POWER = 2.0, 4.0
 
 
-def fronts(law: SpringLaw, path: Path) -> FloatArray:
-    """gamma [m] at each instant, -1 where nothing touches, shape (n,)."""
+def fronts(law: SpringLaw, path: Path, some: NDArray[np.bool_] | bool = True) -> FloatArray:
+    """gamma [m] at some instants, -1 where nothing touches, shape (n,)."""
     depth, peaks = path.depth, path.peaks
     # Deeper than ever, the indenter touches all springs up to its depth.
     grows = (depth > 0) & (depth >= peaks * (1 - EPS))
-    gamma, unknown = np.where(grows, depth, -1.0), np.flatnonzero(~grows & (peaks > 0))
+    gamma, unknown = np.where(grows, depth, -1.0), np.flatnonzero(some & ~grows & (peaks > 0))
     if not unknown.size:
         return gamma
     low, high = _brackets(law, path)
@@ -108,9 +108,9 @@ def _edges(law: SpringLaw, path: Path, instants: NDArray[np.intp], g: FloatArray
     return found
 
 
-def panel_ends(law: SpringLaw, path: Path, gamma: FloatArray) -> FloatArray:
-    """Values of g [m] at which panels end: fronts, and the way beside them in a relaxation time."""
-    steps = np.diff(path.time)
+def panel_ends(law: SpringLaw, time: FloatArray, gamma: FloatArray) -> FloatArray:
+    """Where panels end [m]: fronts at instants [s], as radii or values of g, and their way in a relaxation time."""
+    steps = np.diff(time)
     shortest = float(law.times[-1]) if law.times.size else np.inf
     ways = [gamma]
     for number in range(_MOST_PANELS):
@@ -132,10 +132,12 @@ class Layout(NamedTuple):
     Attributes:
         g: MDR profile [m], increasing, shape (n,); the first is the axis, or the whole flat end.
         weight: What they add to K [m], shape (n,).
+        radius: Where they stand [m], shape (n,).
     """
 
     g: FloatArray
     weight: FloatArray
+    radius: FloatArray
 
 
 def layout(springs: Springs, radii: FloatArray, nodes: int) -> Layout:
@@ -144,7 +146,7 @@ def layout(springs: Springs, radii: FloatArray, nodes: int) -> Layout:
     core = springs.at([flat]).K if flat else np.zeros(1)
     top = float(radii.max(initial=flat))
     if top <= flat:
-        return Layout(np.zeros(1), core)
+        return Layout(np.zeros(1), core, np.array([flat]))
     octaves = springs.unit * 2.0 ** np.arange(-2.0, 12.0)
     inner = np.unique(np.concatenate([radii, octaves[octaves < top]]))
     stretches = [flat, *(b for b in tip.breaks if flat < b < top), top]
@@ -159,7 +161,7 @@ def layout(springs: Springs, radii: FloatArray, nodes: int) -> Layout:
     excess, weight = np.concatenate(parts, axis=1)
     values = springs.at(flat + excess, excess)
     g, weight = np.maximum(values.g, 0.0), weight * values.y1**2
-    return Layout(np.append(0.0, g), np.append(core, weight))
+    return Layout(np.append(0.0, g), np.append(core, weight), np.append(flat, flat + excess))
 
 
 def refuse_open_inside(touching: NDArray[np.bool_], time: float) -> None:

@@ -2,19 +2,22 @@
 
 Springs are independent of each other: with the factor A = C C^T of the layer's equation pressures within a are springs
 within a, and the viscoelastic law is valid spring by spring. Spring g is touched where the indenter at depth delta
-reaches its surface, delta - g = u, and released where its force would pull, f = 0. While the depth is quadratic in time
-both functions are
+reaches its surface, delta - g = u, and released where its force would pull, f = 0. While the depth is a polynomial of
+time both are, since the last touch or release at time theta,
 
-    c + v A(t) + a B(t) + sum_k c_k exp(-r_k t)
+    c + C(t) + sum_k c_k exp(-r_k (t - theta))
 
-with increasing A and B (`SpringLaw.drive`), so every term is monotonic: on an interval the terms at both ends bound the
-function and its slope, and intervals are cut until each has no root or one (`first_fall`).
+with one C(t) for all springs: the force of a spring that has been in contact from the start without any strain, or
+-delta(t). Signs of these functions are taken at times that crowd towards theta, where exponentials change fastest, and
+the first root is computed by Newton's rule.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -27,159 +30,264 @@ from mdr.history.spring_law import SpringLaw
 
 # Touches and releases of one spring between two instants. A sum of k exponentials has fewer than k + 2 roots.
 _MOST_EVENTS = 40
-# Of the largest terms of a force or a gap: nearer to zero its sign is rounding.
+# Of the largest terms of a force or a gap: nearer to zero its sign is rounding. It doubles with each touch and release.
 _ROUNDING = 8 * EPS
-# Share of an interval below which it is not cut further: two roots as close make a touch that carries nothing.
-_SHORTEST = 1e-9
+# Signs are taken at sixteenths of what is left of an interval, and at halves of it down to 2^-6 of the fastest
+# relaxation time. Two roots in between are a touch that carries hardly anything: with eighths some carry 1e-9 of the
+# largest force.
+_PARTS, _HALVES_MORE, _MOST_HALVES = 16, 6, 40
+# Samples of a depth between two instants, whose largest one is computed.
+_PEAK_SAMPLES = 33
+# Spans over relaxation times from which strains are polynomials with an exponential, and terms of their power series
+# below: the first one left out is 3e-17. At half the first value polynomials lose a digit more.
+_STEEP, _TERMS = 2.0, 25
 # Newton steps to a root; six are usual.
 _MOST_STEPS = 80
+_AT_END = np.ones(1)
+
+
+@dataclass(frozen=True)
+class Motion:
+    """The indenter in an interval.
+
+    Attributes:
+        law: Of the springs.
+        way: Coefficients of the depth as a polynomial in the share of the interval [m], shape (p + 1,).
+        span: The interval [s].
+        rounding: Of the largest terms of a force or a gap: nearer to zero its sign is rounding.
+    """
+
+    law: SpringLaw
+    way: FloatArray
+    span: float
+    rounding: float = _ROUNDING
+
+    @cached_property
+    def rise(self) -> FloatArray:
+        """Coefficients of the slope of the depth [m]."""
+        return self.way[1:] * np.arange(1, self.way.size)
+
+    def depth(self, s: FloatArray) -> FloatArray:
+        """Depth at shares of the interval [m]."""
+        return polynomial(self.way, s)
+
+    @cached_property
+    def _memory(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Coefficients of the strains from rest, shape (m, q), and of exp(-x s) in them with its x = span/tau, (m,).
+
+        R' = -x R + delta' is solved by a power series, and at large x by a polynomial less exp(-x s) of its value at 0.
+        """
+        x, degree = self.span / self.law.times, self.rise.size
+        steep = x > _STEEP
+        series = np.zeros((x.size, degree if steep.all() else max(degree, _TERMS)))
+        for n in range(series.shape[1] - 1):
+            series[:, n + 1] = ((self.rise[n] if n < degree else 0.0) - x * series[:, n]) / (n + 1)
+        series[steep] = 0.0
+        for n in range(degree - 1, -1, -1):
+            later = (n + 1) * series[:, n + 1] if n + 1 < degree else 0.0
+            series[:, n] = np.where(steep, (self.rise[n] - later) / x, series[:, n])
+        return series, np.where(steep, series[:, 0], 0.0), x
+
+    def strains(self, s: FloatArray) -> FloatArray:
+        """e_j of a spring in contact from the start, without strain then, at shares of the interval [m], (m, ..)."""
+        series, fading, x = self._memory
+        powers = np.ones((series.shape[1], s.size))
+        np.multiply.accumulate(np.broadcast_to(s.ravel(), (len(powers) - 1, s.size)), axis=0, out=powers[1:])
+        found = series @ powers
+        if fading.any():
+            found -= fading[:, None] * np.exp(np.multiply.outer(-x, s.ravel()))
+        return found.reshape(x.size, *s.shape)
+
+    def force(self, s: FloatArray) -> FloatArray:
+        """C of springs in contact, at shares of the interval."""
+        law, strains = self.law, self.strains(s)
+        dashpot = law.viscosity / self.span * polynomial(self.rise, s) if law.viscosity else 0.0
+        return np.asarray(law.long_term * self.depth(s) + dashpot + _weighted(law.weights, strains))
+
+    def force_slope(self, s: FloatArray) -> FloatArray:
+        """Slope of C of springs in contact, at shares of the interval."""
+        law, bend = self.law, self.rise[1:] * np.arange(1, self.rise.size)
+        elastic = (law.long_term + law.weights.sum()) * polynomial(self.rise, s)
+        dashpot = law.viscosity / self.span * polynomial(bend, s) if bend.size else 0.0
+        return np.asarray(elastic + dashpot - _weighted(law.weights * self.span / law.times, self.strains(s)))
+
+    def approach(self, s: FloatArray) -> FloatArray:
+        """C of free springs, at shares of the interval."""
+        return -self.depth(s)
+
+    def approach_slope(self, s: FloatArray) -> FloatArray:
+        """Slope of C of free springs, at shares of the interval."""
+        return -polynomial(self.rise, s)
+
+
+def polynomial(coefficients: FloatArray, s: FloatArray) -> FloatArray:
+    """A polynomial at any shape of s."""
+    value = np.full(s.shape, coefficients[-1])
+    for one in coefficients[-2::-1].tolist():
+        value = value * s + one
+    return value
+
+
+def _weighted(weights: FloatArray, rows: FloatArray) -> FloatArray:
+    """Sum of weighted rows, of shape (m, ..)."""
+    return np.asarray((weights @ rows.reshape(weights.size, math.prod(rows.shape[1:]))).reshape(rows.shape[1:]))
 
 
 class Course(NamedTuple):
-    """c + v A(t) + a B(t) + sum_k c_k exp(-r_k t) of n springs.
+    """c + C(s) + sum_k c_k exp(-r_k (s - theta)) of n springs at shares s of an interval.
 
     Attributes:
         constant: c, shape (n,).
         amplitudes: c_k, shape (k, n).
-        rates: r_k [1/s], shape (k,).
-        speed: v of each spring, shape (n,).
-        acceleration: a.
-        drive: B, A and A' at times.
-        size: Size of what c is the difference of, shape (n,).
+        rates: r_k times the interval, shape (k,).
+        start: theta of each spring, or of all, shape (n,) or (1,).
+        shared: C at shares.
+        slope: Slope of C at shares.
+        rounding: Values whose sign is rounding, shape (n,).
     """
 
     constant: FloatArray
     amplitudes: FloatArray
     rates: FloatArray
-    speed: FloatArray
-    acceleration: float
-    drive: Callable[[FloatArray, bool], tuple[FloatArray | float, FloatArray, FloatArray]]
-    size: FloatArray
+    start: FloatArray
+    shared: Callable[[FloatArray], FloatArray]
+    slope: Callable[[FloatArray], FloatArray]
+    rounding: FloatArray
 
-    def terms(self, i: NDArray[np.intp], t: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Terms of springs i at times t [s], shape (n,), and their slopes, each of shape (3 + k, n)."""
-        t = t[:1] if (t == t[:1]).all() else t
-        values, slopes = np.empty((2, 3 + self.rates.size, i.size))
-        v, a = self.speed[i], self.acceleration
-        B, A, slope = self.drive(t, a != 0)
-        values[0], values[1], values[2] = self.constant[i], v * A, a * B
-        values[3:] = self.amplitudes[:, i] * np.exp(-self.rates[:, None] * t)
-        slopes[0], slopes[1], slopes[2] = 0.0, v * slope, a * A
-        slopes[3:] = -self.rates[:, None] * values[3:]
-        return values, slopes
+    def among(self, some: NDArray[np.intp]) -> Course:
+        """The courses of some springs."""
+        start = self.start[some] if self.start.size > 1 else self.start
+        return self._replace(
+            constant=self.constant[some], amplitudes=self.amplitudes[:, some], start=start, rounding=self.rounding[some]
+        )
 
-    def is_above(
-        self,
-        i: NDArray[np.intp],
-        span: FloatArray,
-        start: tuple[FloatArray, FloatArray],
-        end: tuple[FloatArray, FloatArray],
-    ) -> NDArray[np.bool_]:
-        """Whether springs i stay above zero, within rounding, for a span [s] between terms at its start and end.
+    def fading(self, s: FloatArray) -> FloatArray:
+        """Exponential terms at shares of shape (q, n) or (q, 1); shape (k, q, n)."""
+        return np.exp(np.multiply.outer(-self.rates, s - self.start)) * self.amplitudes[:, None]
 
-        Convex terms lie above their tangents, concave ones above their chords: A is concave, B and exp are convex.
-        """
-        convex = np.empty(start[0].shape, dtype=np.bool_)
-        convex[0], convex[1], convex[2] = True, self.speed[i] <= 0, self.acceleration >= 0
-        convex[3:] = self.amplitudes[:, i] >= 0
-        at_end = np.where(convex, start[0] + span * start[1], end[0]).sum(axis=0)
-        at_start = np.where(convex, end[0] - span * end[1], start[0]).sum(axis=0)
-        rounding = _ROUNDING * (self.size[i] + np.abs(start[0]).sum(axis=0))
-        from_start = (start[0].sum(axis=0) >= -rounding) & (at_end >= -rounding)
-        return np.asarray(from_start | ((end[0].sum(axis=0) >= -rounding) & (at_start >= -rounding)))
+    def values(self, s: FloatArray) -> FloatArray:
+        """Values at shares of shape (q, n) or (q, 1); shape (q, n)."""
+        return np.asarray(self.constant + self.shared(s) + self.fading(s).sum(axis=0))
 
-    def is_positive(self, i: NDArray[np.intp], terms: FloatArray) -> NDArray[np.bool_]:
-        """Whether sums of terms are zero or above, within rounding."""
-        return np.asarray(terms.sum(axis=0) >= -_ROUNDING * (self.size[i] + np.abs(terms).sum(axis=0)))
+    def with_slopes(self, s: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Values and slopes at one share of each spring, shape (n,)."""
+        fading = self.fading(s[None])[:, 0]
+        return self.constant + self.shared(s) + fading.sum(axis=0), self.slope(s) - self.rates @ fading
 
 
-def _motion(t: FloatArray, _: bool) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Way after a time t [s] at unit acceleration, at unit speed, and the slope of the latter."""
-    return t * t / 2, t, np.ones_like(t)
-
-
-def first_fall(course: Course, span: FloatArray) -> FloatArray:
-    """First times in [0, span] [s] from which courses that begin at zero or above are negative, shape (n,), or inf."""
-    event = np.full(span.size, np.inf)
-    if not span.size:
+def first_fall(course: Course) -> FloatArray:
+    """First shares of the interval from which courses that begin at zero or above are negative, or inf, shape (n,)."""
+    event = np.full(course.constant.size, np.inf)
+    s = course.start + (1 - course.start) * _shares(float(course.rates.max(initial=1.0)))[:, None]
+    shared = course.shared(s)
+    least = course.fading(s[[0, -1]]).min(axis=1).sum(axis=0) + course.constant + shared.min(axis=0)
+    some = np.flatnonzero(least <= course.rounding)
+    if not some.size:
         return event
-    i, low, high = np.arange(span.size), np.zeros(span.size), span
-    at_low = course.terms(i, low)
-    keep = course.is_positive(i, at_low[0])
-    event[~keep] = 0.0
-    while True:
-        i, low, high = i[keep], low[keep], high[keep]
-        if not i.size:
-            return event
-        at_low = (at_low[0][:, keep], at_low[1][:, keep])
-        at_high = course.terms(i, high)
-        rises = np.minimum(at_low[1], at_high[1]).sum(axis=0) >= 0
-        falls = np.maximum(at_low[1], at_high[1]).sum(axis=0) <= 0
-        decided = falls | (high - low <= _SHORTEST * span[i])
-        clear = rises | course.is_above(i, high - low, at_low, at_high)
-        clear |= decided & course.is_positive(i, at_high[0])
-        root = decided & ~clear
-        if root.any():
-            event[i[root]] = _root(course, i[root], low[root], high[root])
-        keep = ~root & ~(clear & (high >= span[i]))
-        step = (high - low) * np.where(clear, 4.0, 0.25)
-        low = np.where(clear, high, low)
-        at_low = np.where(clear, at_high[0], at_low[0]), np.where(clear, at_high[1], at_low[1])
-        high = np.minimum(low + step, span[i])
+    few = course.among(some)
+    if s.shape[1] > 1:
+        s, shared = s[:, some], shared[:, some]
+    values = few.constant + shared + few.fading(s).sum(axis=0)
+    event[some] = _first_root(few, np.broadcast_to(s, values.shape), values)
+    return event
 
 
-def _root(course: Course, i: NDArray[np.intp], low: FloatArray, high: FloatArray) -> FloatArray:
-    """Roots of courses i that fall from low to high [s], by Newton's rule within brackets."""
+def _shares(fastest: float) -> FloatArray:
+    """Shares of what is left of an interval at which signs are taken: halves of one and sixteenths."""
+    halves = int(np.clip(np.ceil(np.log2(max(fastest, 1.0))) + _HALVES_MORE, 4, _MOST_HALVES))
+    return np.unique(np.concatenate([[0.0], 0.5 ** np.arange(halves), np.arange(1, _PARTS) / _PARTS]))
+
+
+def _first_root(course: Course, s: FloatArray, values: FloatArray) -> FloatArray:
+    """First roots from values at shares, each of shape (q, n); inf where there is none."""
+    falls = values < -course.rounding
+    first = np.where(falls.any(axis=0), np.argmax(falls, axis=0), len(s))
+    every = np.arange(first.size)
+    low, high = (s[np.clip(first + k, 0, len(s) - 1), every] for k in (-1, 0))
+    which, dip = _dips(values, first)
+    if which.size:
+        three = dip + np.arange(-1, 2)[:, None]
+        t, v = s[three, which], values[three, which]
+        lowest = _vertex(t, v)
+        below = course.among(which).values(lowest[None])[0] < -course.rounding[which]
+        first[which[below]], low[which[below]], high[which[below]] = 0, t[0][below], lowest[below]
+    event = np.full(first.size, np.inf)
+    some = np.flatnonzero(first < len(s))
+    if some.size:
+        event[some] = _root(course.among(some), low[some], high[some])
+    return event
+
+
+def _dips(values: FloatArray, first: NDArray[np.intp]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Springs with a low positive minimum among samples before number `first`, and the number of the sample there."""
+    before, here, after = values[:-2], values[1:-1], values[2:]
+    dips = (here > 0) & (before + after > 4 * here) & (before > here) & (after > here)
+    dips &= np.arange(1, len(values) - 1)[:, None] < first
+    which = np.flatnonzero(dips.any(axis=0))
+    return which, 1 + np.argmax(dips[:, which], axis=0)
+
+
+def _vertex(t: FloatArray, v: FloatArray) -> FloatArray:
+    """Where parabolas through three points each are lowest, of shapes (3, n)."""
+    left, right = (v[1] - v[0]) / (t[1] - t[0]), (v[2] - v[1]) / (t[2] - t[1])
+    bend = (right - left) / (t[2] - t[0])
+    return np.asarray(np.clip((t[0] + t[1]) / 2 - left / (2 * bend), t[0], t[2]))
+
+
+def _root(course: Course, low: FloatArray, high: FloatArray) -> FloatArray:
+    """Roots of courses that fall between two shares of the interval, by Newton's rule within brackets."""
     t = low
-    for _ in range(_MOST_STEPS if i.size else 0):
-        terms, slopes = course.terms(i, t)
-        value, slope = terms.sum(axis=0), np.minimum(slopes.sum(axis=0), -1e-300)
+    for _ in range(_MOST_STEPS):
+        value, slope = course.with_slopes(t)
         low, high = np.where(value > 0, t, low), np.where(value > 0, high, t)
         with np.errstate(over="ignore"):
-            new = t - value / slope
+            new = t - value / np.minimum(slope, -1e-300)
         new = np.where((new >= low) & (new <= high), new, (low + high) / 2)
-        small = np.abs(value) <= EPS * np.abs(terms).sum(axis=0)
+        small = np.abs(value) <= course.rounding / 8
         if (small | (np.abs(new - t) <= EPS * high)).all():
             break
-        t = new
+        t = np.where(small, t, new)
     return t
 
 
 class Path(NamedTuple):
-    """Depths that are quadratic between instants.
+    """Depths that are polynomials between instants.
 
     Attributes:
         time: Instants [s], shape (n,).
         depth: delta there [m], shape (n,).
-        speed: At the start of each interval [m/s], shape (n - 1,).
-        acceleration: In each interval [m/s^2], shape (n - 1,).
+        ways: Coefficients of the depth over the share of each interval [m], shape (n - 1, p + 1).
         free: In which intervals the indenter is taken away, shape (n - 1,).
     """
 
     time: FloatArray
     depth: FloatArray
-    speed: FloatArray
-    acceleration: FloatArray
+    ways: FloatArray
     free: NDArray[np.bool_]
 
     @classmethod
     def linear(cls, time: FloatArray, depth: FloatArray) -> Path:
         """Depths that are linear between instants."""
-        speed = np.diff(depth) / np.diff(time)
-        return cls(time, depth, speed, np.zeros(speed.size), np.zeros(speed.size, dtype=np.bool_))
+        return cls(time, depth, np.column_stack([depth[:-1], np.diff(depth)]), np.zeros(time.size - 1, dtype=np.bool_))
+
+    def until(self, k: int) -> Path:
+        """The path up to instant k."""
+        return Path(self.time[: k + 1], self.depth[: k + 1], self.ways[:k], self.free[:k])
 
     @property
     def final_speed(self) -> FloatArray:
         """Speed at which each instant is reached [m/s], zero at the first, shape (n,)."""
-        return np.append(0.0, self.speed + self.acceleration * np.diff(self.time))
+        return np.append(0.0, self.ways @ np.arange(self.ways.shape[1]) / np.diff(self.time))
 
     @property
     def peaks(self) -> FloatArray:
         """Largest depth so far [m] at each instant, between instants too, shape (n,)."""
-        with np.errstate(divide="ignore", invalid="ignore"):
-            turn = np.nan_to_num(-self.speed / self.acceleration, nan=0.0, posinf=0.0, neginf=0.0)
-        turn = np.where(self.free, 0.0, np.clip(turn, 0, np.diff(self.time)))
-        inner = self.depth[:-1] + turn * (self.speed + turn * self.acceleration / 2)
+        inner = (
+            (self.ways @ np.vander(np.linspace(0, 1, _PEAK_SAMPLES), self.ways.shape[1], increasing=True).T).max(axis=1)
+            if self.ways.shape[1] > 2
+            else -np.inf
+        )
+        inner = np.where(self.free, 0.0, inner)
         return np.maximum.accumulate(np.maximum(self.depth, np.append(self.depth[0], inner)))
 
 
@@ -195,6 +303,7 @@ class SpringBed:
         strains: e_j [m], shape (m, n).
         late: How long ago in the last interval they were touched or released [s], zero if not, shape (n,).
         pace: Slope of force or gap then [m/s], shape (n,).
+        events: Shares of the last interval at which springs were touched or released, and their numbers.
     """
 
     law: SpringLaw
@@ -204,6 +313,7 @@ class SpringBed:
     strains: FloatArray
     late: FloatArray
     pace: FloatArray
+    events: list[tuple[FloatArray, NDArray[np.intp]]] = field(default_factory=list)
 
     @classmethod
     def undeformed(cls, law: SpringLaw, g: FloatArray, depth: float) -> SpringBed:
@@ -228,81 +338,112 @@ class SpringBed:
         if path.free[k]:
             self.release(span)
         else:
-            self.advance(float(path.depth[k]), (float(path.speed[k]), float(path.acceleration[k])), span)
+            self.advance(path.ways[k], span)
 
     def release(self, span: float) -> None:
         """Advance by a time [s] without the indenter."""
         self.surface, self.strains = self.law.free(self.surface, self.strains, np.array([span]))
-        self.touching, self.late = np.zeros(self.g.size, dtype=np.bool_), np.zeros(self.g.size)
+        self.touching, self.late, self.events = np.zeros(self.g.size, dtype=np.bool_), np.zeros(self.g.size), []
 
-    def advance(self, depth: float, motion: tuple[float, float], span: float) -> None:
-        """Advance by a time [s] under an indenter that starts at a depth [m].
+    def advance(
+        self, way: FloatArray, span: float, nodes: FloatArray = _AT_END
+    ) -> tuple[FloatArray, NDArray[np.bool_]]:
+        """Advance by a time [s] under an indenter.
 
         Args:
-            depth: At the start [m].
-            motion: Speed at the start [m/s] and acceleration [m/s^2].
+            way: Coefficients of the depth over the share of that time [m].
             span: The time [s].
+            nodes: Shares, increasing, the last one 1, shape (q,).
+
+        Returns:
+            Displacements of all ends [m] and whether springs touch at the nodes, each of shape (q, n).
 
         Raises:
             NotConvergedError: If a spring is touched and released without end.
         """
-        spent = np.zeros(self.g.size)
-        self.late, self.pace = np.zeros(self.g.size), np.zeros(self.g.size)
-        moving = np.arange(self.g.size)
-        for _ in range(_MOST_EVENTS):
+        motion, count = Motion(self.law, way, span), self.g.size
+        seen = np.zeros((nodes.size, count)), np.zeros((nodes.size, count), dtype=np.bool_)
+        self.late, self.pace = np.zeros(count), np.zeros(count)
+        self.events = []
+        theta, moving = np.zeros(count), np.arange(count)
+        for number in range(_MOST_EVENTS):
+            # A spring that is touched and released at one instant is so by rounding.
+            motion = replace(motion, rounding=_ROUNDING * 2.0**number)
             held = self.touching[moving]
-            parts = [self._stretch(i, depth, motion, span, spent) for i in (moving[held], moving[~held])]
-            moving = np.concatenate(parts)
+            moving = np.concatenate(
+                [self._stretch(i, motion, theta, nodes, seen) for i in (moving[held], moving[~held])]
+            )
             if not moving.size:
-                end = depth + span * (motion[0] + span * motion[1] / 2)
-                self.surface = np.where(self.touching, end - self.g, self.surface)
-                return
+                return seen
         raise NotConvergedError(
             f"{moving.size} springs are touched and released more than {_MOST_EVENTS} times between two instants",
             {"springs": float(moving.size)},
         )
 
     def _stretch(
-        self, i: NDArray[np.intp], depth: float, motion: tuple[float, float], span: float, spent: FloatArray
+        self,
+        i: NDArray[np.intp],
+        motion: Motion,
+        theta: FloatArray,
+        nodes: FloatArray,
+        seen: tuple[FloatArray, NDArray[np.bool_]],
     ) -> NDArray[np.intp]:
         """Advance springs i, all in contact or all free, to their next event or the end; those with an event."""
         if not i.size:
             return i
-        law, now, a, touching = self.law, spent[i], motion[1], bool(self.touching[i[0]])
-        v, w = motion[0] + a * now, depth + now * (motion[0] + now * a / 2) - self.g[i]
-        course = (self._force if touching else self._gap)(i, w, v, a, self.g[i] + abs(depth))
-        left = span - now
-        event = first_fall(course, left)
+        touching, start = bool(self.touching[i[0]]), theta[i]
+        start = start if start.any() else start[:1]
+        course = (self._force if touching else self._gap)(i, motion, start)
+        later, s = nodes[:, None] >= start, np.maximum(nodes[:, None], start)
+        surface = motion.depth(s) - self.g[i] if touching else course.fading(s).sum(axis=0)
+        for values, own in zip(seen, (surface, touching), strict=True):
+            values[:, i] = np.where(later, own, values[:, i])
+        event = first_fall(course)
         ends = event < np.inf
-        t = np.where(ends, event, left)
-        shared = t[:1] if (t == t[0]).all() else t
-        if touching:
-            self.strains[:, i] = law.pressed(self.strains[:, i], (v, a), shared)
-        else:
-            self.surface[i], self.strains[:, i] = law.free(self.surface[i], self.strains[:, i], shared)
-        spent[i] = now + t
-        last = i[ends]
+        last, rest, at = i[ends], i[~ends], event[ends]
+        self._move(rest, motion, start[~ends] if start.size > 1 else start, _AT_END)
         if last.size:
-            at = t[ends]
-            self.surface[last] = w[ends] + at * (v[ends] + at * a / 2)
-            self.touching[last] = not touching
-            self.late[last] = span - spent[last]
-            self.pace[last] = np.abs(course.terms(np.flatnonzero(ends), at)[1].sum(axis=0))
+            self._move(last, motion, start[ends] if start.size > 1 else start, at)
+            self.surface[last], self.touching[last] = motion.depth(at) - self.g[last], not touching
+            self.events.append((at, last))
+            theta[last], self.late[last] = at, motion.span * (1 - at)
+            self.pace[last] = np.abs(course.among(np.flatnonzero(ends)).with_slopes(at)[1]) / motion.span
         return last
 
-    def _force(self, i: NDArray[np.intp], w: FloatArray, v: FloatArray, a: float, size: FloatArray) -> Course:
-        """Force of springs in contact."""
-        fading = self.law.weights[:, None] * self.strains[:, i]
-        return Course(self.law.long_term * w, fading, 1 / self.law.times, v, a, self.law.drive, size)
+    def _move(self, i: NDArray[np.intp], motion: Motion, start: FloatArray, end: FloatArray) -> None:
+        """Move springs i, all in contact or all free, from shares of an interval to others."""
+        if not i.size:
+            return
+        time = motion.span * (end - start)
+        if self.touching[i[0]]:
+            decay = np.exp(-np.divide.outer(time, self.law.times).T)
+            self.strains[:, i] = motion.strains(end) + decay * (self.strains[:, i] - motion.strains(start))
+            self.surface[i] = motion.depth(end) - self.g[i]
+        else:
+            self.surface[i], self.strains[:, i] = self.law.free(self.surface[i], self.strains[:, i], time)
 
-    def _gap(self, i: NDArray[np.intp], w: FloatArray, v: FloatArray, a: float, size: FloatArray) -> Course:
+    def _force(self, i: NDArray[np.intp], motion: Motion, start: FloatArray) -> Course:
+        """Force of springs in contact."""
+        law, constant = self.law, -self.law.long_term * self.g[i]
+        fading = law.weights[:, None] * (self.strains[:, i] - motion.strains(start))
+        own = self._rounding(i, motion, fading)
+        return Course(constant, fading, motion.span / law.times, start, motion.force, motion.force_slope, own)
+
+    def _gap(self, i: NDArray[np.intp], motion: Motion, start: FloatArray) -> Course:
         """Gap between surface and indenter of free springs."""
-        amplitudes = self.law.modes.amplitudes(self.surface[i], self.strains[:, i])
-        return Course(-w, amplitudes, self.law.modes.rates, -v, -a, _motion, size)
+        fading = self.law.modes.amplitudes(self.surface[i], self.strains[:, i])
+        rates, own = motion.span * self.law.modes.rates, self._rounding(i, motion, fading)
+        return Course(self.g[i], fading, rates, start, motion.approach, motion.approach_slope, own)
+
+    def _rounding(self, i: NDArray[np.intp], motion: Motion, fading: FloatArray) -> FloatArray:
+        """Values whose sign is rounding, shape (n,)."""
+        return np.asarray(motion.rounding * (self.g[i] + np.abs(motion.way).sum() + np.abs(fading).sum(axis=0)))
 
     def forces(self, speed: float) -> FloatArray:
         """f at an indenter's speed [m/s], zero where free, shape (n,)."""
-        return np.where(self.touching, self.law.force(self.surface, self.strains, speed), 0.0)
+        law = self.law
+        pressed = law.long_term * self.surface + law.viscosity * speed + law.weights @ self.strains
+        return np.where(self.touching, pressed, 0.0)
 
     def edge(self, depth: float, speed: float) -> FloatArray:
         """Positive in contact, negative outside, and zero at the front, at a depth [m] and speed [m/s], shape (n,).

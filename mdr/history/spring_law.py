@@ -98,43 +98,10 @@ class SpringLaw:
         """Whether forces depend on the present displacement only."""
         return self.viscosity == 0.0 and not self.weights.size
 
-    def drive(self, t: FloatArray, accelerates: bool = True) -> tuple[FloatArray | float, FloatArray, FloatArray]:
-        """Force after times t [s] at constant acceleration 1, at constant speed 1, and the slope of the latter.
-
-        f(t) = g_inf w(0) + speed A(t) + acceleration B(t) + sum_j g_j e_j(0) exp(-t/tau_j) with A' = relaxation
-        function, B' = A. Each of shape (n,); the first is zero if nothing accelerates.
-        """
-        x = t / self.times[:, None]
-        faded = np.expm1(-x)
-        speed = self.viscosity + self.long_term * t - (self.weights * self.times) @ faded
-        slope = 1 + self.weights @ faded
-        if not accelerates:
-            return 0.0, speed, slope
-        return self.viscosity * t + (self.long_term / 2 + self.weights @ ramp_response(x)) * t * t, speed, slope
-
-    def pressed(self, strains: FloatArray, motion: tuple[FloatArray | float, float], t: FloatArray) -> FloatArray:
-        """e_j after times t [s] in contact, shape (m, n).
-
-        Args:
-            strains: e_j before, shape (m, n).
-            motion: Speed [m/s] and acceleration [m/s^2] of the indenter.
-            t: Shape (n,) or (1,).
-        """
-        tau = self.times[:, None]
-        x = t / tau
-        moved = motion[0] * tau * -np.expm1(-x)
-        if motion[1]:
-            moved = moved + motion[1] * t * t * ramp_response(x)
-        return np.asarray(strains * np.exp(-x) + moved)
-
     def free(self, surface: FloatArray, strains: FloatArray, t: FloatArray) -> tuple[FloatArray, FloatArray]:
         """u, shape (n,), and e_j, shape (m, n), of free springs after times t [s], shape (n,) or (1,)."""
         faded = self.modes.amplitudes(surface, strains) * np.exp(-self.modes.rates[:, None] * t)
         return faded.sum(axis=0), self.modes.strains @ faded
-
-    def force(self, w: FloatArray, strains: FloatArray, speed: float) -> FloatArray:
-        """f of springs in contact, shape (n,)."""
-        return np.asarray(self.long_term * w + self.viscosity * speed + self.weights @ strains)
 
     @cached_property
     def modes(self) -> Modes:

@@ -197,11 +197,12 @@ def test_nothing_adheres_without_work_of_adhesion():
 
 @pytest.mark.slow
 @pytest.mark.parametrize("layer", [HALF_SPACE, LAYER, LAYER.replace(poissons_ratio=0.3, thickness=0.3e-3)])
-def test_pull_off_force_converges_to_a_part_in_a_thousand_at_512(layer):
+def test_pull_off_forces_are_those_of_mdr_to_1e_5(layer):
+    """Already on 128 cells; beyond, errors fall until those of the polynomials over the radius are left."""
     exact = Mdr().solve(scene(layer, SPHERE, Detachment(control="force"))).pull_off_force
-    errors = [abs(detached(layer, SPHERE, "force", points).pull_off_force / exact - 1.0) for points in (128, 256, 512)]
-    assert errors[2] < 3e-4
-    assert errors[2] < errors[0] / 4.0  # order above one
+    errors = [abs(detached(layer, SPHERE, "force", points).pull_off_force / exact - 1.0) for points in (128, 512)]
+    assert max(errors) < 1e-5
+    assert errors[1] < max(errors[0], 1e-11)
 
 
 @pytest.mark.parametrize("control", ["displacement", "force"])
