@@ -27,7 +27,7 @@ from fem_reference.profiles import height
 from fem_reference.settings import Discretisation
 from fem_reference.stated import FLOOR, exact_names
 
-# Instants of the companion to either side, among which the largest change is stated. Not measured: half and twice.
+# Instants of the companion to either side, among which the largest change is stated.
 WINDOW = 6
 # Contact narrower than so many cells states the largest change while it is; the first cells err in every way.
 NARROW = 8.0
@@ -128,7 +128,7 @@ class HistorySolver:
                 near += _largest_near(change, coarse, answer, NARROW * cell) + SHARE_OF_MEAN * change.mean()
             error = SAFETY * near / max(np.abs(values).max(), np.finfo(float).tiny) + FLOOR
             if name == "contact_radius":
-                # Pressures of a layer that relaxes do not end like sqrt(a - r): radii are known to a cell.
+                # Pressures of a layer that relaxes do not end like sqrt(a - r): radii are read to a cell.
                 error = error + (1.0 if answer.scene.effects else 0.1) * cell / largest
             errors[name] = 0.0 * error if name in exact else error
         return replace(answer, error_estimate=errors)

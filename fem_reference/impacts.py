@@ -19,10 +19,10 @@ from fem_reference.profiles import height
 from fem_reference.settings import Discretisation
 from fem_reference.stated import FLOOR, exact_names, relative_change
 
-# Steps of a pilot in the time that contact is expected to take; more than half as many tell how long it lasts.
+# Steps of a pilot in the time that contact is expected to take; fewer than half as many are repeated.
 PILOT_STEPS = 60
 # Largest change of velocity in a step of the pilot and in one of two hundred steps, over the first velocity: a strong
-# dashpot stops a body far sooner than the layer throws it back. Not measured: half and twice.
+# dashpot stops a body far sooner than the layer throws it back.
 LARGEST_CHANGE, WANTED_CHANGE = 0.2, 0.05
 # Most steps over those of an impact on an elastic layer.
 MOST = 16

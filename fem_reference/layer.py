@@ -10,11 +10,11 @@ from scipy import sparse
 from skfem import ElementVector, FacetBasis
 
 from contact.records.validation import FloatArray, IntArray
-from fem_reference import weak_forms
 from fem_reference.assembly import ElementPair, Space, barycentric, element_matrices, quadrature, scatter
 from fem_reference.materials import Parts, PointModuli
 from fem_reference.mesh import Section
 from fem_reference.solver import RestrictedSolver
+from fem_reference.weak_forms import membrane
 
 # The radial strain s of the patch test, any number of the size of the volume strain 1 - 2 nu: with
 # c = (1 - 2 nu) - 2 s the pressure is finite at nu = 1/2.
@@ -150,6 +150,6 @@ def membrane_matrix(layer: DiscreteLayer) -> sparse.csc_array:
     basis = FacetBasis(mesh, ElementVector(layer.pair.displacement), facets=facets)
     depth = basis.global_coordinates()[1]
     shear = layer.parts.at(layer.section.part[mesh.f2t[0, basis.find]], depth).shear
-    found = weak_forms.membrane.assemble(basis, mu=shear).tocoo()
+    found = membrane.assemble(basis, mu=shear).tocoo()
     shape = (layer.space.size, layer.space.size)
     return sparse.coo_array((found.data, (owner[found.row], owner[found.col])), shape=shape).tocsc()

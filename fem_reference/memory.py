@@ -69,19 +69,21 @@ class Top:
         resultants: force per pressure unknown, shape (n,).
         viscosity: eta over the instantaneous modulus [s].
         dissipated_energy: energy lost so far.
+        dashpot_force: share of the dashpot in the force after the last step, ``eta v . D x'`` with ``M v = w``.
     """
 
     def __init__(self, modes: Modes, relaxation: ShearRelaxation) -> None:
         unit, acts = relaxation.at_once, relaxation.moduli > 0
         self.resultants, self.viscosity = modes.resultants, relaxation.viscosity / unit
-        self.dissipated_energy = 0.0
+        self.dissipated_energy = self.dashpot_force = 0.0
+        self._lever = np.linalg.lstsq(modes.displacements, modes.resultants)[0]
         self._modes, self._volume, self._shear = modes.displacements, modes.volume, modes.shear
         self._long_term = relaxation.long_term_modulus / unit
         self._moduli, self._times = relaxation.moduli[acts] / unit, relaxation.times[acts]
         self._now = self._before = self._memory = np.zeros_like(modes.volume)
         self._branches = np.zeros((len(self._moduli), len(modes.volume)))
         self._duration = self._last = 0.0
-        self._modulus, self._matrix = np.nan, np.empty((0, 0))
+        self._modulus, self._unit = np.nan, modes.displacements @ modes.displacements.T
 
     def restart(self) -> None:
         """The rates jump: the dashpot's next step is an implicit Euler step."""
@@ -100,7 +102,8 @@ class Top:
         modulus = self._long_term + tangent + following
         if modulus != self._modulus:
             self._modulus, self._stiffness = modulus, self._volume + self._shear * modulus
-            self._matrix = (self._modes / self._stiffness) @ self._modes.T
+            relaxes_alike = not self._volume.any()
+            self._matrix = self._unit / modulus if relaxes_alike else (self._modes / self._stiffness) @ self._modes.T
         return self._matrix, -(self._modes / self._stiffness) @ (self._shear * self._memory)
 
     def accept(self, pressure: FloatArray) -> None:
@@ -108,6 +111,7 @@ class Top:
         following = (self._modes.T @ pressure - self._shear * self._memory) / self._stiffness
         change = following - self._now
         self.dissipated_energy += self._dissipation(change)
+        self.dashpot_force = self.viscosity / self._duration * float(self._lever @ (self._shear * change))
         self._branches = self._alpha[:, None] * self._branches + np.outer(self._beta, change)
         self._before, self._now, self._last = self._now, following, self._duration
 

@@ -16,6 +16,7 @@ from itertools import pairwise
 from typing import Self
 
 import numpy as np
+from scipy.optimize import brentq
 
 from contact import FlatPunch, InvalidInput, NotConvergedError, Scene, StageLog
 from contact.records.validation import BoolArray, FloatArray
@@ -33,6 +34,10 @@ from fem_reference.trace import TraceSpace
 MAX_STEPS = 200_000
 # The step in which a load that acts from the first instant is reached, over the step after it.
 INSTANT = 1e-7
+# Fewest touches in a segment whose dashpot's force is smoothed.
+FEWEST_TOUCHES = 4
+# Share of a step in which a vertex touches at once.
+SLIGHTLY = 1e-6
 # Octaves of steps in a segment, the fewest and the most, and those that all segments share: every time scale after a
 # bend has its own steps.
 FEWEST, MOST, SHARED = 3, 12, 48
@@ -88,16 +93,38 @@ class Samples:
     condensed: CondensedLayer
     rows: list[tuple[float, ...]] = field(default_factory=list)
 
-    def add(self, time: float, depth: float, velocity: float, pressure: FloatArray) -> None:
-        """Append one sample."""
+    def add(self, time: float, depth: float, velocity: float, pressure: FloatArray, dashpot: float = 0.0) -> None:
+        """Append one sample; ``dashpot`` is the dashpot's share of the force."""
         surface = self.condensed.surface
         force, edge = float(surface.resultants @ pressure), edge_radius(self.condensed.radii, pressure)
-        self.rows.append((time, depth, velocity, force, edge, surface.stored_energy, surface.dissipated_energy))
+        energies = surface.stored_energy, surface.dissipated_energy
+        self.rows.append((time, depth, velocity, force, edge, *energies, dashpot))
 
     def column(self, name: str) -> FloatArray:
-        """One of time, depth, velocity, force, radius, stored, dissipated."""
-        names = ("time", "depth", "velocity", "force", "radius", "stored", "dissipated")
+        """One of time, depth, velocity, force, radius, stored, dissipated, dashpot."""
+        names = ("time", "depth", "velocity", "force", "radius", "stored", "dissipated", "dashpot")
         return np.array([row[names.index(name)] for row in self.rows])
+
+    def smooth_dashpot(self, first: int, marks: Sequence[tuple[float, float]]) -> None:
+        """Make the dashpot's share linear between the middles of the intervals from touch to touch.
+
+        It is constant in each interval, and right in its middle.
+
+        Args:
+            first: row after the start of a segment.
+            marks: instants of touches in the segment, with the share in the interval before each.
+        """
+        if len(marks) < FEWEST_TOUCHES:
+            return
+        ends, shares = np.array(marks).T
+        middles, shares = (ends[1:] + ends[:-1]) / 2, shares[1:]
+        time, share = self.column("time")[first:], self.column("dashpot")[first:]
+        place = np.clip(np.searchsorted(middles, time), 1, len(middles) - 1)
+        slope = np.diff(shares)[place - 1] / np.diff(middles)[place - 1]
+        smooth = shares[place] + slope * (time - middles[place])
+        for i in np.flatnonzero(time >= middles[0]):
+            row = self.rows[first + i]
+            self.rows[first + i] = (*row[:3], max(0.0, row[3] + smooth[i] - share[i]), *row[4:])
 
 
 def simulate_impact(condensed: CondensedLayer, body: FallingBody, duration: float) -> Samples:
@@ -211,12 +238,90 @@ def simulate_prescribed(
     for ends, (t0, t1), (v0, v1) in zip(steps, pairwise(time), pairwise(values), strict=True):
         if by_depth:
             surface.restart()
-        active = None
+        marks: list[tuple[float, float]] = []
+        active, first = None, len(record.rows)
         for before, now in pairwise([t0, *ends]):
             load = v1 if now == t1 else v0 + (v1 - v0) * (now - t0) / (t1 - t0)
-            pressure = advance(float(now - before), float(load))
-            record.add(float(now), depth, 0.0, pressure)
+            if by_depth and surface.viscosity and v1 > v0 and active is not None:
+                walk = Touches(condensed, depth, (v1 - v0) / (t1 - t0), active, marks, float(before))
+                pressure, active = walk.advance(float(now - before))
+                depth = float(load)
+            else:
+                pressure = advance(float(now - before), float(load))
+            record.add(float(now), depth, 0.0, pressure, surface.dashpot_force)
+        record.smooth_dashpot(first, marks)
     return record
+
+
+@dataclass(frozen=True)
+class Touches:
+    """Steps under a growing depth that end where a vertex touches or leaves, for a layer with a dashpot.
+
+    While the set of pressed vertices is fixed, the surface is linear in the depth, and rates by Euler steps are exact.
+    At other instants a dashpot's force errs like the cell: the stiffness of a contact on cells is a staircase.
+
+    Attributes:
+        condensed: the layer and its indenter.
+        depth: at the start.
+        rate: of the depth.
+        active: pressed vertices.
+        marks: instants of touches, which are appended, with the dashpot's force before them.
+        time: at the start [s].
+    """
+
+    condensed: CondensedLayer
+    depth: float
+    rate: float
+    active: BoolArray
+    marks: list[tuple[float, float]]
+    time: float
+
+    def advance(self, duration: float) -> tuple[FloatArray, BoolArray]:
+        """Pressures and pressed vertices after a duration [s]; the memory moves on."""
+        elapsed, active = 0.0, self.active.copy()
+        for _ in range(2 * len(active)):
+            left = duration - elapsed
+            pressure, slack = self._held(elapsed, left, active)
+            if slack.min() >= 0.0:
+                self.condensed.surface.accept(pressure)
+                return np.maximum(pressure, 0.0), active
+            part = self._crossing(elapsed, left, active)
+            wrong = self._held(elapsed, min(left, part + SLIGHTLY * left), active)[1] < 0.0
+            if part:
+                self.condensed.surface.accept(self._held(elapsed, part, active)[0])
+                elapsed += part
+                self.marks.append((self.time + elapsed, self.condensed.surface.dashpot_force))
+            active ^= wrong
+        # Vertices touch and leave again and again.
+        state = solve_complementarity(*self._problem(elapsed, duration - elapsed), active)
+        self.condensed.surface.accept(state.pressure)
+        return state.pressure, state.active
+
+    def _problem(self, elapsed: float, duration: float) -> tuple[FloatArray, FloatArray]:
+        """Compliance and approach of the contact after a duration, with an Euler step of the dashpot."""
+        surface = self.condensed.surface
+        surface.restart()
+        matrix, offset = surface.begin(duration)
+        depth = self.depth + self.rate * (elapsed + duration)
+        return matrix, depth * surface.resultants - self.condensed.profile - offset
+
+    def _held(self, elapsed: float, duration: float, active: BoolArray) -> tuple[FloatArray, FloatArray]:
+        """Pressures with a fixed set after a duration, and what must not be negative, plus roundings."""
+        matrix, approach = self._problem(elapsed, duration)
+        pressure = np.zeros_like(approach)
+        if active.any():
+            pressure[active] = np.linalg.solve(matrix[np.ix_(active, active)], approach[active])
+        slack = np.where(active, matrix.diagonal() * pressure, matrix @ pressure - approach)
+        return pressure, slack + 1e-11 * np.abs(approach).max()
+
+    def _crossing(self, elapsed: float, left: float, active: BoolArray) -> float:
+        """Time after which the first vertex touches or leaves [s], by bisection and secants; zero if at once."""
+
+        def least(part: float) -> float:
+            return float(self._held(elapsed, part, active)[1].min())
+
+        low, high = SLIGHTLY * left, left
+        return 0.0 if least(low) < 0.0 else float(brentq(least, low, high, xtol=0.1 * SLIGHTLY * left, rtol=1e-7))
 
 
 def _depth_of_force(
@@ -231,7 +336,7 @@ def _depth_of_force(
     for _ in range(60):
         state = solve_complementarity(matrix, depth * w - gap)
         defect = force - float(w @ state.pressure)
-        # A force far below the layer's own stresses is known to the rounding of its depth only.
+        # A force far below the layer's own stresses has the rounding of its depth.
         if abs(defect) <= 1e-10 * force or abs(change) <= 1e-14 * abs(depth):
             return state, depth
         act = state.active if state.active.any() else gap / w <= depth + 1e-12

@@ -145,8 +145,8 @@ def solve_to_accuracy(
 
     Args:
         attempt: solves with settings.
-        accuracy: relative accuracy of the numbers that are asked for.
-        pressure_accuracy: the same of the pressure, if that is asked for.
+        accuracy: relative accuracy of the numbers.
+        pressure_accuracy: relative accuracy of the pressure, if any.
         moves: whether the scene is a motion, whose errors fall slowly.
 
     Raises:

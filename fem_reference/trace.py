@@ -37,7 +37,7 @@ class TraceSpace:
 
     def basis(self, t: FloatArray) -> FloatArray:
         """The degree + 1 basis functions at local coordinates t in [0, 1], shape (..., node)."""
-        # Products of differences: each value is the same bits whatever else is asked for.
+        # Products of differences: each value has the same bits for any set of arguments.
         nodes = np.arange(self.degree + 1) / self.degree
         others = [[m for m in range(self.degree + 1) if m != n] for n in range(self.degree + 1)]
         ways = [np.prod((t[..., None] - nodes[own]) / (nodes[n] - nodes[own]), axis=-1) for n, own in enumerate(others)]

@@ -25,14 +25,11 @@ from fem_reference.surface import Surface
 
 # Largest tension or overlap that is accepted as rounding, relative to the largest pressure or to the depth.
 TOLERANCE = 1e-9
-# Fewer nodes do not resolve a pressure that is least on the axis, like that under r^4, which seems to pull there with
-# up to 7 nodes of 120 (random scenes of seed 7, 2026-11-22): such contacts are only passed through.
+# Fewer nodes do not resolve a pressure that is least on the axis, like that under r^4: such contacts are not checked.
 RESOLVED = 12
-# A node within so much of its limit of friction stays as it is, so that rounding does not decide again and again where
-# slip turns (1e-12 was too little there, random histories of seed 99, 2026-11-22).
+# A node within so much of its limit of friction stays as it is, so that rounding does not decide where slip turns.
 TIE = 1e-9
-# Sets of sliding points that are tried in one step; two to six suffice for contacts that grow (paraboloids, nu 0 to
-# 1/2, mu 0.01 to 1, 2026-11-22), and some more where slip turns.
+# Sets of sliding points that are tried in one step; two to six suffice for contacts that grow.
 MOST_SETS = 400
 # Nodes at the end of the strip that the contact does not reach: the last hat function is only half of one.
 SPARE = 2

@@ -12,7 +12,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGES = ("contact", "bem", "mdr", "fem_reference", "cases", "reports")
 BORDERS = {
-    "gmsh": "fem_reference/discrete_layer/mesh.py",
+    "gmsh": "fem_reference/mesh.py",
     "h5py": "contact/files/storage.py",
     "pyfftw": "bem/grid/transforms.py",
     "skfem": "fem_reference/",

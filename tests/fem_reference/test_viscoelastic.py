@@ -299,3 +299,20 @@ def test_a_force_that_goes_back_to_zero_is_zero_in_the_end():
         loading = ForceHistory(time=[0.0, 1e-3, 2e-3], force=[0.0, peak_force, 0.0])
         answer = QUICK.solve(Scene(layer=layer, indenter=BALL, loading=loading, effects=(SOLID,)))
         assert answer.normal_force[-1] == answer.contact_radius[-1] == 0.0
+
+
+def test_a_ramp_of_depth_on_a_dashpot_is_that_of_the_half_space():
+    """F = (16/3) sqrt(R) G d^1.5 + 8 eta a d'; at equal steps the contact on cells missed 3.5e-3 of the peak."""
+    G, R, depth, ramp, eta = 1e6, 0.01, 1e-5, 0.05, 3e4
+    scene = Scene(
+        layer=Layer.half_space(youngs_modulus=3 * G, poissons_ratio=0.5),
+        indenter=Paraboloid(radius_of_curvature=R),
+        loading=DepthHistory(time=[0.0, ramp, 1.0], depth=[0.0, depth, depth]),
+        effects=(KelvinVoigt(shear_modulus=G, viscosity=eta),),
+    )
+    answer = Fem().solve(scene)
+    d, rate = np.interp(answer.time, [0.0, ramp], [0.0, depth]), np.where(answer.time <= ramp, depth / ramp, 0.0)
+    exact = 16 / 3 * np.sqrt(R) * G * d**1.5 + 8 * eta * np.sqrt(R * d) * rate
+    error = np.abs(answer.normal_force - exact) / exact.max()
+    assert np.all(error <= answer.error_estimate["normal_force"])
+    assert error[answer.time > 0.01 * ramp].max() < 3e-4
