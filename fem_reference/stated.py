@@ -41,8 +41,8 @@ FLOOR = 1e-12
 # tenth one stiffness in a hundred is missed by three, twice of it widens half of all stated errors.
 LEAST_SHARE = 0.3
 # Factor on changes next to an upright end nearer than `NARROW`, where meshes are uneven. With half of it a sphere
-# 1e-7 before its equator is missed.
-BEFORE_END = 2.0
+# 1e-9 before its equator is missed.
+BEFORE_END = 16.0
 # Stated errors of P4P3 fall like this power of the growth on graded meshes.  It chooses the next mesh only: a wrong
 # value costs attempts, no accuracy.
 ERROR_ORDER = 7.0
@@ -87,6 +87,8 @@ def path_with_errors(
     changes = {name: uneven * _with_neighbours(relative_change(answer, companion, name)) for name in answer.ARRAYS}
     exact = set() if answer.scene.effect(Adhesion) is not None else exact_names(answer.scene)
     least = LEAST_SHARE * np.max([changes[name] for name in answer.ARRAYS if name != "contact_radius"], axis=0)
+    # The stiffness of a load errs with its radius, too.
+    changes["contact_stiffness"] = np.maximum(changes["contact_stiffness"], LEAST_SHARE * changes["contact_radius"])
     errors = {
         name: np.zeros(len(answer)) if name in exact else SAFETY * np.maximum(change, least) + FLOOR
         for name, change in changes.items()
