@@ -1,182 +1,256 @@
-"""Equilibria over the contact radius: folds, stability, what is met under a control, and where contact is lost.
+"""Equilibria over the contact radius: folds, stability, what a withdrawal meets, where contact is lost, Eqs. (40)-(46).
 
-Depth and force are functions of the contact radius a, from any method. Under a control q - the depth, the force or the
-displacement depth + force/K of a machine of stiffness K - an equilibrium is stable where q grows with a. The whole
-branch is sampled and its folds are extrema of q, so no fold is ever stepped over.
+Depth and force are functions of the contact radius a, from springs or from discs of cells. Under a control q - the
+depth, the force or the displacement depth + force/K of a machine of stiffness K - an equilibrium is stable where q
+grows with a. Along a = b + (y - y_b)^2, b the last breakpoint, they are smooth functions of y: the elongation starts
+like sqrt(a), and g starts like sqrt(a - b) behind a kink. Folds are roots of polynomials, all of which are found.
+
+Withdrawn slowly, a contact holds as long as some state of smaller or equal radius bears what is prescribed: from an
+unstable state the front runs inwards to the next stable one. So contact is lost at the smallest q within the start.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, reduce
 from itertools import pairwise
-from typing import Final
+from typing import Final, TypeAlias
 
 import numpy as np
-from numpy.polynomial import Chebyshev
-from scipy.optimize import brentq
+from numpy.polynomial import chebyshev
+from numpy.typing import NDArray
 
+from bem.piecewise import Piecewise
 from contact import CriticalPoint
 from contact.records.validation import BoolArray, FloatArray
 from contact.scene.loading import Controlled
 
 CONTROLS: Final[tuple[Controlled, ...]] = ("displacement", "force", "machine")
 DEPTH, FORCE, MACHINE = range(3)
-# Samples between two breaks, geometrically from this share of the way on: neighbours are 6 % apart. Half as many see
-# the same folds of all layers known; twice as many only take longer.
-SAMPLES: Final = 401
-NEAREST: Final = 1e-10
-# Degree of the polynomial about a fold, and the largest imaginary part of a root that counts as real.
-FOLD_DEGREE: Final = 16
-IMAGINARY: Final = 1e-6
-# Change of q over its largest value that is rounding, and relative step beside a state that shows its stability.
-ROUNDING: Final = 1e-13
-ASIDE: Final = 1e-6
+# Share of the largest y below which nothing is a fold: closer to the tip all values are roundings.
+TIP: Final = 1e-5
+# Distance in half a panel within which a root may lie outside of it, and two roots are one; a hundredth of it counts
+# roundings where a section begins without slope.
+EDGE: Final = 1e-6
+# Steps of a bracketed inversion; bisection alone needs 53.
+MOST_STEPS: Final = 60
+
+# Depth [m] and force [N], shape (2, n), at radii b + d: b [m] where a section begins, d [m] beyond it, shape (n,).
+Sampler: TypeAlias = Callable[[float, FloatArray], FloatArray]
 
 
 @dataclass(frozen=True, eq=False)
 class Branch:
-    """All equilibria with radii in (0, end].
+    """All equilibria with contact radii in (0, radii[-1]].
 
     Attributes:
-        values: Depth [m] and force [N], shape (2, n), at contact radii [m], shape (n,).
-        breaks: Radii [m] between zero and the end where these are not smooth: rims, kinks.
-        end: Largest radius [m].
-        compliance: 1/K [m/N] of a machine; zero if nothing gives way.
+        functions: Depth [m], force [N] and displacement of the machine [m] over y.
+        section_ends: y at zero, at the breakpoints and at the largest radius, shape (sections + 1,).
+        radii: a [m] there.
+        compliance: 1/K [m/N] of a machine; zero if it is rigid, and then nothing controls its displacement.
     """
 
-    values: Callable[[FloatArray], FloatArray]
-    breaks: tuple[float, ...]
-    end: float
-    compliance: float = 0.0
+    functions: Piecewise
+    section_ends: FloatArray
+    radii: FloatArray
+    compliance: float
+
+    @classmethod
+    def sampled(
+        cls, sample: Sampler, breakpoints: tuple[float, ...], radius: float, error: float = 0.0, compliance: float = 0.0
+    ) -> Branch:
+        """All equilibria up to a contact radius.
+
+        Args:
+            sample: Depth and force of the equilibria.
+            breakpoints: Radii [m] where the profile is not analytic, its flat end included.
+            radius: Largest contact radius [m].
+            error: Relative error of the samples.
+            compliance: 1/K [m/N] of a machine.
+
+        Raises:
+            NotConvergedError: If the samples are rougher than that.
+        """
+
+        def section(start: float, low: float, high: float) -> Piecewise:
+            def values(y: FloatArray) -> FloatArray:
+                depth, force = sample(start, (y - low) ** 2)
+                return np.stack([depth, force, depth + compliance * force])
+
+            # Short sections between many breakpoints are smooth.
+            return Piecewise.resolved(values, low, high, error, parts=max(1, 4 // (radii.size - 1)))
+
+        radii = np.array([0.0, *(b for b in sorted(set(breakpoints)) if 0.0 < b < radius), radius])
+        ends = np.concatenate([[0.0], np.cumsum(np.sqrt(np.diff(radii)))])
+        sections = (section(*one) for one in zip(radii.tolist(), ends[:-1].tolist(), ends[1:].tolist(), strict=False))
+        return cls(reduce(Piecewise.followed_by, sections), ends, radii, compliance)
+
+    @property
+    def end(self) -> float:
+        """Largest y."""
+        return float(self.section_ends[-1])
 
     @property
     def controls(self) -> tuple[int, ...]:
         """All that may be controlled."""
         return (DEPTH, FORCE, MACHINE) if self.compliance else (DEPTH, FORCE)
 
-    def controlled(self, control: int, radius: FloatArray) -> FloatArray:
-        """q [m, N or m] at radii > 0 [m], shape (n,)."""
-        return self._chosen(control, self.values(radius))
+    def radius(self, y: FloatArray, flat_radius: float = 0.0) -> FloatArray:
+        """a [m] at y; over a flat end a - b [m] with the digits that a loses beside it."""
+        section = np.clip(self.section_ends.searchsorted(y, side="right") - 1, 0, self.radii.size - 2)
+        excess = (self.radii[section] - flat_radius) + (y - self.section_ends[section]) ** 2
+        return np.asarray(np.minimum(excess, self.radii[-1] - flat_radius))
 
-    def at(self, control: int, radius: float) -> float:
-        """q at one radius; zero at the tip."""
-        return float(self.controlled(control, np.array([radius]))[0]) if radius > 0.0 else 0.0
+    def position(self, radius: FloatArray) -> FloatArray:
+        """y of contact radii [m]."""
+        section = np.clip(self.radii.searchsorted(radius, side="right") - 1, 0, self.radii.size - 2)
+        return np.asarray(self.section_ends[section] + np.sqrt(np.maximum(radius - self.radii[section], 0.0)))
 
-    def state(self, radius: float) -> tuple[float, float, float]:
-        """Radius, depth and force."""
-        return radius, self.at(DEPTH, radius), self.at(FORCE, radius)
+    def values(self, y: FloatArray) -> FloatArray:
+        """Depth [m] and force [N] at y, shape (2, n)."""
+        return self.functions(y)[:MACHINE]
 
-    def stable(self, control: int, radius: FloatArray) -> BoolArray:
-        """Whether q grows with the radius, at radii [m] below the end."""
-        more, less = radius * (1.0 + ASIDE), radius * (1.0 - ASIDE)
-        return np.asarray(self.controlled(control, np.minimum(more, self.end)) > self.controlled(control, less))
+    def at(self, control: int, y: float) -> float:
+        """q [m, N or m] at y; the tip itself bears nothing, and a kink has the values from inside."""
+        return float(self.functions(np.array([y]))[control, 0]) if y > 0.0 else 0.0
+
+    def state(self, y: float) -> tuple[float, float, float]:
+        """Contact radius [m], depth [m] and force [N] at y."""
+        return float(self.radius(np.array([y]))[0]), self.at(DEPTH, y), self.at(FORCE, y)
+
+    def stable(self, control: int, y: FloatArray) -> BoolArray:
+        """Whether q grows with the radius at y."""
+        return np.asarray(self.functions.slope(y)[control] > 0.0)
 
     def folds(self, control: int) -> list[float]:
-        """Radii [m] at which q turns, increasing."""
+        """All y > 0 where q turns, increasing."""
         return self._folds[control]
 
-    def solutions(self, control: int, value: float) -> list[float]:
-        """Radii [m] of all stable equilibria with this q, increasing."""
+    def solutions(self, control: int, target: FloatArray) -> FloatArray:
+        """y of each target on each stable part of the branch, from the tip outwards, shape (parts, n); or NaN."""
         found = []
         for low, high in pairwise([0.0, *self.folds(control), self.end]):
-            least, largest = self.at(control, low), self.at(control, high)
-            if least <= value <= largest and least < largest:
-                found.append(brentq(lambda a: self.at(control, a) - value, low, high, xtol=1e-15 * high))
-        return found
+            if self.stable(control, np.array([0.5 * (low + high)]))[0]:
+                # What lies in a step of rounded values at a kink is held there.
+                ends = self.functions(np.array([low, np.nextafter(low, high), high]))[control]
+                inside = (target >= ends[:2].min()) & (target <= ends[2])
+                found.append(np.full(target.shape, np.nan))
+                found[-1][inside] = self._inverted(control, target[inside], low, high)
+        return np.array(found).reshape(-1, *target.shape)
+
+    def smallest(self, control: int, target: FloatArray) -> FloatArray:
+        """Smallest y of a stable equilibrium with each q, shape (n,); NaN where there is none."""
+        return np.asarray(np.fmin.reduce(self.solutions(control, target), axis=0, initial=np.nan))
+
+    def widest(self, control: int, target: float) -> float:
+        """Largest radius [m] of a stable equilibrium with this q, or of the whole branch where there is none."""
+        y = self.solutions(control, np.array([target]))
+        widest = np.fmax.reduce(y, axis=0, initial=np.nan)
+        return float(self.radius(np.where(np.isnan(widest), self.end, widest))[0])
+
+    @property
+    def strength(self) -> float:
+        """Largest tension at a fold [N], infinite without a fold: pressing as hard shows all of the way back."""
+        return max((-self.at(FORCE, y) for y in self.folds(FORCE)), default=np.inf)
 
     def loss(self, control: int, start: float) -> float:
-        """Radius [m] at which a withdrawal from `start` loses contact.
-
-        Contact holds as long as some state of smaller or equal radius bears what is prescribed: from an unstable state
-        the front runs inwards to the next stable one. So it is lost at the smallest q within the start.
-        """
-        return min([0.0, *self._within(control, start), start], key=lambda a: self.at(control, a))
+        """y at which a withdrawal from y = start loses contact."""
+        return min([0.0, *self._within(control, start), start], key=lambda y: self.at(control, y))
 
     def largest_tension(self, control: int, start: float) -> float:
-        """Radius [m] of the smallest force on the way to the loss of contact.
+        """y of the smallest force on the way to the loss of contact.
 
         A jump lands under less tension than it left with.
         """
         lost = self.loss(control, start)
         if control == FORCE:
             return lost
-        points = [lost, start, *(a for a in self._within(FORCE, start) if a > lost)]
-        return min((a for a in points if self._is_met(control, a, start)), key=lambda a: self.at(FORCE, a))
+        points = [lost, start, *(y for y in self._within(FORCE, start) if y > lost)]
+        return min((y for y in points if self._is_met(control, y, start)), key=lambda y: self.at(FORCE, y))
+
+    def pull_off(self, control: int, start: float) -> dict[str, float]:
+        """State where contact is lost, and the largest tension on the way, under the names of a `DetachmentPath`."""
+        radius, depth, force = self.state(self.loss(control, start))
+        return {
+            "pull_off_force": self.at(FORCE, self.largest_tension(control, start)),
+            "pull_off_depth": depth,
+            "pull_off_contact_radius": radius,
+            "force_at_loss": force,
+        }
 
     def critical_points(self, start: float, *, pinned: bool) -> tuple[CriticalPoint, ...]:
         """Where the front sets off, all folds on the way in, and where first touch lands.
 
         Args:
-            start: Radius [m] from which the indenter is withdrawn.
+            start: y from which the indenter is withdrawn.
             pinned: Whether the front rests at a sharp edge, of a flat punch, until the branch's depth is reached.
         """
         points = [(c, "start", start) for c in self.controls if pinned]
-        points += [(c, self._kind(c, a), a) for c in self.controls for a in self._within(c, start)[::-1]]
+        points += [(c, self._kind(c, y), y) for c in self.controls for y in self._within(c, start)[::-1]]
         if not pinned:
-            points += [(c, "snap-in", a) for c in self.controls for a in self.solutions(c, 0.0)[:1] if a > 0.0]
-        return tuple(self._critical_point(*point) for point in points)
+            landings = [(c, float(self.smallest(c, np.zeros(1))[0])) for c in self.controls]
+            points += [(c, "snap-in", y) for c, y in landings if y > 0.0]
+        states = ((c, kind, *self.state(y)) for c, kind, y in points)
+        return tuple(
+            CriticalPoint(control=CONTROLS[c], kind=kind, contact_radius=a, indentation_depth=depth, normal_force=force)
+            for c, kind, a, depth, force in states
+        )
 
-    @property
-    def strength(self) -> float:
-        """Largest tension at a fold [N], infinite without a fold: pressing as hard shows all of the way back."""
-        folds = self.folds(FORCE)
-        return max((-self.at(FORCE, a) for a in folds), default=np.inf) if folds else np.inf
+    def _within(self, control: int, start: float) -> list[float]:
+        return [y for y in self.folds(control) if y < start]
 
-    def _chosen(self, control: int, values: FloatArray) -> FloatArray:
-        depth, force = values
-        return np.asarray((depth, force, depth + self.compliance * force)[control])
+    def _is_met(self, control: int, y: float, start: float) -> bool:
+        """Whether a withdrawal comes by: every state farther out has a larger q."""
+        outside = [one for one in (*self._within(control, start), start) if one > y]
+        return all(self.at(control, one) >= self.at(control, y) for one in outside)
 
-    @cached_property
-    def _samples(self) -> tuple[FloatArray, FloatArray]:
-        """Radii [m], from zero on, and depth and force there."""
-        ends = [0.0, *sorted(b for b in set(self.breaks) if 0.0 < b < self.end), self.end]
-        # The last but one shows whether q turns just before a break or the end.
-        way = np.concatenate([[0.0], np.geomspace(NEAREST, 1.0, SAMPLES), [1.0 - ASIDE]])
-        radius = np.unique(np.concatenate([low + (high - low) * way for low, high in pairwise(ends)] + [ends]))
-        radius = radius[radius <= self.end]
-        return radius, np.concatenate([np.zeros((2, 1)), self.values(radius[1:])], axis=1)
+    def _kind(self, control: int, y: float) -> str:
+        """Withdrawing, a fold is met from above: what is stable there loses its stability."""
+        return "pull-off" if bool(self.stable(control, np.array([y * (1.0 + EDGE)]))[0]) else "snap-in"
 
     @cached_property
     def _folds(self) -> tuple[list[float], ...]:
-        return tuple(self._extrema(control) for control in self.controls)
+        return tuple(self._turns(control) for control in self.controls)
 
-    def _extrema(self, control: int) -> list[float]:
-        radius, values = self._samples
-        q = self._chosen(control, values)
-        # Where a rounding is all that changes no fold is seen.
-        kept = np.append(True, np.abs(np.diff(q)) > ROUNDING * np.abs(q).max())
-        radius, q = radius[kept], q[kept]
-        grows = np.diff(q) > 0.0
-        turns = np.flatnonzero(grows[1:] != grows[:-1]) + 1
-        return [self._extremum(control, *radius[i - 1 : i + 2], grows=bool(grows[i - 1])) for i in turns]
+    def _turns(self, control: int) -> list[float]:
+        """Kinks and roots of the slope, wherever its sign differs on both sides."""
+        points = np.concatenate([self.section_ends[1:-1], *self._roots(control)])
+        inside = points[(points > TIP * self.end) & (points < self.end)]
+        points = np.sort(np.concatenate([[0.0], inside, [self.end]]))
+        points = points[np.append(True, np.diff(points) > EDGE * self.end)]
+        grows = self.stable(control, 0.5 * (points[1:] + points[:-1]))
+        return list(points[1:-1][grows[1:] != grows[:-1]].tolist())
 
-    def _extremum(self, control: int, low: float, middle: float, high: float, *, grows: bool) -> float:
-        """Between two samples, or at the middle one where the slope jumps."""
-        candidates = [middle]
-        for left, right in pairwise((low, middle, high) if middle in self.breaks else (low, high)):
-            fit = Chebyshev.interpolate(lambda a: self.controlled(control, a), FOLD_DEGREE, [left, right])
-            roots = fit.deriv().roots()
-            real = roots.real[np.abs(roots.imag) < IMAGINARY * (right - left)]
-            candidates += [float(a) for a in real if left < a < right]
-        return (max if grows else min)(candidates, key=lambda a: self.at(control, a))
+    def _roots(self, control: int) -> list[FloatArray]:
+        """Roots of the slope on every panel where its mean does not exclude them, and jumps of its sign in between."""
+        slope, edges = self.functions.slope.series[:, control], self.functions.edges
+        before, after = slope.sum(axis=0)[:-1], np.asarray(chebyshev.chebval(-1.0, slope))[1:]
+        doubtful: NDArray[np.intp] = np.flatnonzero(np.abs(slope[0]) <= np.abs(slope[1:]).sum(axis=0))
+        return [edges[1:-1][before * after < 0.0], *(_roots(slope[:, i], *edges[i : i + 2]) for i in doubtful)]
 
-    def _within(self, control: int, start: float) -> list[float]:
-        return [a for a in self.folds(control) if a < start]
+    def _inverted(self, control: int, target: FloatArray, low: float, high: float) -> FloatArray:
+        """y of each target on a part where q grows; a Newton step out of its bracket is halved."""
+        left, right = np.full(target.shape, low), np.full(target.shape, high)
+        y = 0.5 * (left + right)
+        for _ in range(MOST_STEPS):
+            excess, slope = self.functions(y)[control] - target, self.functions.slope(y)[control]
+            left, right = np.where(excess <= 0.0, y, left), np.where(excess >= 0.0, y, right)
+            step = y - excess / np.where(slope > 0.0, slope, np.inf)
+            before, y = y, np.where((step >= left) & (step <= right) & (slope > 0.0), step, 0.5 * (left + right))
+            if np.all(np.abs(y - before) <= 1e-13 * high):
+                break
+        return np.asarray(y)
 
-    def _is_met(self, control: int, radius: float, start: float) -> bool:
-        """Whether a withdrawal comes by: every state farther out has a larger q."""
-        outside = [a for a in (*self._within(control, start), start) if a > radius]
-        return all(self.at(control, a) >= self.at(control, radius) for a in outside)
 
-    def _kind(self, control: int, radius: float) -> str:
-        """Withdrawing, a fold is met from above: what is stable there loses its stability."""
-        beyond = np.array([min(radius * (1.0 + 2.0 * ASIDE), self.end)])
-        return "pull-off" if bool(self.stable(control, beyond)[0]) else "snap-in"
-
-    def _critical_point(self, control: int, kind: str, radius: float) -> CriticalPoint:
-        a, depth, force = self.state(radius)
-        return CriticalPoint(
-            control=CONTROLS[control], kind=kind, contact_radius=a, indentation_depth=depth, normal_force=force
-        )
+def _roots(series: FloatArray, low: float, high: float) -> FloatArray:
+    """Real roots of a Chebyshev series on a panel, each with one more step of Newton's method."""
+    size = np.abs(series).max()
+    if size == 0.0:
+        return np.empty(0)
+    roots = chebyshev.chebroots(chebyshev.chebtrim(series, 1e-15 * size))
+    z = roots.real[(np.abs(roots.imag) < EDGE) & (np.abs(roots.real) < 1.0 + EDGE)]
+    # A double root, which has no slope, is no change of sign and stays where it is.
+    with np.errstate(divide="ignore", invalid="ignore"):
+        step = chebyshev.chebval(z, series) / chebyshev.chebval(z, chebyshev.chebder(series))
+    return np.asarray(0.5 * (low + high) + 0.5 * (high - low) * (z - np.where(np.abs(step) < EDGE, step, 0.0)))

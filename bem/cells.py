@@ -209,15 +209,14 @@ def _errors(value: FloatArray, coarse: FloatArray, lag: FloatArray | float) -> F
 def _largest(scene: Scene, pressing: Pressing) -> float:
     """Radius [m] of the largest contact, by discs: at the largest depth, or where a detachment starts."""
     loading, indenter = scene.loading, scene.indenter
-    given = loading.initial_contact_radius if isinstance(loading, Detachment) else None
-    deepest = None if isinstance(loading, Detachment) else max(float(loading.values.max()), 0.0)  # type: ignore[attr-defined]
-    end = given or largest_radius(scene, pressing, FORCE if deepest is None else DEPTH, deepest)
-    if given or isinstance(indenter, FlatPunch):
+    end = largest_radius(scene, pressing)
+    if isinstance(indenter, FlatPunch) or getattr(loading, "initial_contact_radius", None):
         return end
     branch = AdheringIndenter.up_to(scene, pressing, end, NODES // 2).branch
-    if deepest is None:
-        return min(AHEAD * branch.loss(FORCE, end) + 0.1 * indenter.flat_radius, indenter.max_radius)
-    return min(ROOM * max(branch.solutions(DEPTH, deepest), default=end), end)
+    if isinstance(loading, Detachment):
+        lost, _, _ = branch.state(branch.loss(FORCE, branch.end))
+        return min(AHEAD * lost + 0.1 * indenter.flat_radius, indenter.max_radius)
+    return min(ROOM * branch.widest(DEPTH, max(float(loading.values.max()), 0.0)), end)  # type: ignore[attr-defined]
 
 
 def _pull_off(columns: FloatArray, *, by_force: bool) -> dict[str, float]:

@@ -250,16 +250,11 @@ class Density:
         return np.column_stack([np.ones(excess.size), transform(self.profile, excess, self.kernel.sizes.slopes)])
 
     def _solved(self) -> FloatArray:
-        """phi at the nodes: by a matrix of nodes or, where these are fewer, of wave numbers.
-
-        (1 - P Q)^-1 = 1 + P (1 - Q P)^-1 Q, P of nodes times wave numbers.
-        """
+        """phi at the nodes."""
         k, weight = self.kernel.waves(2 * self.a)
-        Q = np.cos(np.multiply.outer(k, self.t)) * self.w
-        P = (Q / self.w).T * weight
-        if k.size < self.t.size and not self.kernel.is_graded:
-            return np.asarray(self.load + P @ np.linalg.solve(np.eye(k.size) - Q @ P, Q @ self.load))
-        return np.asarray(np.linalg.solve(np.eye(self.t.size) - P @ Q - self._tail(self.t), self.load))
+        waves = np.cos(np.multiply.outer(k, self.t))
+        matrix = (waves.T * weight) @ (waves * self.w) + self._tail(self.t)
+        return np.asarray(np.linalg.solve(np.eye(self.t.size) - matrix, self.load))
 
     def psi(self, x: FloatArray) -> FloatArray:
         """int_0^a L(x, t) phi(t) dt at x >= 0 [m], also outside the contact, shape (x.size, 2)."""
@@ -296,10 +291,12 @@ class Density:
 
     def pressure(self, r: FloatArray, depth: float, *, is_singular: bool) -> FloatArray:
         """pi p(r)/E* = phi(a)/sqrt(a^2 - r^2) - int_r^a phi'(t)/sqrt(t^2 - r^2) dt at r < a [m], Eq. (9)."""
-        grid, edge = self.panels, self.edge @ [depth, -1.0] if is_singular else 0.0
+        grid = self.panels
         slope = 2 * legder(grid.series(self.phi @ [depth, -1.0])) / (grid.high - grid.low)  # d phi/ds
         smooth = grid.abel(slope, np.maximum(r, _AXIS * self.a), self.kernel.sizes.slopes, beyond=True)
-        return np.asarray(edge / np.sqrt((self.a - r) * (self.a + r)) - smooth)
+        if not is_singular:
+            return -smooth
+        return np.asarray(self.edge @ [depth, -1.0] / np.sqrt((self.a - r) * (self.a + r)) - smooth)
 
     def displacement(self, r: FloatArray, depth: float) -> FloatArray:
         """w(r) = (2/pi) int_0^r W(t)/sqrt(r^2 - t^2) dt at r > a [m], W = depth - g_hs inside, -psi outside."""

@@ -17,12 +17,12 @@ from scipy.optimize import toms748
 from bem.direct import Density, Kernel, Sizes
 from bem.kernels.moduli import contact_modulus
 from bem.numerics import EPS, gauss
+from contact import ContactPath
 from contact.answer.method import Supported, Unsupported
 from contact.answer.no_contact import without_contact
 from contact.answer.one_circle import never_touches_beside, no_single_circle, refuse_touching_path
 from contact.answer.one_thread import one_thread
 from contact.answer.small_strains import within_small_strains
-from contact.answer.solution import ContactPath
 from contact.answer.stages import StageLog
 from contact.records.errors import InvalidInput, UnsupportedSceneError
 from contact.records.record import Record, record
@@ -218,13 +218,14 @@ class DirectSolver:
             if pressure.min() < -_LEAST_TENSION * contact.mean_pressure:
                 raise no_single_circle(contact.state[0], f"would be pulled at r = {radius[pressure.argmin()]:g} m")
 
-    def numbers(self, contact: Contact, unit: Contact) -> list[FloatArray]:
-        """Depth, force, stiffness, pressures and displacements over those of another contact of the same radius."""
-        a, depth = unit.state[:2]
+    def changes(self, one: Contact, other: Contact) -> FloatArray:
+        """Relative changes of depth, force, stiffness, pressure and displacement between contacts of one radius."""
+        a, depth = one.state[:2]
         x = gauss(_INSIDE)[0]
-        pressure = self.pressure(contact, a * x) / unit.mean_pressure
-        moved = contact.density.displacement(a * _OUTSIDE, contact.state[1]) / depth
-        return [*(contact.state[1:] / unit.state[1:]), pressure * (np.sqrt(1 - x * x) if self.is_punch else 1.0), moved]
+        p, q = ((np.sqrt(1 - x * x) if self.is_punch else 1.0) * self.pressure(of, a * x) for of in (one, other))
+        w, v = (of.density.displacement(a * _OUTSIDE, of.state[1]) for of in (one, other))
+        fields = np.abs(p - q).max() / one.mean_pressure, np.abs(w - v).max() / depth
+        return np.append(np.abs(other.state[1:] / one.state[1:] - 1), fields)
 
 
 class DirectFields(NamedTuple):
@@ -253,7 +254,8 @@ class DirectFields(NamedTuple):
         """w(r) [m]: depth - f(r) inside, Eq. (13) outside."""
         (a, depth), outside = self.contacts[step].state[:2], radius > self.contacts[step].state[0]
         w = np.asarray(depth - self.solver.scene.indenter.height(np.minimum(radius, a)))
-        w[outside] = self.contacts[step].density.displacement(radius[outside], depth)
+        if outside.any():
+            w[outside] = self.contacts[step].density.displacement(radius[outside], depth)
         return w
 
 
@@ -261,11 +263,7 @@ def _errors(solver: DirectSolver, contacts: list[Contact], finer: DirectSolver) 
     """Relative errors: the changes by a finer discretisation at the same radii, the search's last miss, roundings."""
     values = np.array([contact.state[solver.prescribed] for contact in contacts])
     others = [finer.at(contact.state[0], value) for contact, value in zip(contacts, values, strict=True)]
-    pairs = list(zip(contacts, others, strict=True))
-    changes = [
-        [np.max(np.abs(x - y)) for x, y in zip(*(solver.numbers(c, one) for c in (one, other)), strict=True)]
-        for one, other in pairs
-    ]
+    changes = [solver.changes(*pair) for pair in zip(contacts, others, strict=True)]
     floor = _ROUNDING * np.array([1 + contact.density.integrals[0] / contact.state[0] for contact in contacts])
     radius, miss, rounded = np.zeros((3, floor.size))
     if solver.prescribed and not solver.is_punch:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from contact.answer.compiled_files import compiled, lapack
+from bem.compiled_files import compiled, lapack
 from contact.records.errors import NotConvergedError
 from contact.records.validation import FloatArray
 

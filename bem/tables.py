@@ -86,23 +86,15 @@ class FlatPunchTable:
     def __post_init__(self) -> None:
         """Refuse what is not a table."""
         shape = self.ratios.size, self.radii.size
-        checks = {
-            f"ratios must be at least {BEYOND}, positive and increasing": (
-                self.ratios.size >= BEYOND and self.ratios[0] > 0.0 and np.all(np.diff(self.ratios) > 0.0)
-            ),
-            "radii must increase within [0, 1)": (
-                np.all(np.diff(self.radii) > 0.0) and self.radii[0] >= 0.0 and self.radii[-1] < 1.0
-            ),
-            f"stiffness and pressure must have shapes {shape[:1]} and {shape}": (
-                self.stiffness.shape == shape[:1] and self.pressure.shape == shape
-            ),
-            "stiffness and pressure must be finite and not negative": all(
-                np.all(np.isfinite(one) & (one >= 0.0)) for one in (self.stiffness, self.pressure)
-            ),
-        }
-        for text, holds in checks.items():
-            if not holds:
-                raise InvalidInput(f"flat-punch table: {text}")
+        steps = np.diff(self.ratios, prepend=0.0), np.diff(self.radii), 1.0 - self.radii, self.radii[:1] + 1e-300
+        if shape[0] < BEYOND or not all(np.all(one > 0.0) for one in steps):
+            raise InvalidInput(
+                f"flat-punch table: at least {BEYOND} positive ratios, and radii in [0, 1), must increase"
+            )
+        if self.stiffness.shape != shape[:1] or self.pressure.shape != shape:
+            raise InvalidInput(f"flat-punch table: stiffness and pressure must have shapes {shape[:1]} and {shape}")
+        if not all(np.all(np.isfinite(one) & (one >= 0.0)) for one in (self.stiffness, self.pressure)):
+            raise InvalidInput("flat-punch table: stiffness and pressure must be finite and not negative")
 
     @property
     def largest_ratio(self) -> float:

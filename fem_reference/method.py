@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
-from functools import partial
+from functools import cache, partial
 from typing import ClassVar, Self, TypeAlias, overload
 
 from contact import (
@@ -15,7 +15,6 @@ from contact import (
     Detachment,
     DetachmentPath,
     EquilibriumLoading,
-    Fields,
     FlatPunch,
     ForceHistory,
     Friction,
@@ -38,19 +37,23 @@ from contact.answer.accuracy import told_where_less
 from contact.answer.no_contact import without_contact
 from contact.answer.one_thread import one_thread
 from contact.answer.small_strains import within_small_strains
-from fem_reference.adaptive import meshes_that_fit, settings_for, solve_to_accuracy
-from fem_reference.discrete_layer.material import contact_modulus
-from fem_reference.discrete_layer.problem import LayerProblem
-from fem_reference.discrete_layer.settings import Discretisation
-from fem_reference.discrete_layer.solving.linear_solver import BACKENDS
-from fem_reference.elastic.answer import contact_path
-from fem_reference.elastic.equilibria import RadiusSearch, elastic_equilibria, refuse_other_contacts
-from fem_reference.elastic.path import ContactSolver, FemEquilibrium, flat_punch_equilibria
-from fem_reference.elastic.prescribed_radius import PrescribedContact, solve_contact
-from fem_reference.elastic.surface_fields import FemFields
-from fem_reference.stated import path_with_errors
+from fem_reference.equilibria import (
+    FemEquilibrium,
+    contact_path,
+    elastic_equilibria,
+    flat_punch_equilibria,
+    refuse_other_contacts,
+    searched_radius,
+)
+from fem_reference.fields import FemFields
+from fem_reference.materials import contact_modulus
+from fem_reference.prescribed_contact import ContactSolver, solve_contact
+from fem_reference.settings import Discretisation
+from fem_reference.solver import BACKENDS
+from fem_reference.stated import meshes_that_fit, path_with_errors, settings_for, solve_to_accuracy
 
 Answer: TypeAlias = ContactPath | DetachmentPath | ImpactHistory | HistoryPath
+MOTIONS = Impact, DepthHistory, ForceHistory
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -61,16 +64,15 @@ class Fem:
         accuracy: relative accuracy wanted in radius, depth, force and stiffness, or in restitution and peaks of an
             impact and depth and force of a history; the other settings are then chosen (and refined until the
             estimated errors hold), and the values given for them are not used.  Adhesive contacts are refined at fixed
-            radii.  What an answer states more of is told in its notes.
+            radii. Notes of an answer name what is less accurate.
         pressure_accuracy: the same for the pressure of contacts that do not move, besides an accuracy of the numbers.
         order: degree k of the displacement, 2, 3 or 4.
         edge_cell: cell at the contact edge, relative to the smallest length there.
         growth: growth of cells per distance, and largest cell per thickness.
         truncation: relative change of the stiffness allowed to the outer edge of the mesh.
         half_space_thickness: thickness, in contact radii, of the layer that stands for a half-space; an elastic base
-            below a stack is meshed to its root, with springs for what is beyond.
-        outer_distance: from contact edge to outer edge, in thicknesses, so that layers of different nu share a mesh;
-            None for what ``truncation`` asks. Stacks and graded layers do without it.
+            below a stack is meshed to its power of 0.8.
+        outer_distance: from contact edge to outer edge, in thicknesses; None for what ``truncation`` requires.
         solver: "superlu", "superlu-pivoting" or "mumps".
     """
 
@@ -118,7 +120,7 @@ class Fem:
             punch = isinstance(scene.indenter, FlatPunch)
             other = other_layer("full stick of a FlatPunch by fem", scene.layer) if punch else None
             return _supports_friction(scene) if other is None else other
-        in_time = isinstance(scene.loading, Impact | DepthHistory | ForceHistory)
+        in_time = isinstance(scene.loading, MOTIONS)
         if in_time and (other := other_layer("contact in time by fem", scene.layer)) is not None:
             return other
         modelled = Viscoelasticity if in_time else Adhesion
@@ -159,92 +161,68 @@ class Fem:
         attempt = self._attempt(scene, log)
         if self.accuracy is None:
             return attempt(self.discretisation)
-        moves = isinstance(scene.loading, Impact | DepthHistory | ForceHistory)
-        return solve_to_accuracy(attempt, self.accuracy, self.pressure_accuracy, moves=moves)
+        return solve_to_accuracy(
+            attempt, self.accuracy, self.pressure_accuracy, moves=isinstance(scene.loading, MOTIONS)
+        )
 
     def _attempt(self, scene: Scene, log: StageLog) -> Callable[[Discretisation], Answer]:
-        """What solves the scene with settings, and once more with coarser ones that tell its errors."""
-        if isinstance(scene.loading, Detachment):
-            return partial(self._detached, scene, log)
-        if scene.effect(Friction) is not None and not isinstance(scene.indenter, FlatPunch):
-            return partial(self._rubbed, scene, log)
-        if isinstance(scene.loading, Impact | DepthHistory | ForceHistory):
-            return self._moved(scene, scene.loading, log)
-        return partial(self._at_rest, scene, RadiusSearch(scene, log), log)
+        """Function that solves the scene with settings, and with coarser ones for its errors.
 
-    def _at_rest(self, scene: Scene, search: RadiusSearch, log: StageLog, settings: Discretisation) -> ContactPath:
+        Modules of effects are loaded for their scenes only.
+        """
+        written, in_time = asdict(self), isinstance(scene.loading, MOTIONS)
+        if scene.effect(Friction) is not None and not isinstance(scene.indenter, FlatPunch):
+            from fem_reference.friction.answers import rubbed_history, rubbed_path  # noqa: PLC0415
+
+            return partial(rubbed_history if in_time else rubbed_path, scene, written=written, log=log)
+        if isinstance(scene.loading, Impact):
+            from fem_reference.impacts import ImpactSolver  # noqa: PLC0415
+
+            return ImpactSolver(scene, scene.loading, written, log).attempt
+        if isinstance(scene.loading, DepthHistory | ForceHistory):
+            from fem_reference.histories import HistorySolver  # noqa: PLC0415
+
+            return HistorySolver(scene, scene.loading, written, log).attempt
+        if isinstance(scene.loading, Detachment):
+            from fem_reference.detachment import detachment_path  # noqa: PLC0415
+
+            return partial(detachment_path, scene, partial(self._solver, scene, log), written, log)
+        return partial(self._at_rest, scene, cache(partial(searched_radius, scene, log)), log)
+
+    def _at_rest(
+        self, scene: Scene, search: Callable[[float], float], log: StageLog, settings: Discretisation
+    ) -> ContactPath:
         """Equilibria at prescribed radii, depths or forces."""
         modulus, sticks = contact_modulus(scene.layer), scene.effect(Friction) is not None
         coarser, states = (self._states(scene, each, search, log) for each in (settings.coarser(), settings))
-        if not sticks:
-            refuse_other_contacts(scene, states, coarser)
-            fields: Fields = FemFields(states, modulus, coarser)
-        else:
-            from fem_reference.elastic.stick.adhered_punch import AdheredFemFields  # noqa: PLC0415 - only stick loads it
+        fields = FemFields(states, modulus, coarser)
+        if sticks:
+            from fem_reference.friction.answers import AdheredFemFields, with_shear_error  # noqa: PLC0415
 
-            fields = AdheredFemFields(states, modulus, coarser, layer=scene.layer)
+            fields = AdheredFemFields(states, modulus, coarser)
+        else:
+            refuse_other_contacts(scene, states, coarser)
         path, companion = (contact_path(scene, each, fields, asdict(self), log) for each in (states, coarser))
         answer = path_with_errors(path, companion, states, coarser)
-        if sticks:
-            from fem_reference.elastic.stick.adhered_punch import with_shear_error  # noqa: PLC0415
-
-            return with_shear_error(answer, scene.layer, states[0], coarser[0])
-        return answer
+        return with_shear_error(answer, states, coarser) if sticks else answer
 
     def _states(
-        self, scene: Scene, settings: Discretisation, search: RadiusSearch, log: StageLog
+        self, scene: Scene, settings: Discretisation, search: Callable[[float], float], log: StageLog
     ) -> list[FemEquilibrium]:
         """Equilibria at one resolution."""
+        solve = self._solver(scene, log, settings)
         if scene.effect(Friction) is not None:
-            from fem_reference.elastic.stick.adhered_punch import AdheredProblem  # noqa: PLC0415 - only stick loads it
-
-            solve = self._solver(scene, settings, log, AdheredProblem)
-            return flat_punch_equilibria(scene, scene.indenter.flat_radius, solve)
-        solve = self._solver(scene, settings, log)
+            return flat_punch_equilibria(scene, solve)
         if scene.effects:
-            from fem_reference.adhesion.equilibria import adhesive_equilibria  # noqa: PLC0415 - only listed effects load
+            from fem_reference.adhesion import adhesive_equilibria  # noqa: PLC0415
 
             return adhesive_equilibria(scene, solve, settings.growth)
         return elastic_equilibria(scene, solve, settings.coarsening, search)
 
-    def _detached(self, scene: Scene, log: StageLog, settings: Discretisation) -> DetachmentPath:
-        from fem_reference.adhesion.detachment import Separation, detachment_path  # noqa: PLC0415 - as above
-
-        companion, found = (
-            Separation.of(scene, self._solver(scene, each, log), each.growth) for each in (settings.coarser(), settings)
-        )
-        return detachment_path(scene, found, companion, asdict(self), log)
-
-    def _rubbed(self, scene: Scene, log: StageLog, settings: Discretisation) -> ContactPath | HistoryPath:
-        if isinstance(scene.loading, DepthHistory | ForceHistory):
-            from fem_reference.elastic.friction.histories import rubbed_history  # noqa: PLC0415 - only listed effects
-
-            return rubbed_history(scene, settings, asdict(self), log)
-        from fem_reference.elastic.friction.answers import rubbed_path  # noqa: PLC0415 - only listed effects load
-
-        return rubbed_path(scene, settings, asdict(self), log)
-
-    def _moved(
-        self, scene: Scene, loading: Impact | DepthHistory | ForceHistory, log: StageLog
-    ) -> Callable[[Discretisation], Answer]:
-        from fem_reference.in_time.history import HistorySolver  # noqa: PLC0415 - only scenes in time load it
-        from fem_reference.in_time.impact import ImpactSolver  # noqa: PLC0415
-        from fem_reference.in_time.setup import HistorySetup  # noqa: PLC0415
-
-        def attempt(settings: Discretisation) -> ImpactHistory | HistoryPath:
-            """The answer, and its companions with half the cells and with half the steps as well."""
-            coarser, setup = (HistorySetup(scene, each, self.solver, log) for each in (settings.coarser(), settings))
-            cells = coarser.resolution
-            resolutions = (coarser, cells.half_the_steps()), (coarser, cells), (setup, setup.resolution)
-            if isinstance(loading, Impact):
-                impact = ImpactSolver(loading, asdict(self))
-                half_both, half_cells, fine = (impact.answer(*each) for each in resolutions)
-                return impact.with_errors(fine, half_cells, half_both, setup)
-            history = HistorySolver(scene, loading, asdict(self))
-            half_steps, half_strip, path = (history.answer(*each) for each in resolutions)
-            return history.with_errors(path, half_strip, half_steps, setup)
-
-        return attempt
+    def _solver(self, scene: Scene, log: StageLog, settings: Discretisation) -> ContactSolver:
+        """Function that solves the contact of a given radius [m]; an indenter with friction sticks."""
+        sticks = scene.effect(Friction) is not None
+        return lambda radius: solve_contact(scene, radius, settings, log, backend=self.solver, sticks=sticks)
 
     def refined(self) -> Self:
         """A copy with cells half as large; the edge cell shrinks by 2^(2k), so that errors fall at the formal order 2k.
@@ -255,16 +233,6 @@ class Fem:
             return replace(self, accuracy=max(self.accuracy / 4**self.order, 1e-9))
         finer = asdict(self.discretisation.refined())
         return replace(self, **{name: value for name, value in finer.items() if name != "coarsening"})
-
-    def _solver(
-        self, scene: Scene, settings: Discretisation, log: StageLog, kind: type[LayerProblem] = LayerProblem
-    ) -> ContactSolver:
-        """Solves the contact of a given radius [m]."""
-
-        def solve(radius: float) -> PrescribedContact:
-            return solve_contact(scene, radius, settings, log, backend=self.solver, kind=kind)
-
-        return solve
 
 
 def _supports_friction(scene: Scene) -> Supported | Unsupported:

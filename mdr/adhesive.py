@@ -11,7 +11,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from bem.adhesion.equilibrium_branch import DEPTH, FORCE, EquilibriumBranch
+from bem.branch import DEPTH, FORCE, Branch
 from bem.flat_punch import FlatPunchSource
 from contact import (
     ContactPath,
@@ -96,12 +96,12 @@ def _prescribed(contacts: Adhesive) -> Triple:
     if isinstance(indenter, FlatPunch):
         branch = contacts.branch(indenter.radius)
         # A punch keeps its radius down to where the front sets off.
-        held = values >= branch.values(branch.section_ends[-1:])[quantity, 0]
+        held = values >= branch.at(quantity, branch.end)
     else:
         largest = float(values.max())
-        branch = contacts.reaching(lambda b: bool(b.values(b.section_ends[-1:])[quantity, 0] >= largest))
+        branch = contacts.reaching(lambda b: b.at(quantity, b.end) >= largest)
         held = np.zeros(values.size, dtype=bool)
-    y = np.where(held, branch.section_ends[-1], branch.solutions(quantity, values))
+    y = np.where(held, branch.end, branch.smallest(quantity, values))
     _refuse_missing(y, values, branch, quantity)
     radius = np.where(held, indenter.max_radius, branch.radius(y))
     at = springs.at(radius)
@@ -111,11 +111,11 @@ def _prescribed(contacts: Adhesive) -> Triple:
     return radius, np.asarray(depth), values
 
 
-def _refuse_missing(y: FloatArray, values: FloatArray, branch: EquilibriumBranch, quantity: int) -> None:
+def _refuse_missing(y: FloatArray, values: FloatArray, branch: Branch, quantity: int) -> None:
     missing = np.flatnonzero(np.isnan(y))
     if not missing.size:
         return
-    reach = branch.values(np.append(branch.folds(quantity), branch.section_ends[-1]))[quantity]
+    reach = branch.values(np.array([*branch.folds(quantity), branch.end]))[quantity]
     unit = "m" if quantity == DEPTH else "N"
     raise InvalidInput(
         f"loading.values = {values[missing[0]]:g} (entry {missing[0]}): no stable contact; "

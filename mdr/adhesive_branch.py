@@ -12,7 +12,7 @@ from functools import cached_property
 
 import numpy as np
 
-from bem.adhesion.equilibrium_branch import EquilibriumBranch
+from bem.branch import Branch
 from bem.kernels.moduli import contact_modulus
 from contact import Adhesion, FlatPunch, InvalidInput, Scene, UnsupportedSceneError
 from contact.records.validation import FloatArray
@@ -87,24 +87,25 @@ class Adhesive:
         terms = values.g + self.elongation(radius, values.y1)
         return np.asarray(floor * np.stack([terms, 2 * self.springs.modulus * (terms * values.K + values.M)]))
 
-    def branch(self, radius: float) -> EquilibriumBranch:
-        """All equilibria up to a contact radius [m]."""
+    def branch(self, radius: float, compliance: float = 0.0) -> Branch:
+        """All equilibria up to a contact radius [m], held by a machine of some compliance [m/N]."""
         indenter, flat = self.scene.indenter, self.scene.indenter.flat_radius
         refuse_too_wide(self.springs, radius)
         if not isinstance(indenter, FlatPunch):
             RadiusSearch(self.springs, may_fall=not is_simple(self.scene)).refuse_falls(radius)
-        return EquilibriumBranch.sampled(
+        return Branch.sampled(
             lambda start, way: self.states(start + way, (start - flat) + way if start >= flat > 0.0 else None),
             breakpoints=(indenter.flat_radius, *indenter.breakpoints),
             radius=radius,
             error=max(_SAMPLED, float(np.max(self.springs.floor(np.array([radius]))))),
+            compliance=compliance,
         )
 
-    def reaching(self, enough: Callable[[EquilibriumBranch], bool]) -> EquilibriumBranch:
+    def reaching(self, enough: Callable[[Branch], bool], compliance: float = 0.0) -> Branch:
         """A branch that is long enough, or ends with the indenter."""
         for radius in growing_radii(self.scene.indenter, self._first_radius()):
             try:
-                branch = self.branch(radius)
+                branch = self.branch(radius, compliance)
             except InvalidInput as refusal:
                 raise InvalidInput(
                     f"the adhering contact is sought up to a = {radius:g} m, where the flat-punch data end "

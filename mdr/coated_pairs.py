@@ -39,19 +39,12 @@ class PairKernel:
     thinner: SurfaceKernel
     ratio: float
 
-    is_smooth: ClassVar[bool] = True
-    edge_slope: ClassVar[float] = 0.0
     tail: ClassVar[tuple[float, ...]] = ()
 
     @property
     def longest(self) -> float:
         """Length beyond which chi has its limit for small k."""
         return self.ratio
-
-    @property
-    def zero_mode(self) -> float:
-        """chi/k at k = 0."""
-        return self.thinner.zero_mode * (1 + self.ratio) / 2
 
     def chi(self, wavenumber: NDArray[np.floating]) -> FloatArray:
         """chi at wave numbers k > 0."""

@@ -244,7 +244,7 @@ class Surface:
         """Wave numbers k a, and (1 - chi) phi^(k) [m] with the weights of their quadrature."""
         if farthest not in self._spectra:
             largest = self.sizes.reach * self.a / self.springs.unit
-            more = 1 + self.sizes.extra / 6  # a companion has twice the wave numbers
+            more = 2.0 ** (self.sizes.extra / 6)  # a companion has twice the wave numbers
             reach = more * float(np.clip(_SLOW_WAVES / largest, *_SLOW_DECAY)) if self.kernel.tail else 1.0
             kappa, w, table = self._radius.waves(farthest, reach)
             rest = self.kernel.one_minus_chi(kappa / self.a * self.springs.unit)

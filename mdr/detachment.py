@@ -1,7 +1,7 @@
 """Detachment of an adhering indenter: where its contact goes when it is withdrawn, and where it is lost.
 
 The whole branch of equilibria (`mdr.adhesive_branch`) gives stability and pull-off under every control
-(`bem.adhesion.withdrawal`). Errors: the same path on finer springs, and rounding errors of depth and force.
+(`bem.branch`). Errors: the same path on finer springs, and rounding errors of depth and force.
 """
 
 from __future__ import annotations
@@ -11,8 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from bem.adhesion.equilibrium_branch import DEPTH, FORCE
-from bem.adhesion.withdrawal import CONTROLS, Route
+from bem.branch import CONTROLS, DEPTH, FORCE, Branch
 from bem.flat_punch import FlatPunchSource
 from contact import Detachment, DetachmentPath, FlatPunch, InvalidInput, Scene, StageLog, UnsupportedSceneError
 from contact.answer.solution import Setting
@@ -41,11 +40,13 @@ class Withdrawal:
 
     Attributes:
         contacts: Its equilibria.
-        route: The way from the first contact radius inwards.
+        branch: The same within a radius at least as large as the first one.
+        start: y of the branch where the front sets off.
     """
 
     contacts: Adhesive
-    route: Route
+    branch: Branch
+    start: float
 
     @classmethod
     def of(cls, contacts: Adhesive, loading: Detachment) -> Withdrawal:
@@ -57,41 +58,40 @@ class Withdrawal:
         scene = contacts.scene
         is_punch, compliance = isinstance(scene.indenter, FlatPunch), 1.0 / (loading.machine_stiffness or np.inf)
         if is_punch or loading.initial_contact_radius is not None:
-            branch = contacts.branch(loading.initial_contact_radius or scene.indenter.max_radius)
-            return cls(contacts, Route(branch, float(branch.section_ends[-1]), is_punch, compliance))
+            branch = contacts.branch(loading.initial_contact_radius or scene.indenter.max_radius, compliance)
+            return cls(contacts, branch, branch.end)
         if work_of_adhesion(scene) == 0.0:
             raise InvalidInput(
                 "effects: without work of adhesion nothing says where to start; give initial_contact_radius"
             )
-        branch = contacts.reaching(lambda b: bool(b.values(b.section_ends[-1:])[FORCE, 0] >= b.strength))
-        start = float(branch.solutions(FORCE, np.array([branch.strength]))[0])
-        return cls(
-            contacts, Route(branch, float(branch.section_ends[-1]) if np.isnan(start) else start, False, compliance)
-        )
+        branch = contacts.reaching(lambda b: b.at(FORCE, b.end) >= b.strength, compliance)
+        start = float(branch.smallest(FORCE, np.array([branch.strength]))[0])
+        return cls(contacts, branch, branch.end if np.isnan(start) else start)
+
+    @property
+    def pinned(self) -> bool:
+        """Whether the front rests at a punch's edge at first."""
+        return isinstance(self.contacts.scene.indenter, FlatPunch)
 
     def states(self) -> tuple[FloatArray, FloatArray, BoolArray]:
         """Radius, depth and force with it, and stability by control, the radius falling.
 
         A pinned front comes first: from rest to where it sets off, depth and force are shares of what they are there.
         """
-        route, share, y = self.route, self.share(), self.places()
-        stable = (route.branch.slopes(y) > 0.0) | (share < 1.0)
-        return route.branch.radius(y), share * route.branch.values(y), stable
+        branch, share, y = self.branch, self.share(), self.places()
+        stable = np.stack([branch.stable(control, y) | (share < 1.0) for control in (DEPTH, FORCE)])
+        return branch.radius(y), share * branch.values(y), stable
 
     def places(self) -> FloatArray:
         """y of the states, shape (POINTS,)."""
-        held = _PINNED if self.route.pinned else 0
+        held = _PINNED if self.pinned else 0
         way = np.append(np.ones(held), np.linspace(1.0, 0.0, POINTS - held, endpoint=False))
-        return np.asarray(self.route.start * way)
+        return np.asarray(self.start * way)
 
     def share(self) -> FloatArray:
         """Share of depth and force at which the front sets off, one from there on, shape (POINTS,)."""
-        held = _PINNED if self.route.pinned else 0
+        held = _PINNED if self.pinned else 0
         return np.append(np.arange(held) / max(held, 1), np.ones(POINTS - held))
-
-    def scalars(self, control: int) -> dict[str, float]:
-        """Numbers of the pull-off."""
-        return self.route.scalars(self.route.loss(control), self.route.largest_tension(control))
 
 
 def solve_detachment(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[str, Setting]) -> DetachmentPath:
@@ -110,7 +110,7 @@ def solve_detachment(scene: Scene, flat_punch: FlatPunchSource, settings: Mappin
         radius, values, stable = own.states()
         refuse_touching(contacts, radius, values[DEPTH])
         control = CONTROLS.index(loading.controlled)
-        scalars = own.scalars(control)
+        scalars = own.branch.pull_off(control, own.start)
         errors = _detachment_errors(own, other, control)
     return DetachmentPath(
         scene=scene,
@@ -125,7 +125,7 @@ def solve_detachment(scene: Scene, flat_punch: FlatPunchSource, settings: Mappin
         normal_force=values[FORCE],
         stable_displacement_control=stable[DEPTH],
         stable_force_control=stable[FORCE],
-        critical_points=own.route.critical_points(),
+        critical_points=own.branch.critical_points(own.start, pinned=own.pinned),
         **scalars,
     )
 
@@ -137,11 +137,11 @@ def _detachment_errors(own: Withdrawal, other: Withdrawal, control: int) -> dict
     rounding = own.contacts.rounding(radius)
     found = {"contact_radius": stated_error(radius, companion, scale=radius.max(), floor=1e-14)}
     share = own.share()
-    direct = other.contacts.states(radius, own.route.branch.excess(own.places(), own.contacts.springs.tip.flat))
+    direct = other.contacts.states(radius, own.branch.radius(own.places(), own.contacts.springs.tip.flat))
     for row, name in enumerate(("indentation_depth", "normal_force")):
         size = np.abs(values[row]).max()
         found[name] = stated_error(values[row], share * direct[row], scale=size, floor=rounding[row] / size)
-    first, second = own.scalars(control), other.scalars(control)
+    first, second = (one.branch.pull_off(control, one.start) for one in (own, other))
     lost = np.array([first["pull_off_contact_radius"]])
     floors = _LOST * own.contacts.rounding(lost)[:, 0] if lost[0] else np.zeros(2)
     floor = {"pull_off_depth": floors[DEPTH], "pull_off_contact_radius": 1e-13 * lost[0]}

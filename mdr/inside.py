@@ -106,7 +106,7 @@ class Body:
         """I_00, I_10, I_20, I_01/r, I_11/r, I_21, shape (6, n)."""
         surface, a = self.surface, self.a
         # Series of graded layers converge slowly at the edge; what they leave there belongs to their transform, too.
-        edge = surface.edge if self.kernel.is_smooth else surface.edge_of_series
+        edge = surface.edge_of_series if self.kernel.tail else surface.edge
         found = edge * _punch(r, z, a, (r - a) * (r + a))
         for low, high in pairwise([0.0, *(b for b in self.tip.breaks if b < a), a]):
             own, above, gap, weight, rest = self._nodes(low, high, r, z)
@@ -154,7 +154,7 @@ class Body:
     def _layer(self, r: FloatArray, z: FloatArray) -> tuple[FloatArray, FloatArray, NDArray[np.bool_]]:
         """What layers add; G of the material over the surface's; whether the half-space part counts there."""
         found, shear, own = np.empty((9, r.size)), np.empty(r.size), np.empty(r.size, dtype=bool)
-        groups = np.zeros(z.size) if self.kernel.is_smooth else np.floor(np.log2(z))
+        groups = np.floor(np.log2(z)) if self.kernel.tail else np.zeros(z.size)
         for number in sorted(set(groups.tolist())):
             some = np.flatnonzero(groups == number)
             k, load = self._load(float(z[some].min()), float(r[some].max()))
@@ -188,7 +188,7 @@ class Body:
     def _load(self, lowest: float, widest: float) -> tuple[FloatArray, FloatArray]:
         """Wave numbers [1/m] and p^ times their weights, for points below a depth and up to a radius."""
         top = _REACH / self.unit
-        if not self.kernel.is_smooth:
+        if self.kernel.tail:
             most = _GRADED_REACH * (1 + self.surface.sizes.extra / 2)
             top = min(_GRADED_FADED / lowest, most / self.a)
         k, w = wave_rule(top, self.a + widest, self.unit * self.kernel.longest, self.nodes)

@@ -15,8 +15,7 @@ import numpy as np
 
 from bem.equation import Sizes
 from bem.flat_punch import FlatPunchSource, IntegralEquation
-from bem.polynomials import chebyshev
-from bem.polynomials.adaptive import NODES, Piecewise, resolved_panels
+from bem.piecewise import Piecewise
 from contact import Detachment, ElasticLayer, Profile, Scene
 from contact.records.validation import FloatArray
 from mdr.adhesive_branch import FIRST_WAY, balance_radius, work_of_adhesion
@@ -33,10 +32,10 @@ _BISECTIONS = 40
 
 @dataclass(frozen=True)
 class PullOffTable:
-    """g, e, K, M and their slopes over y = sqrt(a), for one layer and one exponent.
+    """g, e, K and M over y = sqrt(a), for one layer and one exponent.
 
     Attributes:
-        functions: Rows g, e, K, M, dg/dy, de/dy, dK/dy, dM/dy.
+        functions: Rows g, e, K, M.
         end: Largest y.
     """
 
@@ -45,13 +44,13 @@ class PullOffTable:
 
     def depth_and_force(self, y: FloatArray, softness: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Depth, Eq. (41), and force, Eq. (4), in own units."""
-        g, e, K, M = self.functions(y, slice(4))
+        g, e, K, M = self.functions(y)
         depth = g - softness * e
         return depth, 2 * (depth * K - M)
 
     def slopes(self, y: FloatArray, softness: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Derivatives of depth and force by y."""
-        g, e, K, _, g_y, e_y, K_y, M_y = self.functions(y, slice(8))
+        (g, e, K, _), (g_y, e_y, K_y, M_y) = self.functions(y), self.functions.slope(y)
         depth, depth_y = g - softness * e, g_y - softness * e_y
         return depth_y, K_y * depth + K * depth_y - M_y
 
@@ -79,11 +78,8 @@ def pull_off_table(layer: ElasticLayer, indenter: Profile, radius: float, sizes:
         return np.stack([values.g, y / values.y1, values.K, values.M])
 
     end = float(np.sqrt(radius))
-    panels = resolved_panels(sample, 0.0, end, float(np.max(springs.floor(np.array([radius])))))
-    values = np.stack([panel.values @ chebyshev.analysis(NODES).T for panel in panels])
-    slopes = values @ chebyshev.differentiation(NODES).T / np.array([panel.half for panel in panels])[:, None, None]
-    rows = np.transpose(np.concatenate([values, slopes], axis=1), (2, 1, 0))
-    return PullOffTable(Piecewise.of(panels, rows), end)
+    error = float(np.max(springs.floor(np.array([radius]))))
+    return PullOffTable(Piecewise.resolved(sample, 0.0, end, error), end)
 
 
 def pull_off(table: PullOffTable, scenes: Sequence[Scene], units: Sequence[OwnUnits]) -> FloatArray:

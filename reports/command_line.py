@@ -4,22 +4,24 @@ Only declarations stand here and in `commands.studies`; what a command needs is 
 and errors come at once.
 """
 
+import codecs
 import gc
+import io
 import sys
 import traceback
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 import typer
 
-from reports.commands import curves, studies
+from reports.commands import curves
 
-EPILOG = (
-    "Exit codes: 0 all checks passed; 1 a check failed; 2 interrupted; 3 internal error, or one inside a registered "
-    "method; 4 wrong usage, scene or file; 5 nothing ran."
+EXIT_CODES = (
+    "Exit codes: 0 passed; 1 a check failed, or no answer; 2 interrupted; 3 internal error, or one inside a registered "
+    "method; 4 wrong usage, scene or file; 5 nothing ran; 6 a verdict stays open (only with --strict)."
 )
 INTERRUPTED, INTERNAL_ERROR, USAGE = 2, 3, 4
 # Every complaint of the option parser derives from this class.
@@ -28,14 +30,27 @@ USAGE_ERROR: Any = typer.BadParameter.__base__
 GONE = {
     "accuracy": "solve --accuracy tries methods from cheap to fine and states what it reached",
     "accuracy-page": "every report shows stated errors and agreement per case, method and quantity",
+    "advise": "it is solve SCENE --advise now",
     "calibrate": "solve --accuracy needs no measurements any more",
     "campaign": "random scenes are tests now (pytest -m slow)",
+    "cost": "it is run --only cost now",
     "coverage": "coverage of stated errors is tested on random scenes (pytest -m slow)",
     "explain": "run --resume solves again whatever changed",
+    "ladders": "it is run --only stability now",
+    "list": "it is run --list now",
     "maps": "docs/formulas.md shows where closed forms hold",
     "paper-page": "docs/paper.md is kept by a test (tests/verification/test_paper.py)",
     "scaling": "times are compared with another revision by python -m benchmarks.race",
+    "schema": "solve --schema prints the schema of scenes",
+    "show": "run --list CASE shows a case in full",
+    "sweep": "it is solve SCENE --over RANGE now",
+    "validate": "run --list checks every case that it lists",
 }
+
+
+SUPERSCRIPTS = "⁰¹²³⁴⁵⁶⁷⁸⁹⁻"
+# Letters that reports use, for terminals whose encoding lacks them.
+IN_ASCII = str.maketrans(f"{SUPERSCRIPTS}−–µδτ", "0123456789---udt") | {ord("±"): "+-"}
 
 
 @contextmanager
@@ -52,7 +67,7 @@ app = typer.Typer(
     name="contact-verify",
     help="Contact of rigid indenters with elastic, adhesive and viscoelastic layers: a fast method (MDR), "
     "an independent finite element model, and how far they agree.",
-    epilog=EPILOG,
+    epilog=EXIT_CODES,
     no_args_is_help=True,
     add_completion=False,
     rich_markup_mode="rich",
@@ -67,12 +82,18 @@ class Suite(StrEnum):
     REFEREES = "referees"
 
 
+class Only(StrEnum):
+    """Parts of a run that can be asked for alone."""
+
+    COST = "cost"
+    STABILITY = "stability"
+
+
 Cases = Annotated[
     list[str] | None, typer.Argument(metavar="[CASE]...", help="Cases by name; all of the suite if none.")
 ]
 Out = Annotated[Path, typer.Option(help="Folder of the run: results.json, results.h5, report.html, figures.")]
 Baselines = Annotated[Path, typer.Option(help="Folder of the accepted numbers.")]
-SchemaName = Literal["results", "scene"]
 Setting = Annotated[
     list[str] | None,
     typer.Option(
@@ -126,34 +147,17 @@ def _options(
     pass
 
 
-EXAMPLE = typer.Option("--example", is_eager=True, callback=_print_example, help="Print an example scene and stop.")
+def _print_schema(wanted: bool) -> None:
+    if wanted:
+        import json  # noqa: PLC0415
+
+        from contact.files.scene_file import scene_schema  # noqa: PLC0415
+
+        typer.echo(json.dumps(scene_schema(), indent=1, sort_keys=True))
+        raise typer.Exit
 
 
-@app.command("list")
-def list_cases(suite: Annotated[Suite | None, typer.Option(help="Only the cases of this suite.")] = None) -> None:
-    """List the cases with their question, suites, methods and number of claims."""
-    from reports.commands.registry import list_cases as run_command  # noqa: PLC0415
-
-    run_command(suite or "")
-
-
-@app.command()
-def show(case: Annotated[str, typer.Argument(help="Name of a case; see [bold]list[/bold].")]) -> None:
-    """Show a case as the short paper it is: question, equations, scenes, methods, claims with reason and origin."""
-    from reports.commands.registry import show_case  # noqa: PLC0415
-
-    show_case(case)
-
-
-@app.command()
-def validate() -> None:
-    """Load every case and say what is wrong: duplicate names, unknown effects, claims without a reason."""
-    from reports.commands.registry import validate_cases  # noqa: PLC0415
-
-    validate_cases()
-
-
-@app.command("run")
+@app.command("run", epilog=EXIT_CODES)
 def run_suite(
     cases: Cases = None,
     *,
@@ -186,18 +190,35 @@ def run_suite(
         ),
     ] = None,
     timing: Annotated[bool, typer.Option(help="Measure what accuracy costs in time.")] = True,
+    only: Annotated[
+        Only | None,
+        typer.Option(
+            help="cost: time every method from coarse to fine, one solution at a time. stability: make one parameter "
+            "harder step by step; CASE then names stress tests."
+        ),
+    ] = None,
+    listed: Annotated[
+        bool, typer.Option("--list", help="List the cases and stop; a single CASE is shown in full.")
+    ] = False,
     strict: Annotated[bool, typer.Option("--strict", help="Verdicts that stay open end with exit code 6.")] = False,
     quiet: Quiet = False,
 ) -> int:
-    """Run cases through every method, judge their claims, write the report.
+    """Solve cases by every method, judge their claims, write the report.
 
     Ctrl-C leaves a valid partial report; --resume goes on from there.
     """
     from cases.run.runner import RunOptions  # noqa: PLC0415
-    from reports.commands.run import run  # noqa: PLC0415
+    from reports.commands import runs  # noqa: PLC0415
 
+    if listed:
+        runs.list_cases(cases or [], suite or "")
+        return 0
     options = RunOptions(out=out, suite=suite or "", jobs=jobs, resume=resume, time_limit=time_limit, timing=timing)
-    return run(
+    if only is Only.STABILITY:
+        return runs.stress(cases or [], method or [], options, quiet=quiet)
+    if only is Only.COST:
+        return runs.cost(cases or [], options, methods=method or [], settings=setting or [], quiet=quiet)
+    return runs.run(
         cases or [],
         methods=method or [],
         others=against or [],
@@ -209,35 +230,7 @@ def run_suite(
     )
 
 
-@app.command()
-def cost(
-    cases: Cases = None,
-    *,
-    suite: Annotated[Suite, typer.Option(help="ci: two settings a method; nightly: all of them.")] = Suite.NIGHTLY,
-    method: Annotated[
-        list[str] | None, typer.Option(help="Only these methods, those of installed packages as they are. Repeatable.")
-    ] = None,
-    setting: Setting = None,
-    out: Annotated[Path, typer.Option(help="Folder of the run: results.json, report.html, figures.")] = Path(
-        "build/cost"
-    ),
-    resume: Annotated[bool, typer.Option("--resume", help="Keep finished timings of an earlier run in OUT.")] = False,
-    time_limit: Annotated[float, typer.Option(min=0.0, help="Seconds for all repetitions of a setting.")] = 300.0,
-    quiet: Quiet = False,
-) -> int:
-    """Measure what accuracy costs in time: every method, from coarse to fine, one solution at a time.
-
-    Error against seconds with the Pareto front, shortest time to 1 %, 1e-4, 1e-6, 1e-8, price of a digit.
-    --setting cells=[4,8,16] times a registered method at each of these values.
-    """
-    from cases.run.runner import RunOptions  # noqa: PLC0415
-    from reports.commands.cost import cost as run_command  # noqa: PLC0415
-
-    options = RunOptions(out=out, suite=suite, jobs=1, resume=resume, time_limit=time_limit)
-    return run_command(cases or [], options, methods=method or [], settings=setting or [], quiet=quiet)
-
-
-@app.command()
+@app.command(epilog=EXIT_CODES)
 def gate(
     run: Annotated[Path, typer.Argument(help="Folder of a finished run.")] = Path("build/verification"),
     *,
@@ -253,12 +246,12 @@ def gate(
 
     results.json, summary.md and junit.xml then hold these checks too; `contact-verify report` draws pages with them.
     """
-    from reports.commands.gate import run_gate  # noqa: PLC0415
+    from reports.commands.baselines import run_gate  # noqa: PLC0415
 
     return run_gate(run, baseline, methods=method or (), strict=strict, quiet=quiet)
 
 
-@app.command()
+@app.command(epilog=EXIT_CODES)
 def accept(
     cases: Annotated[
         list[str] | None,
@@ -276,13 +269,13 @@ def accept(
 
     Refused: numbers that are not finite, uncommitted changes, a failing exact or order claim, continuous integration.
     """
-    from reports.commands.accept import AcceptRequest, accept_cases  # noqa: PLC0415
+    from reports.commands.baselines import AcceptRequest, accept_cases  # noqa: PLC0415
 
     request = AcceptRequest(reason=reason, run=run, baselines=baseline, loosen=loosen, write=write, jobs=jobs)
     accept_cases(cases or [], request)
 
 
-@app.command()
+@app.command(epilog=EXIT_CODES)
 def solve(
     scene: Annotated[Path, typer.Argument(help="Scene in TOML: tables layer, indenter, loading and effects.")],
     *,
@@ -311,77 +304,108 @@ def solve(
     samples: Annotated[
         int, typer.Option(help="Scenes to draw for --uncertain; by default two for each input, and differences.")
     ] = 0,
+    over: Annotated[
+        str,
+        typer.Option(
+            metavar="RANGE",
+            help='Solve for a range of one number, "thickness=1um..10um:20", ":log" behind it for equal factors.',
+        ),
+    ] = "",
+    advise: Annotated[
+        bool,
+        typer.Option("--advise", help="Say which effects change the answer by more than --accuracy (1 % by default)."),
+    ] = False,
+    against: Annotated[
+        str, typer.Option(metavar="METHOD", help="Solve by a second method too, and show the differences.")
+    ] = "",
     write: Annotated[
         list[Path] | None,
         typer.Option(
             "--write",
             "-w",
-            help="Also write the answer: FILE.csv, FILE.h5 or FILE.svg. inside.svg draws the stressed layer; FILE.vtu "
-            "and FILE.xdmf hold it for ParaView (--method fem). May be repeated.",
+            help="Also write the answer: FILE.csv, .h5, .svg, .png or .pdf. inside.svg (.png, .pdf) draws the stressed "
+            "layer; FILE.vtu and FILE.xdmf hold it for ParaView (--method fem). Repeatable.",
         ),
     ] = None,
-    example: Annotated[bool, EXAMPLE] = False,
+    example: Annotated[
+        bool,
+        typer.Option("--example", is_eager=True, callback=_print_example, help="Print an example scene and stop."),
+    ] = False,
+    schema: Annotated[
+        bool,
+        typer.Option(
+            "--schema",
+            is_eager=True,
+            callback=_print_schema,
+            help="Print the JSON Schema of scenes for an editor and stop. Editors complete and check a scene whose "
+            "first line is `#:schema scene.schema.json`.",
+        ),
+    ] = False,
 ) -> None:
-    """Solve one scene: force, depth, contact radius and stiffness, each with its uncertainty.
+    """Solve one scene: force, depth, contact radius and stiffness, each with its error bar.
 
     An example to start from: contact-verify solve --example > scene.toml
     """
     with _loading():
+        from reports.commands.solve import Request  # noqa: PLC0415
         from reports.commands.solve import solve as run_command  # noqa: PLC0415
+        from reports.terminal import progress_bar  # noqa: PLC0415
 
-    run_command(
-        scene,
+    request = Request(
         method=method,
         accuracy=accuracy,
         pressure_accuracy=pressure_accuracy,
-        outputs=write or [],
         uncertain=uncertain,
         samples=samples,
+        over=over,
+        advise=advise,
+        against=against,
+        outputs=write or [],
     )
+    with progress_bar("scenes") if over else nullcontext() as progress:
+        run_command(scene, request, progress)
 
 
-for _command in (*curves.COMMANDS, *studies.COMMANDS):
-    app.command()(_command)
+app.command(epilog=EXIT_CODES)(curves.fit)
 
 
-@app.command()
-def schema(
-    what: Annotated[SchemaName, typer.Argument(help="results.json, or scene files for an editor.")] = "results",
-) -> None:
-    """Print the JSON Schema of results.json, or of scene files.
-
-    Editors complete and check a scene whose first line is `#:schema scene.schema.json`.
-    """
-    import json  # noqa: PLC0415
-
-    from cases.results.files import json_schema  # noqa: PLC0415
-    from contact.files.scene_file import scene_schema  # noqa: PLC0415
-
-    chosen = scene_schema() if what == "scene" else json_schema()
-    typer.echo(json.dumps(chosen, indent=1, sort_keys=True))
-
-
-@app.command()
+@app.command(epilog=EXIT_CODES)
 def report(
     run: Annotated[Path, typer.Argument(help="Folder of a finished or interrupted run.")],
     other: Annotated[Path | None, typer.Argument(help="A second run to compare with the first.")] = None,
     single_file: Annotated[bool, typer.Option("--single-file", help="All cases on one page.")] = False,
 ) -> int:
     """Build the pages of a run again without computing; with two runs, compare the second with the first."""
-    from reports.commands.report import compare_runs, rebuild  # noqa: PLC0415
+    from reports.commands.runs import compare_runs, rebuild  # noqa: PLC0415
 
     return rebuild(run, single_file=single_file) if other is None else compare_runs(run, other)
 
 
 def main() -> None:
     """Entry point of the console command; every way to end has its exit code."""
-    from reports.terminal.encoding import show_in_any_encoding  # noqa: PLC0415
-
     show_in_any_encoding()
     code = run(sys.argv[1:])
     # The process ends: nothing is gained by looking for garbage once more.
     gc.freeze()
     sys.exit(code)
+
+
+def show_in_any_encoding() -> None:
+    """Let standard output and error replace letters that their encoding lacks: "µ" by "u", others by an escape."""
+    codecs.register_error("nearest", _nearest)
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="nearest")
+
+
+def _nearest(error: UnicodeError) -> tuple[str, int]:
+    """What stands for a run of letters that cannot be encoded, and where to go on."""
+    if not isinstance(error, UnicodeEncodeError):
+        raise error
+    run = error.object[error.start : error.end]
+    power = "^" if run[0] in SUPERSCRIPTS else ""
+    plain = run.translate(IN_ASCII).encode("ascii", "backslashreplace").decode("ascii")
+    return power + plain, error.end
 
 
 def run(arguments: list[str]) -> int:

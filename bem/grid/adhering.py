@@ -14,12 +14,13 @@ from typing import Final
 import numpy as np
 from numpy.polynomial import chebyshev as series
 
-from bem.branch import FORCE, Branch
-from bem.grid.pressed import FIRST_CELLS, Pressing, Punches
+from bem.branch import DEPTH, FORCE, Branch
+from bem.grid.pressed import FIRST_CELLS, PressedState, Pressing, Punches
 from bem.kernels.moduli import contact_modulus
-from contact import Adhesion, Detachment, FlatPunch, InvalidInput, Scene
+from contact import Adhesion, ContactRadii, Detachment, FlatPunch, InvalidInput, NormalForces, Scene
 from contact.records.validation import FloatArray
 from contact.scene.extent import radius_of_elongation
+from contact.scene.loading import Loading
 
 # Discs between axis and the largest radius; the coarser companion takes 3/4 of them. With half as
 # many pull-offs of layers lose 1e-5.
@@ -81,51 +82,45 @@ class AdheringIndenter:
     """Equilibria of a scene with adhesion on discs of one size.
 
     Attributes:
-        pressing: Layer, indenter and discs.
-        length: dgamma/E* [m].
+        scene: Layer, indenter and adhesion.
+        pressing: Discs.
         punches: Flat punches of all radii.
         end: Largest radius [m].
-        compliance: 1/K of a machine, over E* [m/N].
     """
 
+    scene: Scene
     pressing: Pressing
-    length: float
     punches: SampledPunches
     end: float
-    compliance: float = 0.0
 
     @classmethod
     def up_to(cls, scene: Scene, pressing: Pressing, radius: float, nodes: int = NODES) -> AdheringIndenter:
         """All equilibria from the axis to a radius [m]."""
-        stiffness = scene.loading.machine_stiffness if isinstance(scene.loading, Detachment) else None
-        punches = SampledPunches.up_to(pressing, radius, nodes)
-        return cls(pressing, adhesive_length(scene), punches, radius, 1.0 / stiffness if stiffness else 0.0)
+        return cls(scene, pressing, SampledPunches.up_to(pressing, radius, nodes), radius)
 
     @cached_property
     def branch(self) -> Branch:
         """Depth and force over the radius."""
-        indenter = self.pressing.indenter
-        return Branch(self.equilibria, (indenter.flat_radius, *indenter.breakpoints), self.end, self.compliance)
+        indenter, loading = self.scene.indenter, self.scene.loading
+        stiffness = loading.machine_stiffness if isinstance(loading, Detachment) else None
+        return Branch.sampled(
+            lambda start, beyond: self.equilibria(start + beyond),
+            breakpoints=(indenter.flat_radius, *indenter.breakpoints),
+            radius=self.end,
+            compliance=1.0 / stiffness if stiffness else 0.0,
+        )
 
     def equilibria(self, radius: FloatArray) -> FloatArray:
         """Depth [m] and force [N] at radii [m], shape (2, n)."""
-        stiffness, moment, depth = self._pressed(radius)
-        return np.stack([depth, contact_modulus(self.pressing.layer) * (stiffness * depth - moment)])
+        states, E = map(self.at, radius.tolist()), contact_modulus(self.scene.layer)
+        return np.array([(one.depth, E * one.load) for one in states]).T
 
-    def stiffness(self, radius: FloatArray) -> FloatArray:
-        """k_N [N/m]."""
-        return np.asarray(contact_modulus(self.pressing.layer) * self._pressed(radius)[0])
-
-    def force(self, radius: float, depth: float) -> float:
-        """F [N] at a depth [m] with this contact, in equilibrium or not."""
-        stiffness, moment, _ = self._pressed(np.array([radius]))
-        return float(contact_modulus(self.pressing.layer) * (stiffness * depth - moment)[0])
-
-    def _pressed(self, radius: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """k [m], M [m^2] and delta [m]."""
-        states = [self.punches.at(a).pressed(self.pressing.indenter, a) for a in radius.tolist()]
-        _, stiffness, moment, edge, depth = np.array(states).reshape(-1, 5).T
-        return stiffness, moment, depth - np.sqrt(2.0 * pi * self.length * radius) / edge
+    def at(self, radius: float) -> PressedState:
+        """The equilibrium at a radius [m], whose edge bears phi, Eq. (40)."""
+        if radius == 0.0:
+            return PressedState(0.0, 0.0, 0.0, 1.0, 0.0)
+        state = self.punches.at(radius).pressed(self.scene.indenter, radius)
+        return state._replace(depth=state.depth + edge_density(self.scene, radius) / state.edge_flat)
 
 
 def adhesive_length(scene: Scene) -> float:
@@ -139,24 +134,34 @@ def edge_density(scene: Scene, radius: float) -> float:
     return -sqrt(2.0 * pi * adhesive_length(scene) * radius)
 
 
-def largest_radius(scene: Scene, pressing: Pressing, quantity: int, value: float | None) -> float:
-    """A radius [m] up to which the branch holds a value of depth or force, or without one all of a withdrawal."""
-    indenter = scene.indenter
+def prescribed_quantity(loading: Loading) -> int:
+    """What is prescribed, or for a withdrawal the force, which shows all of the way back."""
+    return FORCE if isinstance(loading, NormalForces | Detachment) else DEPTH
+
+
+def largest_radius(scene: Scene, pressing: Pressing) -> float:
+    """A radius [m] up to which the branch holds all that is prescribed, or all of a withdrawal."""
+    indenter, loading = scene.indenter, scene.loading
+    if isinstance(loading, ContactRadii):
+        return float(loading.values.max())
+    if isinstance(loading, Detachment) and loading.initial_contact_radius:
+        return loading.initial_contact_radius
     if isinstance(indenter, FlatPunch):
         return indenter.radius
+    values, quantity = getattr(loading, "values", None), prescribed_quantity(loading)
     balance = radius_of_elongation(indenter, adhesive_length(scene))
     radius = GROWTH * max(min(balance, FIRST_RATIO * scene.layer.thickness), indenter.flat_radius)
-    coarse = Pressing(pressing.layer, indenter, min(FIRST_CELLS, pressing.cells), threads=pressing.threads)
+    coarse = replace(pressing, cells=min(FIRST_CELLS, pressing.cells))
     while radius < indenter.max_radius:
         found = AdheringIndenter.up_to(scene, coarse, radius, NODES // 2).branch
-        wanted = found.strength if value is None else BEYOND * max(value, 0.0)
-        if found.at(FORCE if value is None else quantity, radius) > wanted:
+        wanted = found.strength if values is None else BEYOND * max(float(values.max()), 0.0)
+        if found.at(quantity, found.end) > wanted:
             return radius
         radius *= GROWTH
     return indenter.max_radius
 
 
-def followed(of: AdheringIndenter, quantity: int, values: FloatArray) -> list[float]:
+def followed(contacts: AdheringIndenter, values: FloatArray) -> FloatArray:
     """Radii [m] at prescribed depths [m] or forces [N] in their order, from out of contact; zero without contact.
 
     Adhesion of this type has no reach: an approaching indenter snaps in as it touches, at zero depth, to the smallest
@@ -166,37 +171,38 @@ def followed(of: AdheringIndenter, quantity: int, values: FloatArray) -> list[fl
     Raises:
         InvalidInput: If a force pulls that no contact can carry, or the contact outgrows the indenter.
     """
-    radii, radius = [], 0.0
+    places, y, quantity = [], 0.0, prescribed_quantity(contacts.scene.loading)
+    stable = contacts.branch.solutions(quantity, values).T
     for entry, value in enumerate(values.tolist()):
-        radius = _next_radius(of, quantity, value, radius)
-        if radius == 0.0 and quantity == FORCE:
+        y = _next_place(contacts, quantity, value, stable[entry][np.isfinite(stable[entry])], y)
+        if y == 0.0 and quantity == FORCE:
             raise InvalidInput(
                 f"loading.values = {value:g} (entry {entry}): no contact carries this tension; "
                 "press first, and pull less than the pull-off force"
             )
-        radii.append(radius)
-    return radii
+        places.append(y)
+    return contacts.branch.radius(np.array(places))
 
 
-def _next_radius(of: AdheringIndenter, quantity: int, value: float, radius: float) -> float:
-    """The edge's next place [m]."""
-    indenter, branch = of.pressing.indenter, of.branch
-    if radius == 0.0:
+def _next_place(contacts: AdheringIndenter, quantity: int, value: float, stable: FloatArray, y: float) -> float:
+    """y of the branch where the edge goes next, from y, of the stable equilibria at the prescribed value."""
+    indenter, branch = contacts.scene.indenter, contacts.branch
+    if y == 0.0:
         if value < 0.0:
             return 0.0
         # A flat end touches at once.
-        radius = indenter.flat_radius
-    found = branch.solutions(quantity, value)
-    if radius > 0.0 and value < branch.at(quantity, radius):
-        return max((a for a in found if a <= radius), default=0.0)
-    wider = min((a for a in found if a >= radius), default=None)
-    if wider is None and not isinstance(indenter, FlatPunch):
-        raise InvalidInput(f"loading.values = {value:g}: the contact reaches the end of the indenter at {of.end:g} m")
-    return of.end if wider is None else wider
+        y = float(branch.position(np.array([indenter.flat_radius]))[0])
+    if y > 0.0 and value < branch.at(quantity, y):
+        return float(stable[stable <= y].max(initial=0.0))
+    wider = stable[stable >= y]
+    if not wider.size and not isinstance(indenter, FlatPunch):
+        end = contacts.end
+        raise InvalidInput(f"loading.values = {value:g}: the contact reaches the end of the indenter at {end:g} m")
+    return float(wider.min(initial=branch.end))
 
 
-def start_of_withdrawal(of: AdheringIndenter, given: float | None) -> float:
+def start_of_withdrawal(contacts: AdheringIndenter) -> float:
     """Radius [m] as given, at the punch's edge, or pressed as hard as the contact can pull."""
-    if given is not None or isinstance(of.pressing.indenter, FlatPunch):
-        return of.end
-    return max(of.branch.solutions(FORCE, of.branch.strength), default=of.end)
+    if contacts.scene.loading.initial_contact_radius is not None or isinstance(contacts.scene.indenter, FlatPunch):  # type: ignore[attr-defined]
+        return contacts.end
+    return contacts.branch.widest(FORCE, contacts.branch.strength)

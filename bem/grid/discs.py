@@ -180,12 +180,9 @@ def punch(layer: ElasticLayer, radius: float, cells: int, boundary: Boundary = "
     more = operator.inverse.cells - cells // 2
     displacement = operator.displacement(np.pad(pressure, (0, more)))[: cells // 2, : cells // 2]
     growth = 2.0 * float(np.vdot(pressure, 2.0 - displacement)) / disc.radius
-    return Punch(disc, layer, threads, radius, pressure, growth, degree_of(radius / layer.thickness))
-
-
-def degree_of(ratio: float) -> int:
-    """Degree of Q: the edge layer of a thin layer is about sqrt(h/a) wide in sqrt(1 - r/a)."""
-    return min(6 + ceil(1.5 * sqrt(ratio)), LARGEST_DEGREE)
+    # The edge layer of a thin layer is about sqrt(h/a) wide in sqrt(1 - r/a).
+    degree = min(6 + ceil(1.5 * sqrt(radius / layer.thickness)), LARGEST_DEGREE)
+    return Punch(disc, layer, threads, radius, pressure, growth, degree)
 
 
 def _on_disc(disc: Disc, operator: GridOperator, displacement: FloatArray | float) -> FloatArray:

@@ -11,9 +11,10 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 
 from bem.grid.discs import EDGE_CELLS, Punch, Unresolved
-from bem.grid.influence import REACH, kernel_of, point_response
+from bem.grid.influence import REACH, point_response
+from bem.grid.pressed import PressedState, Pressing
 from bem.kernels.moduli import contact_modulus
-from contact import ElasticLayer, Profile
+from bem.kernels.of_layer import surface_kernel
 from contact.answer.one_circle import no_single_circle
 from contact.records.validation import FloatArray
 
@@ -37,37 +38,40 @@ class ContactFields:
     """Fields under and around one contact; zero without contact.
 
     Attributes:
-        layer: The layer.
-        indenter: The profile.
-        punch: The flat punch on the disc, of nearly the same radius.
-        radius: a [m].
-        depth: delta [m].
-        load: F/E* [m^2].
+        pressing: Layer, indenter and discs.
+        state: The contact.
+        solved: The contact of nearly the same radius on a disc.
         edge: phi [m] at the edge, zero without adhesion; None where a flat punch without adhesion has any.
-        solved: Depth [m], F/E* and M [m^2] at the radius of the disc.
     """
 
-    layer: ElasticLayer
-    indenter: Profile
-    punch: Punch
-    radius: float
-    depth: float
-    load: float
+    pressing: Pressing
+    state: PressedState
+    solved: PressedState
     edge: float | None
-    solved: tuple[float, float, float]
+
+    @property
+    def radius(self) -> float:
+        """a [m]."""
+        return self.state.radius
+
+    @property
+    def punch(self) -> Punch:
+        """The flat punch on the disc."""
+        return self.pressing.punch(self.solved.radius)
 
     def pressure(self, radius: FloatArray) -> FloatArray:
         """p(r) [Pa]; at a singular edge the value half a cell inside."""
         last = 1.0 - 0.5 / self.punch.disc.radius
         share = np.minimum(radius / self.radius, 1.0 if self.edge == 0.0 else last)
         root = np.sqrt(np.maximum((1.0 - share) * (1.0 + share), np.finfo(float).tiny))
-        p = contact_modulus(self.layer) / (pi * self.radius) * self.over_half_space(share) / root
+        quotient = self._quotient(share**2) if self.edge is not None else self.state.depth * self.punch.quotient(share)
+        p = contact_modulus(self.pressing.layer) / (pi * self.radius) * quotient / root
         return np.where((radius <= self.radius) & (share < 1.0), p, 0.0)
 
     def surface_displacement(self, radius: FloatArray) -> FloatArray:
         """w(r) [m]: delta - f under the indenter, sums over all cells beyond the first cell outside."""
         a, s = self.radius, self.radius / self.punch.disc.radius
-        w = np.asarray(self.depth - self.indenter.height(np.minimum(radius, a)), dtype=np.float64)
+        w = np.asarray(self.state.depth - self.pressing.indenter.height(np.minimum(radius, a)), dtype=np.float64)
         outside = radius > a
         away = (radius[outside] - a) / s
         summed = self._summed(np.maximum(radius[outside], a + s))
@@ -84,7 +88,7 @@ class ContactFields:
         """
         rings, quotient = self._rings
         other_rings, other = coarser._rings
-        marks = [self.radius, *(k for k in self.indenter.kinks if k < self.radius)]
+        marks = [self.radius, *(k for k in self.pressing.indenter.kinks if k < self.radius)]
         away = np.min([np.abs(rings - mark / self.radius) for mark in marks], axis=0) * self.punch.disc.radius
         near = np.abs(rings[:, None] - other_rings) * coarser.punch.disc.radius < NEARBY
         on_both = (near & (other < -PULLED * other.max())).any(axis=1) & (quotient < -PULLED * quotient.max())
@@ -96,28 +100,22 @@ class ContactFields:
                 f"{BESIDE_KINKS:g} cells from an edge or a kink, where cells are too large to tell; take more points"
             )
 
-    def over_half_space(self, share: FloatArray) -> FloatArray:
-        """Pressure at r/a over that of the half-space under a unit depth [m]."""
-        if self.edge is None:
-            return self.depth * self.punch.quotient(share)
-        return np.asarray(self._quotient(share**2))
-
     @cached_property
     def cells(self) -> FloatArray:
         """p/E* on the cells, at the disc's own radius.
 
         Few cells beyond a flat end resolve its heights badly; their pressure has the total that is known.
         """
-        punch, (depth, _, moment) = self.punch, self.solved
-        risen = punch.risen(self.indenter) if moment > 0.0 else np.zeros_like(punch.pressure)
+        punch, depth, moment = self.punch, self.solved.depth, self.solved.moment
+        risen = punch.risen(self.pressing.indenter) if moment > 0.0 else np.zeros_like(punch.pressure)
         total = 4.0 * punch.cell_size**2 * float(risen.sum())
         return np.asarray(depth / punch.cell_size * punch.pressure - (moment / total if total > 0.0 else 0.0) * risen)
 
     @cached_property
     def _scale(self) -> float:
         """Of pressures of the disc to those of the contact, whose radius is a little different."""
-        load = self.solved[1]
-        return self.load / load * (self.punch.radius / self.radius) ** 2 if self.edge == 0.0 and load > 0.0 else 1.0
+        load = self.solved.load
+        return self.state.load / load * (self.solved.radius / self.radius) ** 2 if self.edge == 0.0 < load else 1.0
 
     @cached_property
     def _rings(self) -> tuple[FloatArray, FloatArray]:
@@ -160,16 +158,23 @@ class ContactFields:
 
     def _response(self, distance: FloatArray) -> FloatArray:
         """1/r + V(r/h)/h [1/m]."""
-        if self.layer.is_half_space:
+        layer = self.pressing.layer
+        if layer.is_half_space:
             return 1.0 / distance
-        h = self.layer.surface.thickness
-        answer = 1.0 / distance + point_response(kernel_of(self.layer))(distance / h) / h
-        return answer if self.layer.has_elastic_base else np.where(distance < REACH * h, answer, 0.0)
+        h = layer.surface.thickness
+        answer = 1.0 / distance + point_response(surface_kernel(layer))(distance / h) / h
+        return answer if layer.has_elastic_base else np.where(distance < REACH * h, answer, 0.0)
 
 
 @dataclass(frozen=True, eq=False)
 class NoContact:
-    """Fields without contact."""
+    """Fields without contact.
+
+    Attributes:
+        state: Of radius zero.
+    """
+
+    state: PressedState
 
     def pressure(self, radius: FloatArray) -> FloatArray:
         """Zero."""
@@ -178,15 +183,16 @@ class NoContact:
     surface_displacement = pressure
 
 
-def pressure_difference(one: ContactFields, other: ContactFields) -> float:
-    """Distance of two pressures at equal r/a in the norm weighted with r (a^2 - r^2), relative to the first."""
+def field_changes(one: ContactFields | NoContact, other: ContactFields | NoContact) -> tuple[float, float]:
+    """Change of pressure and displacement between two grids; all of them where only one grid is in contact.
+
+    Pressures at equal r/a in the norm weighted with r (a^2 - r^2); the largest change of displacements outside the
+    contact, relative to depth or height at the edge.
+    """
+    if isinstance(one, NoContact) or isinstance(other, NoContact):
+        return (0.0, 0.0) if type(one) is type(other) else (1.0, 1.0)
     p, q = (np.sqrt(1.0 - INSIDE**2) * of.pressure(INSIDE * of.radius) for of in (one, other))
-    return float(np.linalg.norm(p - q) / np.linalg.norm(p))
-
-
-def displacement_difference(one: ContactFields, other: ContactFields) -> float:
-    """Largest distance of two displacements outside the contact, relative to depth or height at the edge."""
     r = OUTSIDE * max(one.radius, other.radius)
     apart = one.surface_displacement(r) - other.surface_displacement(r)
-    scale = max(abs(one.depth), float(one.indenter.height(one.radius)))
-    return float(np.abs(apart).max() / scale)
+    scale = max(abs(one.state.depth), float(one.pressing.indenter.height(one.radius)))
+    return float(np.linalg.norm(p - q) / np.linalg.norm(p)), float(np.abs(apart).max() / scale)

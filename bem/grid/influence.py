@@ -37,17 +37,14 @@ BIAS: Final = -0.25
 NEAR: Final = 1e-3
 # Distance in thicknesses from which on a layer on a rigid base is at rest: exp(-0.739 * 48) = 4e-16.
 REACH: Final = 48.0
+# Wave number of the mean mode over 1/`longest`: chi/k is off by its square, and half of it changes nothing.
+LEAST_SHARE: Final = 1e-12
 # Mean of ln r over a unit square about its centre.
 MEAN_LOGARITHM: Final = (pi / 2 - 3.0 - log(2.0)) / 2
 # Cells from the loaded one within which means over cells are taken by Gauss points, and half of the most of them across
 # a cell. Answers with cells wider than a layer is thick are refused.
 CLOSE: Final = 12
 MOST_POINTS: Final = 4.0
-
-
-def kernel_of(layer: ElasticLayer) -> SurfaceKernel:
-    """The kernel of a layer that is no half-space: chi and 1 - chi over q = k h, h the surface material's thickness."""
-    return surface_kernel(layer)
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,7 +99,7 @@ def layer_influence(offsets: int, layer: ElasticLayer, cell_size: float) -> Floa
     if layer.is_half_space:
         return influence
     thickness = layer.surface.thickness / cell_size
-    response = point_response(kernel_of(layer))
+    response = point_response(surface_kernel(layer))
     influence += _cell_means(response, offsets, thickness) / (pi * thickness)
     if not layer.has_elastic_base:
         cells = np.arange(offsets + 1)
@@ -135,8 +132,10 @@ def layer_symbol(wavenumber: FloatArray, layer: ElasticLayer, cell_size: float) 
     k = np.where(wavenumber == 0.0, 1.0, wavenumber)
     if layer.is_half_space:
         return np.where(wavenumber == 0.0, 0.0, 2.0 / k)
-    h, kernel = layer.surface.thickness / cell_size, kernel_of(layer)
-    zero = 0.0 if layer.has_elastic_base else 2.0 * h * kernel.zero_mode
+    h, kernel = layer.surface.thickness / cell_size, surface_kernel(layer)
+    # chi/k no longer depends on k.
+    least = LEAST_SHARE / kernel.longest
+    zero = 0.0 if layer.has_elastic_base else 2.0 * h * float(kernel.chi(np.array([least]))[0]) / least
     values, place = np.unique(k, return_inverse=True)
     grid = np.geomspace(values[0], values[-1] * (1.0 + 1e-12), min(SAMPLES, values.size) + 4)
     chi = CubicSpline(np.log(grid), kernel.chi(grid * h))(np.log(values))[place].reshape(k.shape)

@@ -60,7 +60,7 @@ def grid_operator(
     such pressures stands alone in free space, to measure discs of cells for periodic layers.
     """
     cyclic = cosine_filter(cells // 2, cells, threads)
-    symbol = _at_modes(cyclic, layer, cell_size)
+    symbol = layer_symbol(2.0 * np.pi / cyclic.period * np.hypot(*cyclic.modes), layer, cell_size)
     if boundary == "periodic" and not layer.is_half_space:
         return GridOperator(cyclic, symbol, cyclic, _reciprocal(symbol))
     padded = cosine_filter(cells // 2, fast_period(2 * cells), threads)
@@ -68,10 +68,6 @@ def grid_operator(
     periodic = boundary == "periodic"
     influence = band_limited_influence(offsets) if periodic else layer_influence(offsets, layer, cell_size)
     return GridOperator(padded, padded.convolution_symbol(influence), cyclic, _reciprocal(symbol))
-
-
-def _at_modes(filters: CosineFilter, layer: ElasticLayer, cell_size: float) -> FloatArray:
-    return layer_symbol(2.0 * np.pi / filters.period * np.hypot(*filters.modes), layer, cell_size)
 
 
 def _reciprocal(symbol: FloatArray) -> FloatArray:

@@ -1,9 +1,12 @@
 """Depth and force of an indenter over the contact radius, from flat punches of nearby radii on discs of cells.
 
 A layer is pressed by a unit depth, with the pressure p_1 = Q p_hs and its total k = k_N/E* = 2 a kappa. Under the
-profile f it bears F = E* (k delta - M), where by reciprocity M = int p_1 f dA (`bem.grid.half_space`). The energy that
-an edge releases, Eqs. (5) and (6), says k' = 2 phi_1^2 and M' = 2 phi_1 phi_f, where phi = delta phi_1 - phi_f is what
-the edge bears. Without adhesion phi = 0, hence
+profile f it bears F = E* (k delta - M), where by reciprocity M = int p_1 f dA. With r = a cos(psi)
+
+    M(a) = 2 int_0^a r f Q/sqrt(a^2 - r^2) dr = 2 a int f Q cos(psi) dpsi.
+
+The energy that an edge releases, Eqs. (5) and (6), says k' = 2 phi_1^2 and M' = 2 phi_1 phi_f, where
+phi = delta phi_1 - phi_f is what the edge bears. Without adhesion phi = 0, hence
 
     delta = M'/k',    k' = 2 (kappa + a kappa'),    phi_1 = Q(1) = sqrt(kappa + a kappa').
 
@@ -14,6 +17,7 @@ half-space, the measure of the discs, kappa = Q = 1, and all this is exact by co
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from math import exp, log, sqrt
 from typing import Final, Literal, NamedTuple, TypeAlias
 
@@ -22,7 +26,6 @@ from numpy.polynomial import chebyshev
 from scipy.optimize import brentq
 
 from bem.grid.discs import Punch, punch
-from bem.grid.half_space import ProfileOverCircle
 from bem.grid.operators import Boundary
 from contact import ElasticLayer, FlatPunch, InvalidInput, NotConvergedError, Profile
 from contact.answer.one_circle import no_single_circle
@@ -47,6 +50,12 @@ MOST_STEPS: Final = 12
 # Least d ln(value)/d ln(excess) of a step, and least value over that prescribed.
 LEAST_EXPONENT: Final = 0.2
 TINY: Final = 1e-30
+# Gauss nodes between two breakpoints of the profile. Half as many leave 1e-6 of a profile that begins like r^1.1.
+NODES: Final = 64
+_T, _W = np.polynomial.legendre.leggauss(NODES)
+# sin^2 crowds nodes towards both ends, where profiles may begin like a power or end upright.
+SHARE: Final = np.sin(0.25 * np.pi * (1.0 + _T)) ** 2
+WEIGHT: Final = 0.25 * np.pi * _W * np.sin(0.5 * np.pi * (1.0 + _T))
 
 
 class Punches(NamedTuple):
@@ -66,11 +75,29 @@ class Punches(NamedTuple):
 
     def pressed(self, indenter: Profile, radius: float) -> PressedState:
         """A profile pressed to this contact radius [m]."""
-        over, squared = ProfileOverCircle.of(indenter, radius), self.growth + self.growth_slope
-        at, series = 2.0 * over.share**2 - 1.0, (self.series, self.series_slope)
-        Q, change = (np.asarray(chebyshev.chebval(at, one), dtype=np.float64) for one in series)
-        depth = 0.5 * over.moment_slope(Q, change) / squared
-        return PressedState(radius, 2.0 * radius * self.growth, over.moment(Q), sqrt(squared), depth)
+        psi, weights = _angles(indenter, radius)
+        share, squared = np.cos(psi), self.growth + self.growth_slope
+        # No node lies within the flat end by a rounding.
+        r = np.clip(radius * share, indenter.flat_radius, radius)
+        Q, change = (chebyshev.chebval(2.0 * share**2 - 1.0, one) for one in (self.series, self.series_slope))
+        by_height = 2.0 * radius * share * indenter.height(r) * weights
+        by_slope = 2.0 * radius * share**2 * indenter.slope_at(r) * weights
+        moment_slope = float(by_height @ (Q + change) / radius + by_slope @ Q)
+        stiffness, moment = 2.0 * radius * self.growth, float(by_height @ Q)
+        return PressedState(radius, stiffness, moment, sqrt(squared), 0.5 * moment_slope / squared)
+
+
+def _angles(indenter: Profile, radius: float) -> tuple[FloatArray, FloatArray]:
+    """psi and weights of dpsi on the risen part of a profile within a contact radius [m], between its breakpoints."""
+    flat, a = indenter.flat_radius, radius
+    ends = [flat, *(b for b in sorted(indenter.breakpoints) if flat < b < a)] if a > flat else []
+    # 2 sin^2(psi/2) = (a - r)/a is accurate where r is close to a.
+    angles = [2.0 * np.arcsin(np.sqrt((a - r) / (2.0 * a))) for r in ends] + [0.0]
+    psi, weights = np.zeros((2, 0))
+    for high, low in pairwise(angles):
+        psi = np.append(psi, low + (high - low) * SHARE)
+        weights = np.append(weights, (high - low) * WEIGHT)
+    return psi, weights
 
 
 @dataclass(frozen=True)
@@ -116,10 +143,10 @@ class Pressing:
         inner, here, outer = (self.punch(radius * exp(x), cells, radius) for x in (-e, 0.0, e))
         slope = flat.growth * log(outer.growth / inner.growth) / (2.0 * e)
         edge, degree = sqrt(flat.growth + slope), flat.degree - self.fewer
-        # phi_1 varies as the cells tell, about the value that the stiffness tells.
-        told = float(here.series(degree).sum())
+        # phi_1 varies as the series on these cells, about its value by the stiffness.
+        fitted = float(here.series(degree).sum())
         inside, outside = (
-            of.series(degree, edge / told * float(of.series(degree).sum())) / of.growth for of in (inner, outer)
+            one.series(degree, edge / fitted * float(one.series(degree).sum())) / one.growth for one in (inner, outer)
         )
         series = flat.series(degree, edge)
         # Q/kappa varies slowly where both go with a power of the radius.
@@ -143,7 +170,7 @@ class PressedState(NamedTuple):
         stiffness: k = k_N/E* [m].
         moment: M [m^2].
         edge_flat: phi_1.
-        depth: delta [m] without adhesion.
+        depth: delta [m].
     """
 
     radius: float
@@ -152,64 +179,42 @@ class PressedState(NamedTuple):
     edge_flat: float
     depth: float
 
-    def load(self, depth: float | None = None) -> float:
-        """F/E* [m^2] at a depth [m], by default the own one."""
-        return self.stiffness * (self.depth if depth is None else depth) - self.moment
+    @property
+    def load(self) -> float:
+        """F/E* [m^2]."""
+        return self.stiffness * self.depth - self.moment
 
 
-class Equilibrium(NamedTuple):
-    """A contact without adhesion.
-
-    Attributes:
-        radius: a [m].
-        depth: delta [m].
-        load: F/E* [m^2].
-        stiffness: k_N/E* [m].
-        solved: The disc nearby from which it was extrapolated to first order.
-    """
-
-    radius: float
-    depth: float
-    load: float
-    stiffness: float
-    solved: PressedState
+Prescribed: TypeAlias = Literal["contact_radius", "indentation_depth", "normal_force"]
 
 
-Prescribed: TypeAlias = Literal["radius", "depth", "load"]
-
-
-class Guess(NamedTuple):
-    """Where a contact radius may lie.
-
-    Attributes:
-        excess: a - b [m] over the radius b of a flat end.
-        exponent: d ln(value)/d ln(excess) of what is prescribed.
-    """
-
-    excess: float
-    exponent: float
+# Excess a - b [m] over the radius b of a flat end, and d ln(value)/d ln(excess) of what is prescribed.
+Guess: TypeAlias = tuple[float, float]
 
 
 def equilibrium(
     pressing: Pressing, prescribed: Prescribed, value: float, near: Guess | None = None
-) -> tuple[Equilibrium, Guess]:
-    """The contact with this radius [m], depth [m] or F/E* [m^2], a root over the radius; and a guess for other discs.
+) -> tuple[PressedState, PressedState, Guess]:
+    """The contact with this radius [m], depth [m] or F/E* [m^2], a root over the radius.
 
     Args:
         pressing: The indenter on discs.
         prescribed: What is.
-        value: Its value, positive.
+        value: Its value, positive; a force over E*.
         near: A guess; from discs of `FIRST_CELLS` by default.
+
+    Returns:
+        The contact, the disc nearby from which it is extrapolated to first order, and a guess for other discs.
 
     Raises:
         InvalidInput: If the contact reaches the end of the indenter.
         NotConvergedError: If the radius is not found.
     """
     flat = pressing.indenter.flat_radius
-    if prescribed == "radius" or isinstance(pressing.indenter, FlatPunch):
-        state = pressing.at(value if prescribed == "radius" else flat)
-        depth = {"radius": state.depth, "depth": value, "load": value / state.stiffness}[prescribed]
-        return Equilibrium(state.radius, depth, state.load(depth), state.stiffness, state), Guess(0.0, 1.0)
+    if prescribed == "contact_radius" or isinstance(pressing.indenter, FlatPunch):
+        state = pressing.at(value if prescribed == "contact_radius" else flat)
+        depths = {"indentation_depth": value, "normal_force": value / state.stiffness}
+        return state._replace(depth=depths.get(prescribed, state.depth)), state, (0.0, 1.0)
     excess, exponent = _first_guess(pressing, prescribed, value) if near is None else near
     for _ in range(MOST_STEPS):
         state = pressing.at(flat + excess)
@@ -217,7 +222,12 @@ def equilibrium(
         change = excess * (exp(max(min(-miss / exponent, 1.0), -1.0)) - 1.0)
         excess += change
         if abs(change) <= NEAR * state.radius:
-            return _moved(state, change, prescribed, value), Guess(excess, exponent)
+            # F at a given depth and the depth at a given F are stationary in the radius: k and M of half the way.
+            half = state.edge_flat**2 * change
+            k, M = state.stiffness + half, state.moment + half * state.depth
+            depth = value if prescribed == "indentation_depth" else (value + M) / k
+            moved = PressedState(state.radius + change, k + half, M + half * depth, state.edge_flat, depth)
+            return moved, state, (excess, exponent)
     raise NotConvergedError(f"no contact radius was found at {prescribed} = {value:g}", {"change": abs(change)})
 
 
@@ -232,20 +242,8 @@ def refuse_falling(pressing: Pressing, radius: float) -> None:
         raise no_single_circle(radius, "would be pulled at its edge")
 
 
-def _moved(state: PressedState, change: float, prescribed: Prescribed, value: float) -> Equilibrium:
-    """The state at a radius nearby: F at a given depth, and the depth at a given F, are stationary in the radius."""
-    growth = 2.0 * state.edge_flat**2
-    radius, stiffness = state.radius + change, state.stiffness + growth * change
-    if prescribed == "depth":
-        load = state.load(value) + 0.5 * growth * (value - state.depth) * change
-        return Equilibrium(radius, value, load, stiffness, state)
-    depth = (value + state.moment) / state.stiffness
-    depth += 0.5 * growth * (state.depth - depth) * change / state.stiffness
-    return Equilibrium(radius, depth, value, stiffness, state)
-
-
 def _value(state: PressedState, prescribed: Prescribed) -> float:
-    return state.depth if prescribed == "depth" else state.load()
+    return state.depth if prescribed == "indentation_depth" else state.load
 
 
 def _first_guess(pressing: Pressing, prescribed: Prescribed, value: float) -> Guess:
@@ -258,16 +256,15 @@ def _first_guess(pressing: Pressing, prescribed: Prescribed, value: float) -> Gu
         """ln of what the excess exp(x) needs over what is prescribed."""
         return log(max(_value(coarse.at(flat + exp(x)), prescribed), TINY * value) / value)
 
-    guess = (radius_of_depth if prescribed == "depth" else radius_of_load)(indenter, value)
+    guess = (radius_of_depth if prescribed == "indentation_depth" else radius_of_load)(indenter, value)
     high = min(log(guess - flat), last)
-    while (above := miss(high)) < 0.0:
+    while miss(high) < 0.0:
         if high == last:
             raise InvalidInput(f"the contact reaches the end of the indenter at {indenter.max_radius:g} m")
         high = min(high + 1.0, last)
-    low, below = high, above
-    while below >= 0.0:
-        high, above, low = low, below, low - 1.0
-        below = miss(low)
+    low = high - 1.0
+    while miss(low) >= 0.0:
+        low, high = low - 1.0, low
     root = brentq(miss, low, high, xtol=1e-4)
     exponent = (miss(root + STEP) - miss(root - STEP)) / (2.0 * STEP)
-    return Guess(exp(root), max(exponent, LEAST_EXPONENT))
+    return exp(root), max(exponent, LEAST_EXPONENT)

@@ -14,8 +14,7 @@ from typing import Any, Final, Literal
 
 import numpy as np
 
-from contact import InvalidInput
-from contact.answer.compiled_files import compiled
+from bem.compiled_files import compiled
 from contact.records.validation import FloatArray
 
 # Unused numbers after each row, one cache line: without them all rows of a power of two numbers begin at the same place
@@ -33,8 +32,6 @@ class CosineFilter:
     """
 
     def __init__(self, cells: int, period: int, threads: int = 1) -> None:
-        if cells < 1 or period < 2 * cells or period % 2:
-            raise InvalidInput(f"a quadrant needs an even period of at least twice its {cells} cells, got {period}")
         self.cells, self.period = cells, period
         half = period // 2
         self.modes = np.arange(half)[:, None], np.arange(half)[None, :]
@@ -59,12 +56,9 @@ class CosineFilter:
 
     def convolution_symbol(self, kernel: FloatArray) -> FloatArray:
         """Eigenvalues of the convolution with an even kernel, given at offsets 0 <= i, j <= period/2."""
-        half = self.period // 2
-        if kernel.shape != (half + 1, half + 1):
-            raise InvalidInput(f"the kernel must have shape {(half + 1, half + 1)}, got {kernel.shape}")
         work = kernel.copy()
         cosine_plan(work, 1, (0, 1)).execute()
-        return np.asarray(work[:half, :half])
+        return np.asarray(work[:-1, :-1])
 
 
 def cosine_filter(cells: int, period: int, threads: int = 1) -> CosineFilter:

@@ -21,20 +21,19 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from itertools import pairwise
-from math import inf
 from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
-from bem.kernels.stack import Material, Transfer
+from bem.kernels.stack import Material, Transfer, half_space
 from bem.numerics import Octaves, barycentric
 from contact.records.errors import NotConvergedError
 from contact.records.validation import FloatArray
 from contact.scene.graded_layer import GradedLayer
-from contact.scene.layer_stack import ElasticBase
+from contact.scene.layer import ElasticBase
 
 # Depth times |k| below which nothing is felt: exp(-2 DEEP cos(15 degrees)) is 1e-17, with half of it 1e-9.
 DEEP = 21.0
@@ -49,11 +48,12 @@ _NODES = 64
 _WAVES = 18
 # Wave number from which the tail's coefficients are fitted. Half of it leaves ten times the error, twice loses digits.
 _FAR = 80.0
+_SHARES = (1 - np.cos(np.pi * np.arange(1, 2 * _NODES, 2) / (2 * _NODES))) / 2
+_WEIGHTS = barycentric(_SHARES)
 
-
-# What is integrated as a function of the share of the way, and its slope there.
+# What is integrated as a function of the share of the way, and its slope by z from the share, z and the value.
 _Followed: TypeAlias = Callable[[float], NDArray[Any]]
-_Rate: TypeAlias = Callable[[float, NDArray[Any]], NDArray[Any]]
+_Rate: TypeAlias = Callable[[float, FloatArray, NDArray[Any]], NDArray[Any]]
 
 
 class _Local(NamedTuple):
@@ -88,37 +88,18 @@ class GradedKernel:
             moduli = np.append(moduli, base.youngs_modulus)
         return float(moduli.max() / moduli.min())
 
-    @property
-    def is_smooth(self) -> bool:
-        """1 - chi falls like 1/k."""
-        return False
-
-    @property
-    def poissons_ratio(self) -> float:
-        """Of the surface material."""
-        return float(self.layer.ratio_at(0.0))
-
-    @property
-    def zero_mode(self) -> float:
-        """chi/k at k = 0, from a wave number that is small enough; infinite on an elastic base."""
-        if isinstance(self.layer.support, ElasticBase):
-            return inf
-        k = 1e-6 / self.longest
-        return float(self.chi(np.array([k]))[0]) / k
-
-    @property
-    def edge_slope(self) -> float:
-        """c_1 in chi = 1 + c_1/k + ..: -[(2 - nu) G'/G + nu']/(2 (1 - nu)) at the surface."""
-        nu, turns, stiffens = (float(one) for one in _Local.at(self.layer, np.array(0.0)))
-        return -((2 - nu) * stiffens + turns) / (2 * (1 - nu))
-
     @cached_property
     def tail(self) -> tuple[float, ...]:
-        """c_1, c_2, .. of 1 - chi ~ sum c_j/k^j for large k; the first is known exactly, the others are fitted."""
+        """c_1, c_2, .. of 1 - chi ~ sum c_j/k^j for large k.
+
+        c_1 = [(2 - nu) G'/G + nu']/(2 (1 - nu)) at the surface; the others are fitted.
+        """
+        nu, turns, stiffens = (float(one) for one in _Local.at(self.layer, np.array(0.0)))
+        first = ((2 - nu) * stiffens + turns) / (2 * (1 - nu))
         x = np.cos(np.linspace(0.0, np.pi / 2.4, 24)) / _FAR
-        rest = self.one_minus_chi(1 / x) + self.edge_slope * x
+        rest = self.one_minus_chi(1 / x) - first * x
         fitted = np.linalg.lstsq((x[:, None] * _FAR) ** np.arange(2, 12), rest, rcond=None)[0]
-        return (-self.edge_slope, *(fitted * _FAR ** np.arange(2.0, 12))[:4].tolist())
+        return (first, *(fitted * _FAR ** np.arange(2.0, 12))[:4].tolist())
 
     def __getstate__(self) -> dict[str, Any]:
         """Without tables, which are made again where they are needed."""
@@ -130,28 +111,23 @@ class GradedKernel:
 
     def one_minus_chi(self, k: NDArray[Any]) -> NDArray[Any]:
         """1 - chi, with its relative accuracy for large k too."""
-        flat = np.ravel(k)
-        R = self.reflection(flat, DEEP)[0](0.0)
-        return np.asarray(2 * _unreflected(R)[2]).reshape(np.shape(k))
+        R = self.reflection(np.ravel(k), DEEP)[0](0.0)
+        return np.asarray(2 * _unreflected(R)[1]).reshape(np.shape(k))
 
-    def reflection(self, k: NDArray[Any], deep: float, *, dense: bool = False) -> list[_Followed]:
+    def reflection(self, k: NDArray[Any], deep: float) -> list[_Followed]:
         """R from the base, or from where k z = `deep`, upwards, shape (3, k.size) at each depth.
 
         Returns:
-            For each stretch between breakpoints, the top first, R as a function of the share of the depth; without
-            `dense` only its value at the top, share 0.
+            For each stretch between breakpoints, the top first, R as a function of the share of the depth.
         """
         start = np.minimum(1.0, deep / np.abs(k))
         R = np.where(start < 1.0, 0.0, self._at_base(k))
         found: list[_Followed] = []
         for low, high in self.stretches(start)[::-1]:
-            upwards = _integrated(self._upwards(k, low, high), R, dense=dense)
+            upwards = _integrated(partial(self._slope, k), R, high, low)
             found.append(lambda share, upwards=upwards: upwards(1.0 - share))  # type: ignore[misc]
             R = upwards(1.0)
         return found[::-1]
-
-    def _upwards(self, k: NDArray[Any], low: FloatArray, high: FloatArray) -> _Rate:
-        return lambda way, R: (low - high) * self._slope(k, high + (low - high) * way, R)
 
     def stretches(self, start: FloatArray) -> list[tuple[FloatArray, FloatArray]]:
         """Beginnings and ends of depths between breakpoints, down to `start`, shape (n,) each."""
@@ -163,21 +139,17 @@ class GradedKernel:
     def _at_base(self, k: NDArray[Any]) -> NDArray[Any]:
         """R = 4 beta (C + C_0~)^-1 - 1 on what lies below."""
         nu, base = float(self.layer.ratio_at(1.0)), self.layer.support
-        face, own, side = base, 0.0, 0.0
+        own, side, face = 2 * (1 - nu), 1 - 2 * nu, base
         if isinstance(base, ElasticBase):
             G = float(self.layer.youngs_modulus.at(1.0, 1.0)) / (1 + nu)
             softer = G * (1 + base.poissons_ratio) / base.youngs_modulus
-            face, own, side = (
-                base.interface,
-                2 * (1 - base.poissons_ratio) * softer,
-                (2 * base.poissons_ratio - 1) * softer,
-            )
-        own, side = own + 2 * (1 - nu), side + 1 - 2 * nu
-        size = 4 * (1 - nu) / (own**2 - side**2) if face == "bonded" else 0.0
-        R = (size * own - 1, -size * side, size * own - 1) if size else (-1.0, 0.0, 4 * (1 - nu) / own - 1)
-        return np.outer(R, np.ones_like(k))
+            (uu, uw), _ = softer * half_space(base.poissons_ratio, np.ones(()))
+            own, side, face = own + uu, side + uw, base.interface
+        size = 4 * (1 - nu) / (own**2 - side**2)
+        bonded, slips = (size * own - 1, -size * side, size * own - 1), (-1.0, 0.0, 4 * (1 - nu) / own - 1)
+        return np.outer(bonded if face == "bonded" else slips, np.ones_like(k))
 
-    def _slope(self, k: NDArray[Any], z: FloatArray, R: NDArray[Any]) -> NDArray[Any]:
+    def _slope(self, k: NDArray[Any], _: float, z: FloatArray, R: NDArray[Any]) -> NDArray[Any]:
         """dR/dz, shape (3, n)."""
         uu, uw, ww = R
         nu, turns, stiffens = _Local.at(self.layer, z)
@@ -204,32 +176,25 @@ class GradedKernel:
 
     def _followed(self, k: FloatArray) -> FloatArray:
         """The same at some wave numbers; stretches that they do not reach hold zeros."""
-        reflected = self.reflection(k, _FADED + DEEP, dense=True)
+        reflected = self.reflection(k, _FADED + DEEP)
         stretches = self.stretches(np.minimum(1.0, (_FADED + DEEP) / k))
         found = np.zeros((k.size, 4, len(self.layer.breakpoints) + 1, _NODES))
-        S = _unreflected(reflected[0](0.0))
-        d = np.array([-S[1], 1 - S[2]])  # (1 + R)^-1 (0, 1)
+        uw, ww = _unreflected(reflected[0](0.0))
+        d = np.array([-uw, 1 - ww])  # (1 + R)^-1 (0, 1)
         for number, ((low, high), R) in enumerate(zip(stretches, reflected, strict=True)):
-            downwards = _integrated(self._downwards(k, low, high, R), d, dense=True)
+            downwards = _integrated(partial(self._fading, k, R), d, low, high)
             for i, share in enumerate(_SHARES.tolist()):
                 nu = self.layer.ratio_at(low + (high - low) * share)
                 found[:, :, number, i] = np.transpose(_fields(nu, R(share), downwards(share)))
             d = downwards(1.0)
         return found.reshape(k.size, -1)
 
-    def _downwards(self, k: FloatArray, low: FloatArray, high: FloatArray, R: _Followed) -> _Rate:
-        return lambda share, d: (high - low) * self._fading(k, low + (high - low) * share, R(share), d)
-
-    def _fading(self, k: FloatArray, z: FloatArray, R: FloatArray, d: FloatArray) -> FloatArray:
+    def _fading(self, k: FloatArray, R: _Followed, share: float, z: FloatArray, d: FloatArray) -> FloatArray:
         """Slope of d exp(kz)."""
         nu, turns, stiffens = _Local.at(self.layer, z)
-        u, w, q, p = _fields(nu, R, d)
+        u, w, q, p = _fields(nu, R(share), d)
         both = k * (d[1] - d[0]) - 2 * turns * (q + p) / (4 * (1 - nu))
         return np.asarray(both + stiffens * np.array([u, w]) / (4 * (1 - nu)) + turns / (1 - nu) * d)
-
-
-_SHARES = (1 - np.cos(np.pi * np.arange(1, 2 * _NODES, 2) / (2 * _NODES))) / 2
-_WEIGHTS = barycentric(_SHARES)
 
 
 class GradedDescent:
@@ -251,7 +216,7 @@ class GradedDescent:
         layer = self.kernel.layer
         nu, turns, stiffens = _Local.at(layer, z)
         modulus = layer.youngs_modulus.at(z, 1.0) / float(layer.youngs_modulus.at(0.0, 1.0))
-        return Material(modulus * (1 + self.kernel.poissons_ratio) / (1 + nu), nu, stiffens, turns, is_top=True)
+        return Material(modulus * (1 + float(layer.ratio_at(0.0))) / (1 + nu), nu, stiffens, turns, is_top=True)
 
     def at(self, place: int, z: FloatArray) -> Transfer:
         """At depths z, shape (m, 1): arrays of shape (m, n)."""
@@ -268,11 +233,11 @@ class GradedDescent:
         return np.asarray(found * np.where(self.k * z < _FADED, np.exp(-self.k * z), 0.0))
 
 
-def _unreflected(R: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any]]:
-    """S = R (1 + R)^-1 by entries."""
+def _unreflected(R: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
+    """Entries UW and WW of S = R (1 + R)^-1."""
     uu, uw, ww = R
     det = (1 + uu) * (1 + ww) - uw**2
-    return (uu * (1 + ww) - uw**2) / det, uw / det, (ww * (1 + uu) - uw**2) / det
+    return uw / det, (ww * (1 + uu) - uw**2) / det
 
 
 def _fields(nu: FloatArray, R: FloatArray, d: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
@@ -283,8 +248,8 @@ def _fields(nu: FloatArray, R: FloatArray, d: FloatArray) -> tuple[FloatArray, F
     return u - eta * whole[1], w - eta * whole[0], whole[0], whole[1]
 
 
-def _integrated(rate: _Rate, start: NDArray[Any], *, dense: bool) -> _Followed:
-    """Values over the way from 0 to 1 of all wave numbers together; without `dense` at its end only.
+def _integrated(rate: _Rate, start: NDArray[Any], begin: FloatArray, end: FloatArray) -> _Followed:
+    """Values y with dy/dz = rate(share, z, y) of all wave numbers together, over the share of the way between depths.
 
     Raises:
         NotConvergedError: If the tolerance is not met.
@@ -292,20 +257,12 @@ def _integrated(rate: _Rate, start: NDArray[Any], *, dense: bool) -> _Followed:
     # Only graded layers pay for this import.
     from scipy.integrate import solve_ivp  # noqa: PLC0415
 
-    shape = start.shape
-    found = solve_ivp(
-        lambda way, values: rate(way, values.reshape(shape)).ravel(),
-        (0.0, 1.0),
-        start.ravel(),
-        method="DOP853",
-        rtol=TOLERANCE,
-        atol=ABSOLUTE,
-        dense_output=dense,
-    )
-    if not found.success:
-        raise NotConvergedError(f"the graded layer was not integrated over its depth: {found.message}")
-    if not dense:
-        return lambda way: np.asarray(found.y[:, -1].reshape(shape))
+    def slope(share: float, y: NDArray[Any]) -> NDArray[Any]:
+        z = begin + (end - begin) * share
+        return np.ravel((end - begin) * rate(share, z, y.reshape(start.shape)))
+
+    found = solve_ivp(slope, (0.0, 1.0), start.ravel(), "DOP853", dense_output=True, rtol=TOLERANCE, atol=ABSOLUTE)
     values = found.sol
-    assert values is not None
-    return lambda way: np.asarray(values(way).reshape(shape))
+    if not found.success or values is None:
+        raise NotConvergedError(f"the graded layer was not integrated over its depth: {found.message}")
+    return lambda way: np.asarray(values(way).reshape(start.shape))

@@ -7,8 +7,7 @@ import math
 import numpy as np
 
 from contact.scene.effects import Relaxation, Viscoelasticity
-from contact.scene.elastic_layer import ElasticLayer
-from contact.scene.layer import Layer
+from contact.scene.layer import ElasticLayer, Layer
 from contact.scene.scene import Scene
 
 

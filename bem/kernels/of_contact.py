@@ -17,7 +17,7 @@ from bem.kernels.protocol import SurfaceKernel
 from bem.kernels.stack import StackKernel
 from bem.numerics import Octaves
 from contact.records.validation import FloatArray
-from contact.scene.elastic_layer import ElasticLayer
+from contact.scene.layer import ElasticLayer
 
 # Units per thickness of a graded layer. With 4 wide contacts need more wave numbers, with 16 narrow ones do.
 _GRADED_UNITS = 8.0
@@ -49,7 +49,7 @@ class ContactKernel:
     @property
     def is_graded(self) -> bool:
         """Whether 1 - chi falls like a power of k."""
-        return self.surface is not None and not self.surface.is_smooth
+        return self.surface is not None and bool(self.surface.tail)
 
     @property
     def units(self) -> float:
@@ -61,43 +61,42 @@ class ContactKernel:
         """Length beyond which chi has its limit for small k."""
         return 1.0 if self.surface is None else self.units * self.surface.longest
 
-    def chi(self, k: FloatArray) -> FloatArray:
-        """chi at wave numbers k > 0, shape (n,)."""
-        if self.surface is None:
-            return np.ones_like(k)
-        return self._tabulated(k) if self.is_graded else np.asarray(self.surface.chi(k))
-
-    def one_minus_chi(self, k: FloatArray) -> FloatArray:
-        """1 - chi at wave numbers k > 0, shape (n,)."""
-        if self.surface is None:
-            return np.zeros_like(k)
-        return 1 - self._tabulated(k) if self.is_graded else np.asarray(self.surface.one_minus_chi(k))
-
     @cached_property
     def tail(self) -> tuple[float, ...]:
         """c_1, c_2, .. of 1 - chi ~ sum c_j/k^j for large k."""
         tail = () if self.surface is None else self.surface.tail
         return tuple(c / self.units**power for power, c in enumerate(tail, 1))
 
-    @cached_property
-    def _table(self) -> Octaves:
-        """chi/k, or chi where it does not vanish with k, over octaves of k times thickness."""
-        assert self.surface is not None
-        surface, power = self.surface, self._power
-        lowest = -2 - int(np.ceil(np.log2(surface.longest)))
-        return Octaves(lambda k, _: (surface.chi(k) / k**power)[:, None], lowest, _NODES)
+    def chi(self, k: FloatArray) -> FloatArray:
+        """chi at wave numbers k > 0, shape (n,)."""
+        if self.surface is None:
+            return np.ones_like(k)
+        return np.asarray(self.surface.chi(k)) if not self.is_graded else self._tabulated(k * self.units)
 
-    @cached_property
-    def _power(self) -> int:
-        assert self.surface is not None
-        return int(np.isfinite(self.surface.zero_mode))
+    def one_minus_chi(self, k: FloatArray) -> FloatArray:
+        """1 - chi at wave numbers k > 0, shape (n,)."""
+        if self.surface is None or self.is_graded:
+            return 1 - self.chi(k)
+        return np.asarray(self.surface.one_minus_chi(k))
 
     def _tabulated(self, k: FloatArray) -> FloatArray:
-        k = k * self.units
         chi = np.empty_like(k)
         for octave, index in self._table.groups(k):
             chi[index] = k[index] ** self._power * self._table(k[index], octave)[:, 0]
         return chi
+
+    @property
+    def _power(self) -> int:
+        """The power of k by which chi vanishes with k: none on an elastic base."""
+        return 0 if self.surface.layer.has_elastic_base else 1  # type: ignore[union-attr]
+
+    @cached_property
+    def _table(self) -> Octaves:
+        """chi/k, or chi where it does not vanish with k, over octaves of k times thickness."""
+        surface = self.surface
+        assert surface is not None
+        lowest = -2 - int(np.ceil(np.log2(surface.longest)))
+        return Octaves(lambda k, _: (surface.chi(k) / k**self._power)[:, None], lowest, _NODES)
 
     def __getstate__(self) -> dict[str, Any]:
         """Without tables, which are made again where they are needed."""
@@ -118,7 +117,7 @@ def contact_kernel(layer: ElasticLayer) -> ContactKernel:
     if layer.is_half_space:
         return ContactKernel(None)
     # Poisson's ratio has no influence on one layer without bond.
-    slides = layer.is_uniform and layer.support == "unbonded"  # type: ignore[attr-defined]
+    slides = layer.is_uniform and layer.support == "unbonded"
     return _kernel(StackKernel.single("unbonded", 0.0) if slides else surface_kernel(layer))
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from functools import lru_cache, singledispatch
+from functools import lru_cache
 from math import inf
 from typing import TYPE_CHECKING, TypeVar
 
@@ -13,10 +13,8 @@ from bem.kernels.protocol import SurfaceKernel
 from bem.kernels.stack import Sheet, StackKernel
 from contact.records.errors import UnsupportedSceneError
 from contact.records.record import Record
-from contact.scene.elastic_layer import ElasticLayer
 from contact.scene.graded_layer import GradedLayer
-from contact.scene.layer import Layer
-from contact.scene.layer_stack import ElasticBase, LayerStack
+from contact.scene.layer import ElasticBase, ElasticLayer, Layer, LayerStack
 
 if TYPE_CHECKING:
     from bem.kernels.graded import GradedKernel
@@ -27,48 +25,39 @@ _R = TypeVar("_R", bound=Record)
 _DIGITS = 13
 
 
-@singledispatch
 def surface_kernel(layer: ElasticLayer) -> SurfaceKernel:
     """The kernel of a layer.
 
     Raises:
-        UnsupportedSceneError: If none is registered for this kind of layer.
+        UnsupportedSceneError: If none is known of this kind of layer.
     """
+    if layer.is_half_space:
+        return StackKernel((), Sheet(inf, 1.0, layer.surface.poissons_ratio, slips_below=False))
+    if isinstance(layer, Layer):
+        return StackKernel.single(layer.support, layer.poissons_ratio)
+    if isinstance(layer, LayerStack):
+        return _of_stack(layer)
+    if isinstance(layer, GradedLayer):
+        # Only graded layers pay for it.
+        from bem.kernels.graded import GradedKernel  # noqa: PLC0415
+
+        return _shared(GradedKernel(_without_roundings(layer.in_own_units())))
     raise UnsupportedSceneError(f"no kernel is known of a {type(layer).__name__}")
 
 
-@surface_kernel.register(Layer)
-def _(layer: Layer) -> StackKernel:
-    if layer.is_half_space:
-        return StackKernel((), Sheet(inf, 1.0, layer.poissons_ratio, slips_below=False))
-    return StackKernel.single(layer.support, layer.poissons_ratio)
+def _of_stack(layer: LayerStack) -> StackKernel:
+    unit, base = layer.surface, layer.support
+    elastic = base if isinstance(base, ElasticBase) else None
+    faces = (*layer.interfaces, elastic.interface if elastic else base)
 
+    def sheet(thickness: float, modulus: float, nu: float, face: object = "bonded") -> Sheet:
+        """In units of the first sublayer."""
+        softer = (1 + unit.poissons_ratio) / (1 + nu)
+        return Sheet(thickness / unit.thickness, modulus / unit.youngs_modulus * softer, nu, face == "unbonded")
 
-@surface_kernel.register(LayerStack)
-def _(layer: LayerStack) -> StackKernel:
-    unit, modulus, rigid = layer.surface.thickness, layer.shear_modulus, layer.support
-    faces = (*layer.interfaces, rigid.interface if isinstance(rigid, ElasticBase) else rigid)
-    sheets = tuple(
-        Sheet(
-            one.thickness / unit,
-            _shear(one.youngs_modulus, one.poissons_ratio) / modulus,
-            one.poissons_ratio,
-            slips_below=face == "unbonded",
-        )
-        for one, face in zip(layer.sublayers, faces, strict=True)
-    )
-    if not isinstance(rigid, ElasticBase):
-        return StackKernel(sheets, None)
-    nu = rigid.poissons_ratio
-    return StackKernel(sheets, Sheet(inf, _shear(rigid.youngs_modulus, nu) / modulus, nu, slips_below=False))
-
-
-@surface_kernel.register(GradedLayer)
-def _(layer: GradedLayer) -> GradedKernel:
-    # Only graded layers pay for it.
-    from bem.kernels.graded import GradedKernel  # noqa: PLC0415
-
-    return _shared(GradedKernel(_without_roundings(layer.in_own_units())))
+    own = zip(layer.sublayers, faces, strict=True)
+    sheets = tuple(sheet(one.thickness, one.youngs_modulus, one.poissons_ratio, face) for one, face in own)
+    return StackKernel(sheets, sheet(inf, elastic.youngs_modulus, elastic.poissons_ratio) if elastic else None)
 
 
 @lru_cache(maxsize=64)
@@ -89,10 +78,6 @@ def _to_digits(value: object) -> object:
     if isinstance(value, np.ndarray):
         return np.array([float(f"{one:.{_DIGITS}g}") for one in value.tolist()])
     return _without_roundings(value) if isinstance(value, Record) else value
-
-
-def _shear(youngs_modulus: float, poissons_ratio: float) -> float:
-    return youngs_modulus / (2 * (1 + poissons_ratio))
 
 
 def stack_kernel(layer: ElasticLayer) -> StackKernel:

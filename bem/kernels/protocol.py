@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Hashable
 from typing import Any, Protocol
 
-import numpy as np
 from numpy.typing import NDArray
 
 from bem.kernels.stack import Material, Transfer
@@ -19,38 +18,26 @@ from contact.records.validation import FloatArray
 class Descent(Protocol):
     """The inside of a layer under a unit pressure of wave numbers k, shape (n,), on the surface; depths over h."""
 
-    def places(self, z: FloatArray) -> NDArray[np.intp]:
-        """What holds each depth, shape (m,): depths of one place are asked together."""
+    def places(self, z: FloatArray) -> NDArray[Any]:
+        """Number of the part that holds each depth, shape (m,): depths of one part are asked together."""
 
     def material(self, place: int, z: FloatArray) -> Material:
-        """The material at depths of one place."""
+        """The material at depths of one part."""
 
     def at(self, place: int, z: FloatArray) -> Transfer:
-        """Displacements and tractions at depths of one place, shape (m, 1): arrays of shape (m, n)."""
+        """Displacements and tractions at depths of one part, shape (m, 1): arrays of shape (m, n)."""
 
 
 class SurfaceKernel(Hashable, Protocol):
-    """Compliance of a layer's surface relative to the half-space of its surface material. Hashable."""
+    """Compliance of a layer's surface relative to the half-space of its surface material."""
 
     @property
     def longest(self) -> float:
         """Length over h beyond which chi has its limit for small k: chi is smooth on the scale of 1/longest."""
 
     @property
-    def is_smooth(self) -> bool:
-        """Whether 1 - chi falls exponentially; on a graded surface it falls like 1/k."""
-
-    @property
-    def zero_mode(self) -> float:
-        """chi/k at k = 0, the answer to a uniform pressure; infinite on an elastic base."""
-
-    @property
-    def edge_slope(self) -> float:
-        """c_1 in chi = 1 + c_1/k + ..; zero where 1 - chi falls exponentially."""
-
-    @property
     def tail(self) -> tuple[float, ...]:
-        """c_1, c_2, .. of 1 - chi ~ sum c_j/k^j for large k; none where it falls exponentially."""
+        """c_1, c_2, .. of 1 - chi ~ sum c_j/k^j for large k on a graded surface; none where it falls exponentially."""
 
     def chi(self, wavenumber: NDArray[Any]) -> NDArray[Any]:
         """chi at wave numbers k > 0, or complex ones with 0 <= arg k < pi/2, any shape."""

@@ -8,14 +8,14 @@ that lies below a plane is a compliance C: 2 G k (U, W) = C (Q, P), symmetric an
 adds itself to what lies below by C_top = N + A M A^T, M = (C^-1 + K)^-1 (Redheffer's star product, as for waves in
 stratified media). Downwards b = A^T t_top, v_bottom = M b, t_bottom = b - K v_bottom. All are sums of positive terms
 that fade: nothing grows, nothing cancels. The surface answers with chi = C_WW/(2 (1 - nu)), of which Eqs. (29) and (31)
-are the cases of one layer.
+are the cases of one layer. Matrices have the shape (2, 2, n), rows and columns in the order U, W.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from math import factorial, inf
-from typing import Any, NamedTuple
+from typing import Any, ClassVar, Literal, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.polynomial.polynomial import polyval
@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 
 from contact.records.validation import FloatArray
 
+Matrix: TypeAlias = NDArray[Any]
 # q up to which differences of hyperbolic functions are summed as series; with half of it they lose two digits, with
 # twice of it the series does.
 _SERIES = 1.5
@@ -30,22 +31,6 @@ _SERIES = 1.5
 _ODD, _EVEN = ([1 / factorial(2 * k + first) for k in range(17)] for first in (3, 4))
 # Roundings of a depth within which it lies at an interface: one for each of some thicknesses, and two of the unit.
 _ROUNDINGS = 32.0 * float(np.finfo(float).eps)
-
-
-class Symmetric(NamedTuple):
-    """A symmetric matrix of two rows at every wave number."""
-
-    uu: NDArray[Any]
-    uw: NDArray[Any]
-    ww: NDArray[Any]
-
-    def times(self, factor: float) -> Symmetric:
-        """Each entry times a factor."""
-        return Symmetric(self.uu * factor, self.uw * factor, self.ww * factor)
-
-    def plus(self, other: Symmetric) -> Symmetric:
-        """The sum of two."""
-        return Symmetric(self.uu + other.uu, self.uw + other.uw, self.ww + other.ww)
 
 
 class Transfer(NamedTuple):
@@ -67,20 +52,24 @@ class Material(NamedTuple):
     is_top: bool
 
 
-def half_space(nu: float, k: NDArray[Any]) -> Symmetric:
+def symmetric(uu: Any, uw: Any, ww: Any) -> Matrix:
+    """A symmetric matrix by its entries."""
+    return np.array([[uu, uw], [uw, ww]])
+
+
+def half_space(nu: float, k: NDArray[Any]) -> Matrix:
     """C of a half-space."""
-    one = np.ones_like(k)
-    return Symmetric(2 * (1 - nu) * one, -(1 - 2 * nu) * one, 2 * (1 - nu) * one)
+    return np.asarray(np.multiply.outer(symmetric(2 * (1 - nu), 2 * nu - 1, 2 * (1 - nu)), np.ones_like(k)))
 
 
 def half_space_at(
     q: FloatArray, nu: float, shear: FloatArray | float = 0.0, normal: FloatArray | float = 1.0
 ) -> Transfer:
     """The inside of a half-space under tractions of its surface, at q = k z."""
-    q_down = ((1 - q) * shear + q * normal) * np.exp(-q)
-    p_down = ((1 + q) * normal - q * shear) * np.exp(-q)
-    c, s = 2 * (1 - nu), -(1 - 2 * nu)
-    return Transfer(c * q_down + s * p_down, s * q_down + c * p_down, q_down, p_down)
+    Q = ((1 - q) * shear + q * normal) * np.exp(-q)
+    P = ((1 + q) * normal - q * shear) * np.exp(-q)
+    c, s = 2 * (1 - nu), 2 * nu - 1
+    return Transfer(c * Q + s * P, s * Q + c * P, Q, P)
 
 
 class Step(NamedTuple):
@@ -91,17 +80,14 @@ class Step(NamedTuple):
         beyond: N less the compliance of the half-space, which falls exponentially.
         free: K, the stiffness of its lower face under a free top.
         free_determinant: det K.
-        uu, uw, wu, ww: A by row at the top and column at the bottom.
+        through: A by row at the top and column at the bottom.
     """
 
-    glued: Symmetric
-    beyond: Symmetric
-    free: Symmetric
+    glued: Matrix
+    beyond: Matrix
+    free: Matrix
     free_determinant: NDArray[Any]
-    uu: NDArray[Any]
-    uw: NDArray[Any]
-    wu: NDArray[Any]
-    ww: NDArray[Any]
+    through: Matrix
 
     @classmethod
     def of(cls, q: NDArray[Any], nu: float) -> Step:
@@ -112,52 +98,40 @@ class Step(NamedTuple):
         linear, square, ss = qe * root, qe**2, np.expm1(-2 * q) ** 2 / 4
         excess, excess_of_squares = _differences(q, e)
         d = kap * (1 + e) ** 2 / 4 + eta**2 * e + square
-        glued = Symmetric(
-            2 * beta * (kap * excess + (kap + 1) * linear) / d,
-            (square - eta * kap * ss) / d,
-            2 * beta * (kap * excess + 2 * eta * linear) / d,
-        )
         even = kap * (1 + e) / 2 * e + eta**2 * e + square
-        beyond = Symmetric(even - linear, -square - 2 * beta * eta * e, even + linear)
-        free = Symmetric(2 * beta * (excess + 2 * linear) / d, -(eta * ss + square) / d, 2 * beta * excess / d)
-        along, across = root * 2 * beta / d, qe * 2 * beta / d
-        c, s = (1 + e) / 2, -np.expm1(-2 * q) / 2
-        return cls(
-            glued,
-            Symmetric(*(-2 * beta / d * one for one in beyond)),
-            free,
-            excess_of_squares / d,
-            2 * beta * along * c - across * s,
-            -(across * c + along * eta * s),
-            across * c - along * eta * s,
-            2 * beta * along * c + across * s,
+        c, s = 2 * beta * root * (1 + e) / 2, -np.expm1(-2 * q) / 2
+        glued = symmetric(
+            2 * beta * (kap * excess + (kap + 1) * linear),
+            square - eta * kap * ss,
+            2 * beta * (kap * excess + 2 * eta * linear),
         )
+        beyond = -2 * beta * symmetric(even - linear, -square - 2 * beta * eta * e, even + linear)
+        free = symmetric(2 * beta * (excess + 2 * linear), -(eta * ss + square), 2 * beta * excess)
+        off, turned = qe * (1 + e) / 2, eta * root * s
+        through = 2 * beta / d * np.array([[c - qe * s, -off - turned], [off - turned, c + qe * s]])
+        return cls(glued / d, beyond / d, free / d, excess_of_squares / d, through)
 
-    def joined(self, below: Symmetric, *, slips: bool) -> Symmetric:
+    def joined(self, below: Matrix, *, slips: bool) -> Matrix:
         """M = (C^-1 + K)^-1, compliance of the lower face; across a frictionless interface passes pressure only."""
-        K, c = self.free, below
+        (uu, uw), (_, ww), K = *below, self.free
+        adjoint = symmetric(K[1, 1], -K[0, 1], K[0, 0])
         if slips:
-            d = K.uu + c.ww * self.free_determinant
-            return Symmetric((1 + c.ww * K.ww) / d, -c.ww * K.uw / d, c.ww * K.uu / d)
-        det = c.uu * c.ww - c.uw**2
-        d = 1 + K.uu * c.uu + 2 * K.uw * c.uw + K.ww * c.ww + self.free_determinant * det
-        return Symmetric((c.uu + det * K.ww) / d, (c.uw - det * K.uw) / d, (c.ww + det * K.uu) / d)
+            pressed = ww * adjoint
+            pressed[0, 0] += 1
+            return np.asarray(pressed / (K[0, 0] + ww * self.free_determinant))
+        det = uu * ww - uw**2
+        return np.asarray((below + det * adjoint) / (1 + (K * below).sum(axis=(0, 1)) + self.free_determinant * det))
 
-    def through(self, below: Symmetric, *, slips: bool) -> Symmetric:
-        """A M A^T: what the layers below add to N."""
+    def on_top(self, own: Matrix, below: Matrix, *, slips: bool) -> Matrix:
+        """C of the upper face: N, or what is asked of it instead, and A M A^T of the layers below."""
         M = self.joined(below, slips=slips)
-        return Symmetric(
-            self.uu**2 * M.uu + 2 * self.uu * self.uw * M.uw + self.uw**2 * M.ww,
-            self.uu * self.wu * M.uu + (self.uu * self.ww + self.uw * self.wu) * M.uw + self.uw * self.ww * M.ww,
-            self.wu**2 * M.uu + 2 * self.wu * self.ww * M.uw + self.ww**2 * M.ww,
-        )
+        return np.asarray(own + np.einsum("ij...,jk...,lk...->il...", self.through, M, self.through))
 
-    def down(self, below: Symmetric, shear: FloatArray, normal: FloatArray, *, slips: bool) -> Transfer:
+    def down(self, below: Matrix, shear: FloatArray, normal: FloatArray, *, slips: bool) -> Transfer:
         """The lower face under tractions of the upper one."""
-        K, M = self.free, self.joined(below, slips=slips)
-        b_u, b_w = self.uu * shear + self.wu * normal, self.uw * shear + self.ww * normal
-        u, w = M.uu * b_u + M.uw * b_w, M.uw * b_u + M.ww * b_w
-        return Transfer(u, w, b_u - K.uu * u - K.uw * w, b_w - K.uw * u - K.ww * w)
+        b = self.through[0] * shear + self.through[1] * normal
+        v = np.einsum("ij...,j...->i...", self.joined(below, slips=slips), b)
+        return Transfer(*v, *(b - np.einsum("ij...,j...->i...", self.free, v)))
 
 
 def _differences(q: NDArray[Any], e: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
@@ -188,11 +162,6 @@ class Sheet:
     poissons_ratio: float
     slips_below: bool
 
-    @property
-    def plane_modulus(self) -> float:
-        """E*_i = 2 G_i/(1 - nu_i)."""
-        return 2 * self.shear_modulus / (1 - self.poissons_ratio)
-
 
 @dataclass(frozen=True)
 class StackKernel:
@@ -211,13 +180,7 @@ class StackKernel:
         """One layer, "bonded" or "unbonded" to a rigid base."""
         return cls((Sheet(1.0, 1.0, nu, support == "unbonded"),), None)
 
-    @property
-    def is_smooth(self) -> bool:
-        """1 - chi falls exponentially."""
-        return True
-
-    edge_slope = 0.0
-    tail: tuple[float, ...] = ()
+    tail: ClassVar[tuple[float, ...]] = ()
 
     @property
     def is_half_space(self) -> bool:
@@ -225,13 +188,9 @@ class StackKernel:
         return not self.sheets
 
     @property
-    def _top(self) -> Sheet:
-        return (*self.sheets, self.base)[0]  # type: ignore[return-value]
-
-    @property
     def poissons_ratio(self) -> float:
         """Of the surface material."""
-        return self._top.poissons_ratio
+        return (*self.sheets, self.base)[0].poissons_ratio  # type: ignore[union-attr]
 
     @property
     def longest(self) -> float:
@@ -240,60 +199,38 @@ class StackKernel:
         total = sum(sheet.thickness for sheet in self.sheets)
         return total * max(stiffness) / min(stiffness) if self.sheets else 1.0
 
-    @property
-    def zero_mode(self) -> float:
-        """chi/k at k = 0: uniaxial strain, less what groups of layers give that may slide sideways."""
-        if self.base is not None:
-            return inf
-        strain = sum(
-            one.thickness * (1 - 2 * one.poissons_ratio) / (2 * one.shear_modulus * (1 - one.poissons_ratio))
-            for one in self.sheets
-        )
-        return self._top.plane_modulus / 2 * (strain + self._sideways())
-
-    def _sideways(self) -> float:
-        """(sum m_i h_i)^2/(sum E*_i h_i), m = nu/(1 - nu), of each group of bonded layers on a frictionless face."""
-        found = push = stiffness = 0.0
-        for one in self.sheets:
-            push += one.poissons_ratio / (1 - one.poissons_ratio) * one.thickness
-            stiffness += one.plane_modulus * one.thickness
-            if one.slips_below:
-                found, push, stiffness = found + push**2 / stiffness, 0.0, 0.0
-        return found
-
     def chi(self, k: NDArray[Any]) -> NDArray[Any]:
         """chi at wave numbers k, real or with Re k > 0, any shape."""
-        return np.asarray(self.compliance(k).ww / (2 * (1 - self.poissons_ratio)))
+        return np.asarray(self._surface(k, "glued")[1, 1] / (2 * (1 - self.poissons_ratio)))
 
     def one_minus_chi(self, k: NDArray[Any]) -> NDArray[Any]:
         """1 - chi, also where it is exponentially small."""
-        return np.asarray(-self.beyond_half_space(k).ww / (2 * (1 - self.poissons_ratio)))
+        return np.asarray(-self._surface(k, "beyond")[1, 1] / (2 * (1 - self.poissons_ratio)))
 
-    def compliance(self, k: NDArray[Any]) -> Symmetric:
-        """C of the surface."""
+    def beyond_half_space(self, k: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any]]:
+        """C less that of the half-space of the surface material: its entries UU, UW, WW."""
+        (uu, uw), (_, ww) = self._surface(k, "beyond")
+        return uu, uw, ww
+
+    def _surface(self, k: NDArray[Any], part: Literal["glued", "beyond"]) -> Matrix:
+        """C of the surface, or with "beyond" C less that of the half-space."""
         if not self.sheets:
-            return half_space(self.poissons_ratio, k)
-        own = Step.of(self._top.thickness * k, self.poissons_ratio)
-        return own.glued.plus(own.through(self.below(k)[0], slips=self._top.slips_below))
+            C = half_space(self.poissons_ratio, k)
+            return C if part == "glued" else 0 * C
+        top = self.sheets[0]
+        own = Step.of(top.thickness * k, top.poissons_ratio)
+        return own.on_top(getattr(own, part), self.below(k)[0], slips=top.slips_below)
 
-    def beyond_half_space(self, k: NDArray[Any]) -> Symmetric:
-        """C less that of the half-space of the surface material."""
-        if not self.sheets:
-            return Symmetric(*np.zeros((3, *np.shape(k))))
-        own = Step.of(self._top.thickness * k, self.poissons_ratio)
-        return own.beyond.plus(own.through(self.below(k)[0], slips=self._top.slips_below))
-
-    def below(self, k: NDArray[Any]) -> list[Symmetric]:
+    def below(self, k: NDArray[Any]) -> list[Matrix]:
         """C of all that lies below each layer, in units of that layer."""
-        base = self.base
-        C = Symmetric(*np.zeros((3, *np.shape(k)))) if base is None else half_space(base.poissons_ratio, k)
-        unit, found = 1.0 if base is None else base.shear_modulus, []
+        C = half_space(self.base.poissons_ratio, k) if self.base else np.zeros((2, 2, *np.shape(k)))
+        unit, found = self.base.shear_modulus if self.base else 1.0, []
         for sheet in reversed(self.sheets):
-            C = C.times(sheet.shear_modulus / unit)
+            C = C * (sheet.shear_modulus / unit)
             found.append(C)
             if len(found) < len(self.sheets):
                 own = Step.of(sheet.thickness * k, sheet.poissons_ratio)
-                C = own.glued.plus(own.through(C, slips=sheet.slips_below))
+                C = own.on_top(own.glued, C, slips=sheet.slips_below)
             unit = sheet.shear_modulus
         return found[::-1]
 
@@ -341,9 +278,9 @@ class StackDescent:
         if number == len(self.kernel.sheets):
             assert self.kernel.base is not None
             return half_space_at(depth, self.kernel.base.poissons_ratio, *load)
-        sheet, below = self.kernel.sheets[number], self._below[number]
+        sheet, below = self.kernel.sheets[number], self._below[number][:, :, None]
         upper, slips = Step.of(depth, sheet.poissons_ratio), sheet.slips_below
         if not on_face:
             rest = Step.of(self.k * (self._faces[number] - z), sheet.poissons_ratio)
-            below, slips = rest.glued.plus(rest.through(below, slips=slips)), False
+            below, slips = rest.on_top(rest.glued, below, slips=slips), False
         return upper.down(below, *load, slips=slips)

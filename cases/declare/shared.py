@@ -78,7 +78,7 @@ SHARED: tuple[Shared, ...] = (
     ),
     Shared(
         name="moduli over depth",
-        place="contact.scene.depth_functions",
+        place="contact.scene.graded_layer",
         methods=ON_STACKS,
         guard="agreement with finite elements, which write them down themselves",
         cases=("graded_layer",),

@@ -7,8 +7,9 @@ from cases.gate.baseline import AcceptedCounters, AcceptedQuantity, Baseline
 from cases.gate.checks.claims import claims_of
 from cases.gate.checks.counts import counters_of
 from cases.gate.checks.uncertainties import curve_uncertainties
+from cases.gate.checks.values import permitted_change
 from cases.gate.spread import Spreads
-from cases.judgement.rules.tolerance import permitted_difference, relative_tolerance
+from cases.judgement.rules.tolerance import relative_tolerance
 from cases.results.records.run import CaseResult
 from cases.results.records.scene_run import Quantity, SceneRun
 from contact import InvalidInput
@@ -53,7 +54,7 @@ class BaselineChange:
         old, new = self.values
         if self.old is None or old is None or new is None or not self.comparable:
             return None
-        return (new - old) / permitted_difference(old, scale=self.old.scale, rtol=self.old.tolerance)
+        return (new - old) / permitted_change(self.old, self.step)
 
     @property
     def in_uncertainty(self) -> float | None:

@@ -6,6 +6,7 @@ Its layer takes Young's modulus and its half-space takes E*; `workers.contact_me
 from dataclasses import dataclass, replace
 from typing import ClassVar, Self
 
+from cases.referees.from_depth import Response, answer_from_depths
 from cases.referees.grid import box, refusal, surface
 from cases.referees.process import ask, insist, lacks, support, version
 from contact import (
@@ -18,7 +19,6 @@ from contact import (
     Supported,
     Unsupported,
 )
-from contact.answer.from_depth import Response, answer_from_depths
 from contact.answer.solution import Setting
 from contact.records.validation import FloatArray
 

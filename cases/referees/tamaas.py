@@ -5,6 +5,7 @@ from typing import ClassVar, Self
 
 import numpy as np
 
+from cases.referees.from_depth import inverted
 from cases.referees.grid import box, deepest, refusal, surface
 from cases.referees.process import ask, insist, lacks, support, version
 from contact import (
@@ -17,7 +18,6 @@ from contact import (
     Unsupported,
     UnsupportedSceneError,
 )
-from contact.answer.from_depth import inverted
 from contact.answer.solution import Setting
 from contact.records.validation import FloatArray
 

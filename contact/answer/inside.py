@@ -2,35 +2,54 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields
 from typing import Literal, NamedTuple, Protocol, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from contact.answer.extremes import Box, Extreme, largest_in
 from contact.answer.one_thread import one_thread
 from contact.records.errors import InvalidInput
 from contact.records.validation import FloatArray
 from contact.scene.effects import Adhesion
-from contact.scene.layer_stack import LayerStack
+from contact.scene.layer import LayerStack
 from contact.scene.profiles import FlatPunch
 from contact.scene.scene import Scene
 
 Searched: TypeAlias = Literal["von_mises", "interface_shear"]
 
-# The surface is looked at this share of the contact radius below it, and points as close to a sharp rim count as on it.
+# Points closer to a sharp edge than this share of the contact radius count as on it; half of it admits larger stresses.
 SURFACE = 1e-11
 # Depths larger by this share than an interface's lie below it; within 32 roundings they are the interface.
 _BELOW = 1e-13
 # Points deeper than a layer by so many roundings of its thickness lie on its base.
 _ROUNDED = 4.0 * float(np.finfo(float).eps)
-_KINDS = ("displacement", "stress", "hydrostatic_pressure", "pressure_gradient")
-# Points of the first look in r and z.
+# Points of the first look along r and z; half as many may miss a maximum, twice as many take four times as long.
 _SAMPLES = 40
-# Where the surface has rims, the search for von Mises stresses begins this share of the contact radius below; chosen.
-_BELOW_RIMS = 1e-9
+# Where the surface has sharp edges, the search begins this share of the contact radius below.
+_BELOW_EDGES = 1e-9
+# So many of the best points of the first look are followed to their maximum.
+_STARTS = 3
+# Places of a closer look around the best point, over its width, which is halved each time.
+_CLOSER = np.stack(np.meshgrid(*[np.linspace(-1.0, 1.0, 5)] * 2)).reshape(2, -1)
+# Last width over the rectangle: within it, values near a maximum are equal to a rounding.
+_LAST = 1e-9
+
+
+@dataclass(frozen=True)
+class Extreme:
+    """The largest value of a field.
+
+    Attributes:
+        radius: r [m].
+        depth: z [m].
+        value: [Pa].
+    """
+
+    radius: float
+    depth: float
+    value: float
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -112,7 +131,7 @@ class Inside:
 
     Attributes:
         fields: Of the method that solved it.
-        scene: What was solved.
+        scene: The problem that was solved.
         contact_radius: a [m] of the equilibrium.
         singular_edge: Whether its pressure is infinite at the edge though the scene does not say so.
     """
@@ -129,20 +148,22 @@ class Inside:
         Raises:
             InvalidInput: A point outside the layer, or where a stress is infinite; no numbers, or shapes that differ.
         """
-        r, z = _together(_numbers("radius", radius), _numbers("depth", depth))
-        if not np.all(np.isfinite(r) & (r >= 0.0)):
-            raise InvalidInput(f"radius = {_worst(r, 0.0, np.inf):g}: radii must be finite and not negative")
+        r, z = _points(radius, depth)
+        if (wrong := ~(np.isfinite(r) & (r >= 0.0))).any():
+            raise InvalidInput(f"radius = {r[wrong][0]:g}: radii must be finite and not negative")
         thickness = self.scene.layer.thickness
-        outside = ~(np.isfinite(z) & (z >= 0.0) & (z <= thickness * (1.0 + _ROUNDED)))
-        if np.any(outside):
-            worst = float(z[outside].flat[0])
-            raise InvalidInput(f"depth = {worst:.15g}: points must lie in the layer, between 0 and {thickness:.15g} m")
+        if (outside := ~(np.isfinite(z) & (z >= 0.0) & (z <= thickness * (1.0 + _ROUNDED)))).any():
+            bounds = f"points must lie in the layer, between 0 and {thickness:.15g} m"
+            raise InvalidInput(f"depth = {z[outside][0]:.15g}: {bounds}")
         z = np.minimum(z, thickness)
-        self._refuse_sharp_rims(r, z)
-        if not r.size:
-            nothing = {f.name: np.zeros(r.shape) for f in fields(InsideFields) if f.name != "error_estimate"}
-            return InsideFields(**nothing, error_estimate=dict.fromkeys(_KINDS, 0.0))
-        found = self.fields.at(r.ravel(), z.ravel())
+        closest = SURFACE * self.contact_radius
+        for edge in self._edges:
+            if (infinite := np.hypot(r - edge, z) < closest).any():
+                raise InvalidInput(
+                    f"radius = {r[infinite][0]:g} m, depth = {z[infinite][0]:g}: stresses are infinite at this sharp "
+                    f"edge; ask beside it, at least {closest:g} m away"
+                )
+        found = self.fields.at(r.ravel(), z.ravel()) if r.size else _NOTHING
         arrays = {f.name: getattr(found, f.name).reshape(r.shape) for f in fields(found) if f.name != "error_estimate"}
         return InsideFields(**arrays, error_estimate=found.error_estimate)
 
@@ -153,39 +174,21 @@ class Inside:
         Raises:
             InvalidInput: Where the maximum is infinite: edges of flat punches, kinks of compressible layers' indenters.
         """
-        a, faces = self.contact_radius, self._faces
+        if what not in ("von_mises", "interface_shear"):
+            raise InvalidInput(f"largest({what!r}): ask for 'von_mises' or 'interface_shear'")
+        faces, a, thickness = self._faces, self.contact_radius, self.scene.layer.thickness
         if what == "von_mises":
             self._refuse_infinite_maximum()
-            # Below a rim of the incompressible surface only von Mises stresses are finite.
-            top = _BELOW_RIMS * a if self._rims else 0.0
-            deepest = min(self.scene.layer.thickness, 4.0 * a)
+            # Below a sharp edge of the incompressible surface only von Mises stresses are finite.
+            top, deepest = _BELOW_EDGES * a if self._edges else 0.0, min(thickness, 4.0 * a)
             inner = [d for d in faces if top < d < deepest]
-            rows = [*np.linspace(top, deepest, _SAMPLES), *inner, *(d * (1.0 + _BELOW) for d in inner)]
-            box = Box((0.0, top), (1.5 * a, deepest))
-            points = np.meshgrid(np.linspace(0.0, 1.5 * a, _SAMPLES), rows)
-            return largest_in(box, points, lambda r, z: self.fields.at(r, z).von_mises)
-        if what != "interface_shear":
-            raise InvalidInput(f"largest({what!r}): ask for 'von_mises' or 'interface_shear'")
+            depths = [*np.linspace(top, deepest, _SAMPLES), *inner, *(d * (1.0 + _BELOW) for d in inner)]
+            return _largest(np.linspace(0.0, 1.5 * a, _SAMPLES), depths, lambda r, z: self.fields.at(r, z).von_mises)
         if not faces:
             raise InvalidInput('largest("interface_shear"): a half-space has no interface')
-        end = 2.0 * a + 2.0 * self.scene.layer.thickness
-        r = np.linspace(0.0, end, 4 * _SAMPLES)
-        boxes = [Box((0.0, depth), (end, depth)) for depth in faces]
-        found = [largest_in(box, [r, np.full_like(r, box.low[1])], self._shear) for box in boxes]
+        r = np.linspace(0.0, 2.0 * (a + thickness), 4 * _SAMPLES)
+        found = [_largest(r, [depth], lambda r, z: np.abs(self.fields.at(r, z).shear_stress)) for depth in faces]
         return max(found, key=lambda extreme: extreme.value)
-
-    def _refuse_sharp_rims(self, r: FloatArray, z: FloatArray) -> None:
-        closest = SURFACE * self.contact_radius
-        for rim in self._rims:
-            infinite = np.hypot(r - rim, z) < closest
-            if np.any(infinite):
-                raise InvalidInput(
-                    f"radius = {r[infinite].flat[0]:g} m, depth = {z[infinite].flat[0]:g}: stresses are infinite at "
-                    f"this sharp rim; ask beside it, at least {closest:g} m away"
-                )
-
-    def _shear(self, r: FloatArray, z: FloatArray) -> FloatArray:
-        return np.abs(self.fields.at(r, z).shear_stress)
 
     @property
     def _faces(self) -> list[float]:
@@ -197,49 +200,65 @@ class Inside:
         return [*np.cumsum([part.thickness for part in parts])[:-1].tolist(), layer.thickness]
 
     @property
-    def _rims(self) -> list[float]:
+    def _edges(self) -> list[float]:
         """Radii [m] at which stresses of the surface are infinite."""
         indenter, a = self.scene.indenter, self.contact_radius
         adhesion = self.scene.effect(Adhesion)
         tip = [0.0] if float(indenter.slope_at(0.0)) > 0.0 else []
-        rims = [*tip, *(kink for kink in indenter.kinks if kink < a)]
+        edges = [*tip, *(kink for kink in indenter.kinks if kink < a)]
         adheres = adhesion is not None and adhesion.work_of_adhesion > 0.0
-        singular = isinstance(indenter, FlatPunch) or adheres or self.singular_edge
-        return [*rims, a] if singular else rims
+        return [*edges, a] if isinstance(indenter, FlatPunch) or adheres or self.singular_edge else edges
 
     def _refuse_infinite_maximum(self) -> None:
-        rims = self._rims
-        if rims and (rims[-1] == self.contact_radius or self.scene.layer.surface.poissons_ratio < 0.5):
+        edges = self._edges
+        if edges and (edges[-1] == self.contact_radius or self.scene.layer.surface.poissons_ratio < 0.5):
             raise InvalidInput(
-                f'largest("von_mises"): it is infinite at the rim r = {rims[-1]:g} m of the surface; ask for '
+                f'largest("von_mises"): it is infinite at the sharp edge r = {edges[-1]:g} m of the surface; ask for '
                 "fields at points of interest"
             )
 
 
-def _numbers(name: str, given: ArrayLike) -> FloatArray:
-    """Real numbers as an array, not yet known to be finite."""
-    if np.ma.is_masked(given):
-        raise InvalidInput(f"{name}: masked entries have no value; leave them out")
-    try:
-        values = np.asarray(given)
-    except ValueError:
-        values = np.array(None)
-    if values.dtype.kind not in "iuf":
-        raise InvalidInput(f"{name} = {given!r:.60}: must be a number of metres, or an array of numbers")
-    return values.astype(np.float64)
+_FIELDS = [field.name for field in fields(InsideFields) if field.name != "error_estimate"]
+_ERRORS = dict.fromkeys(("displacement", "stress", "hydrostatic_pressure", "pressure_gradient"), 0.0)
+_NOTHING = InsideFields(**dict.fromkeys(_FIELDS, np.zeros(0)), error_estimate=_ERRORS)
 
 
-def _together(radius: FloatArray, depth: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _largest(radii: ArrayLike, depths: ArrayLike, value: Callable[[FloatArray, FloatArray], FloatArray]) -> Extreme:
+    """Place and value of the largest value on a rectangle: all points first, then ever closer looks at the best."""
+    points = np.stack(np.meshgrid(radii, depths)).reshape(2, -1)
+    low, high = points.min(axis=1, keepdims=True), points.max(axis=1, keepdims=True)
+    values = value(*points)
+    found = []
+    for start in np.argsort(values)[::-1][:_STARTS]:
+        best, top = points[:, [start]], values[start]
+        width = (high - low) / (np.sqrt(values.size) - 1.0)
+        while np.any(width > _LAST * (high - low)):
+            around = np.unique(np.clip(best + width * _CLOSER, low, high), axis=1)
+            closer = value(*around)
+            i = int(np.argmax(closer))
+            if closer[i] > top:
+                best, top = around[:, [i]], closer[i]
+            width = width / 2.0
+        found.append(Extreme(float(best[0, 0]), float(best[1, 0]), float(top)))
+    return max(found, key=lambda extreme: extreme.value)
+
+
+def _points(radius: ArrayLike, depth: ArrayLike) -> list[FloatArray]:
+    """Real coordinates of one shape, not yet known to be finite."""
+    given = {"radius": radius, "depth": depth}
+    for name, value in given.items():
+        if np.ma.is_masked(value):
+            raise InvalidInput(f"{name}: masked entries have no value; leave them out")
+        try:
+            kind: str = np.asarray(value).dtype.kind
+        except ValueError:
+            kind = "ragged"
+        if kind not in "iuf":
+            raise InvalidInput(f"{name} = {value!r:.60}: must be a number of metres, or an array of numbers")
     try:
-        r, z = np.broadcast_arrays(radius, depth)
+        return [np.asarray(one, dtype=np.float64) for one in np.broadcast_arrays(radius, depth)]
     except ValueError:
         raise InvalidInput(
-            f"radius of shape {radius.shape}, depth of shape {depth.shape}: give both one shape, or shapes that numpy "
-            "broadcasts together"
+            f"radius of shape {np.shape(radius)}, depth of shape {np.shape(depth)}: give both one shape, or shapes "
+            "that numpy broadcasts together"
         ) from None
-    return r, z
-
-
-def _worst(values: FloatArray, low: float, high: float) -> float:
-    bad = ~(np.isfinite(values) & (values >= low) & (values <= high))
-    return float(values[bad].flat[0])

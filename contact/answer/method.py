@@ -7,8 +7,7 @@ from typing import ClassVar, Protocol, Self, TypeAlias, runtime_checkable
 
 from contact.answer.solution import Solution
 from contact.records.errors import UnsupportedSceneError
-from contact.scene.elastic_layer import ElasticLayer
-from contact.scene.layer import Layer
+from contact.scene.layer import ElasticLayer, Layer
 from contact.scene.scene import Scene
 
 

@@ -1,4 +1,4 @@
-"""Zero depth and zero force without adhesion: the indenter just does not touch, which no method need compute."""
+"""Zero depth and zero force without adhesion: nothing touches, and no method need compute it."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Any, TypeVar, cast
 import numpy as np
 
 from contact.answer.inside import InteriorFields, KnownContact
-from contact.answer.solution import ContactPath, Fields
+from contact.answer.paths import ContactPath
 from contact.answer.stages import StageLog
 from contact.records.errors import InvalidInput
 from contact.records.validation import BoolArray, FloatArray
@@ -33,46 +33,32 @@ def without_contact(solve: F) -> F:
             return solve(method, scene)
         presses = loading.values > 0.0
         if not presses.any():
-            return _nothing(method.name, scene)
+            return _nothing(method.name, scene, presses.size)
         path = solve(method, scene.replace(loading=loading.replace(values=loading.values[presses])))
         return _with_zeros(path, scene, presses)
 
     return cast(F, wrapped)
 
 
-@dataclasses.dataclass(frozen=True)
 class _PressedFields:
-    """Fields of the steps that press; zero at the others.
+    """Fields of the steps that press; surface fields are zero at the others."""
 
-    Attributes:
-        fields: Of the pressed steps.
-        number: Of each step among the pressed ones, -1 for no contact.
-    """
+    def __init__(self, fields: Any, number: list[int]) -> None:
+        """`number` is that of each step among the pressed ones, -1 for no contact."""
+        self._fields, self._number = fields, number
 
-    fields: Fields
-    number: tuple[int, ...]
+    def __getattr__(self, name: str) -> Callable[[FloatArray, int], FloatArray]:
+        """A surface field of the method, such as `pressure`, zero without contact."""
+        if name.startswith("_"):
+            raise AttributeError(name)
+        of_method = getattr(self._fields, name)
 
-    def pressure(self, radius: FloatArray, step: int) -> FloatArray:
-        """p(r) [Pa], zero without contact."""
-        known = self.number[step]
-        return np.zeros_like(radius) if known < 0 else self.fields.pressure(radius, known)
+        def field(radius: FloatArray, step: int) -> FloatArray:
+            """Values at radii [m], zero without contact."""
+            pressed = self._number[step]
+            return np.zeros_like(radius) if pressed < 0 else np.asarray(of_method(radius, pressed))
 
-    def surface_displacement(self, radius: FloatArray, step: int) -> FloatArray:
-        """w(r) [m], zero without contact."""
-        known = self.number[step]
-        return np.zeros_like(radius) if known < 0 else self.fields.surface_displacement(radius, known)
-
-    def tangential_traction(self, radius: FloatArray, step: int) -> FloatArray:
-        """q(r) [Pa] where the method gives it, zero without contact."""
-        return self._of_friction("tangential_traction", radius, step)
-
-    def slip(self, radius: FloatArray, step: int) -> FloatArray:
-        """How far the surface slid [m] where the method gives it, zero without contact."""
-        return self._of_friction("slip", radius, step)
-
-    def _of_friction(self, name: str, radius: FloatArray, step: int) -> FloatArray:
-        known = self.number[step]
-        return np.zeros_like(radius) if known < 0 else np.asarray(getattr(self.fields, name)(radius, known))
+        return field
 
     def inside(self, step: int, known: KnownContact) -> InteriorFields:
         """The body under one step that presses.
@@ -80,34 +66,24 @@ class _PressedFields:
         Raises:
             InvalidInput: If the step has no contact, or the method no fields inside.
         """
-        of_method = getattr(self.fields, "inside", None)
-        if self.number[step] < 0 or of_method is None:
+        if self._number[step] < 0 or not hasattr(self._fields, "inside"):
             raise InvalidInput(f"step = {step}: nothing is known inside the body; ask mdr for a step that presses")
-        found: InteriorFields = of_method(self.number[step], known)
+        found: InteriorFields = self._fields.inside(self._number[step], known)
         return found
 
 
-def _nothing(method: str, scene: Scene) -> ContactPath:
+def _nothing(method: str, scene: Scene, count: int) -> ContactPath:
     """A path without any contact."""
-    arrays: dict[str, Any] = dict.fromkeys(
-        ContactPath.ARRAYS,
-        np.zeros(len(scene.loading.values)),  # type: ignore[attr-defined]
-    )
-    return ContactPath(
-        scene=scene,
-        method=method,
-        settings={},
-        **arrays,
-        error_estimate=arrays,
-        cost=StageLog().cost(unknowns=0),
-    )
+    zeros: dict[str, Any] = dict.fromkeys(ContactPath.ARRAYS, np.zeros(count))
+    cost = StageLog().cost(unknowns=0)
+    return ContactPath(scene=scene, method=method, settings={}, **zeros, error_estimate=zeros, cost=cost)
 
 
 def _with_zeros(path: ContactPath, scene: Scene, presses: BoolArray) -> ContactPath:
     """The path with zeros at the steps that do not press."""
 
     def filled(values: FloatArray) -> FloatArray:
-        """One value a step, zero where nothing presses."""
+        """One value per step, zero where nothing presses."""
         if np.size(values) != presses.sum():
             return values
         found = np.zeros(presses.size)
@@ -115,11 +91,7 @@ def _with_zeros(path: ContactPath, scene: Scene, presses: BoolArray) -> ContactP
         return found
 
     arrays: dict[str, Any] = {name: filled(getattr(path, name)) for name in path.ARRAYS}
-    number = np.where(presses, np.cumsum(presses) - 1, -1)
-    return dataclasses.replace(
-        path,
-        scene=scene,
-        error_estimate={name: filled(np.atleast_1d(error)) for name, error in path.error_estimate.items()},
-        fields=None if path.fields is None else _PressedFields(path.fields, tuple(number.tolist())),
-        **arrays,
-    )
+    errors = {name: filled(np.atleast_1d(error)) for name, error in path.error_estimate.items()}
+    number = np.where(presses, np.cumsum(presses) - 1, -1).tolist()
+    fields: Any = None if path.fields is None else _PressedFields(path.fields, number)
+    return dataclasses.replace(path, scene=scene, error_estimate=errors, fields=fields, **arrays)

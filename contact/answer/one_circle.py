@@ -1,8 +1,8 @@
-"""Whether an indenter touches the surface beside its circle of contact, where its answer would be silently wrong.
+"""Whether an indenter touches the surface outside its circle of contact, where its answer would be silently wrong.
 
 An indenter whose slope never falls (`Profile.is_convex`) cannot on one uniform layer. Contact grows by flat punches,
 
-    gap(r; a) = int_a^r [1 - U(r; x)] g'(x) dx,    U: displacement of the surface beside a unit punch of radius x,
+    gap(r; a) = int_a^r [1 - U(r; x)] g'(x) dx,    U: displacement of the surface outside a unit punch of radius x,
 
 and U < 1, also where the surface bulges up and U < 0. So the gap is positive wherever the MDR profile g rises. A convex
 profile is a sum of truncated cones, gaps at one contact radius add up, and g of every truncated cone rises: on the
@@ -18,23 +18,21 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from contact.answer.solution import ContactPath
+from contact.answer.paths import ContactPath
 from contact.records.errors import UnsupportedSceneError
 from contact.records.validation import FloatArray
 from contact.scene.profiles import Profile
 from contact.scene.scene import Scene
 
-# Looked at between two neighbouring breakpoints of the profile, the outer one included.
+# Samples between two neighbouring breakpoints of the profile, the outer one included.
 SAMPLES = 6
-# A profile without an end is looked at out to so many contact radii.
+# A profile without an end is sampled out to so many contact radii.
 FARTHEST = 1e3
-# Where a bulge beside the contact is looked for: distances from the edge over the smaller of contact radius and
-# thickness.
+# Distances from the edge, over the smaller of contact radius and thickness, where a bulge is looked for.
 PROBES = np.geomspace(0.01, 10.0, 16)
-# Times the highest bulge seen at the probes: heights beyond that are out of its reach. A bulge is as wide as it is far
-# from the edge, and the distances of two probes differ by a factor of 1.6, so that one of them sees most of it.
+# Heights above so many times the highest bulge at the probes are out of its reach. A bulge is as wide as it is far from
+# the edge, and the distances of two probes differ by a factor of 1.6, so that one of them sees most of it.
 REACH = 2.0
 # Narrowings of the place of a smallest gap, each by a factor of eight.
 NARROWINGS = 3
@@ -42,7 +40,7 @@ NARROWINGS = 3
 
 @dataclass(frozen=True)
 class Circle:
-    """One circle of contact and the surface beside it.
+    """One circle of contact and the surface outside it.
 
     Attributes:
         contact_radius: a [m].
@@ -56,14 +54,23 @@ class Circle:
     displacement: Callable[[FloatArray], FloatArray]
     tolerance: float
 
+    def gap(self, profile: Profile, radius: FloatArray) -> FloatArray:
+        """Distance [m] of surface and indenter at radii [m] beyond a; negative where they overlap."""
+        outside = radius > self.contact_radius
+        gap = np.zeros_like(radius)
+        if outside.any():
+            r = radius[outside]
+            gap[outside] = profile.height(r) - self.indentation_depth + self.displacement(r)
+        return gap
+
 
 def never_touches_beside(scene: Scene) -> bool:
-    """Whether no circle of contact of this scene can be touched beside: a convex indenter on one uniform layer."""
+    """Whether no circle of contact of this scene can be touched outside: a convex indenter on one uniform layer."""
     return scene.indenter.is_convex and scene.layer.is_uniform
 
 
 def refuse_touching(scene: Scene, circles: Iterable[Circle]) -> None:
-    """Refuse circles beside which the indenter would touch.
+    """Refuse circles outside which the indenter would touch.
 
     Raises:
         UnsupportedSceneError: With the contact radius and the radius of the deepest overlap.
@@ -83,13 +90,13 @@ def no_single_circle(contact_radius: float, fault: str) -> UnsupportedSceneError
 
 
 def refuse_touching_path(path: ContactPath) -> ContactPath:
-    """The path, unless the indenter would touch beside one of its contacts, as far as the stated errors can tell."""
+    """The path, unless the indenter would touch outside one of its contacts by more than the stated errors."""
     refuse_touching(path.scene, (_circle(path, step) for step in range(len(path))))
     return path
 
 
 def _circle(path: ContactPath, step: int) -> Circle:
-    """A step of a path; it may overlap by what its depth is uncertain, and its radius at the slope there."""
+    """A step of a path; it may overlap by the error of its depth, and by that of its radius at the slope there."""
     radius, depth = float(path.contact_radius[step]), float(path.indentation_depth[step])
     errors = path.error_estimate
     height = max(abs(depth), float(path.scene.indenter.height(radius)))
@@ -98,18 +105,20 @@ def _circle(path: ContactPath, step: int) -> Circle:
 
 
 def touching_radius(scene: Scene, circle: Circle) -> float | None:
-    """Radius [m] of the deepest overlap beside a contact, or None."""
+    """Radius [m] of the deepest overlap outside a contact, or None."""
     a, profile = circle.contact_radius, scene.indenter
     if never_touches_beside(scene) or not 0.0 < a < profile.max_radius:
         return None
-    r = np.concatenate([[a], _radii(profile, a)])
-    clear = profile.height(r) - circle.indentation_depth
-    near = clear <= _bulge(circle, min(a, scene.layer.thickness))
-    near[0] = False
-    gap = np.where(near, 0.0, clear)
-    gap[near] = _gap(profile, circle, r[near])
-    near[0], gap[0] = True, 0.0
-    minima = _found_minima(profile, circle, r, gap, near)
+    r = _radii(profile, a)
+    gap = profile.height(r) - circle.indentation_depth
+    bulge = REACH * max(0.0, -float(circle.displacement(a + min(a, scene.layer.thickness) * PROBES).min()))
+    # Within reach of a bulge, and around minima, the gap itself is computed, not the height above the contact's depth.
+    asked, known = np.flatnonzero(gap <= bulge), np.zeros(r.size, dtype=bool)
+    while asked.size:
+        gap[asked], known[asked] = circle.gap(profile, r[asked]), True
+        around = np.add.outer(_minima(gap), [-1, 0, 1]).astype(int).ravel()
+        asked = np.unique(around[~known[around]])
+    minima = _minima(gap)
     lowest = [(float(gap[i]), float(r[i])) for i in np.flatnonzero(gap < 0)]
     lowest += [_narrowed(profile, circle, r[i - 1], r[i + 1]) for i in minima if gap[i] >= 0]
     overlap, where = min(lowest, default=(0.0, a))
@@ -117,44 +126,14 @@ def touching_radius(scene: Scene, circle: Circle) -> float | None:
 
 
 def _radii(profile: Profile, contact_radius: float) -> FloatArray:
-    """Breakpoints beyond the contact's edge, and radii between each and the one before."""
-    ends = [r for r in profile.breakpoints if r > contact_radius]
+    """The contact's edge, breakpoints beyond it, and radii between each and the one before."""
+    ends = [contact_radius, *(r for r in profile.breakpoints if r > contact_radius)]
     if profile.max_radius == np.inf:
-        first = ends[-1] if ends else contact_radius
-        ends += list(np.geomspace(first, FARTHEST * first, 10 * SAMPLES)[1:])
-    elif not ends or ends[-1] < profile.max_radius:
+        ends += list(np.geomspace(ends[-1], FARTHEST * ends[-1], 10 * SAMPLES)[1:])
+    elif ends[-1] < profile.max_radius:
         ends.append(profile.max_radius)
-    starts = np.array([contact_radius, *ends[:-1]])
-    share = np.arange(1, SAMPLES + 1) / SAMPLES
-    between = starts[:, None] + share * (np.array(ends) - starts)[:, None]
-    between[:, -1] = ends
-    return np.asarray(between.ravel())
-
-
-def _bulge(circle: Circle, length: float) -> float:
-    """Height [m] that the surface beside the contact reaches nowhere."""
-    return REACH * max(0.0, -float(circle.displacement(circle.contact_radius + length * PROBES).min()))
-
-
-def _gap(profile: Profile, circle: Circle, radius: FloatArray) -> FloatArray:
-    if not radius.size:
-        return radius
-    return np.asarray(profile.height(radius) - circle.indentation_depth + circle.displacement(radius))
-
-
-def _found_minima(
-    profile: Profile, circle: Circle, r: FloatArray, gap: FloatArray, known: NDArray[np.bool_]
-) -> list[int]:
-    """`_minima` once the gap itself, not the height above the contact's depth, is known at them and their neighbours.
-
-    Where heights follow gaps they make a step, which looks like a minimum.
-    """
-    while True:
-        minima = _minima(gap)
-        asked = [j for j in sorted({j for i in minima for j in (i - 1, i, i + 1)}) if not known[j]]
-        if not asked:
-            return minima
-        gap[asked], known[asked] = _gap(profile, circle, r[asked]), True
+    shares = np.arange(len(ends) * SAMPLES - SAMPLES + 1) / SAMPLES
+    return np.interp(shares, np.arange(len(ends)), ends)
 
 
 def _minima(gap: FloatArray) -> list[int]:
@@ -169,7 +148,7 @@ def _narrowed(profile: Profile, circle: Circle, low: float, high: float) -> tupl
     """The smallest gap between two radii, and where it is."""
     for _ in range(NARROWINGS):
         r = np.linspace(low, high, 18)[1:-1]
-        gap = _gap(profile, circle, r)
+        gap = circle.gap(profile, r)
         i = int(gap.argmin())
         low, high = r[max(i - 1, 0)], r[min(i + 1, r.size - 1)]
     return float(gap[i]), float(r[i])

@@ -5,15 +5,11 @@ A matrix product that is shared by several threads is summed in another order th
 
 from __future__ import annotations
 
+import sys
 from contextlib import ContextDecorator
 from functools import cache
 from threading import Lock
-from typing import TYPE_CHECKING, Any
-
-from contact.answer.compiled_files import is_loaded
-
-if TYPE_CHECKING:
-    from types import TracebackType
+from typing import Any
 
 
 class OneThread(ContextDecorator):
@@ -32,14 +28,12 @@ class OneThread(ContextDecorator):
         """Hold every loaded BLAS that is not held yet."""
         with self._lock:
             self._inside += 1
-            for library in _loaded_libraries(is_loaded()):
+            for library in _loaded_libraries("scipy.linalg._flapack" in sys.modules):
                 if library.filepath not in self._threads_before:
                     self._threads_before[library.filepath] = library, library.get_num_threads()
                     library.set_num_threads(1)
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *error: object) -> None:
         """Give each BLAS its former number of threads back if nobody else is inside."""
         with self._lock:
             self._inside -= 1

@@ -14,8 +14,7 @@ from numpy.typing import ArrayLike
 from contact.answer.solution import Solution
 from contact.records.errors import UnsupportedSceneError
 from contact.records.validation import FloatArray
-from contact.scene.elastic_layer import ElasticLayer
-from contact.scene.layer_stack import ElasticBase
+from contact.scene.layer import ElasticBase, ElasticLayer
 from contact.scene.loading import DepthHistory, IndentationDepths
 from contact.scene.scene import Scene
 

@@ -6,7 +6,7 @@ import sys
 import time
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 
 try:
@@ -55,30 +55,21 @@ class Cost:
     counters: Mapping[str, int]
 
 
-@dataclass
-class _Tally:
-    calls: int = 0
-    wall: float = 0.0
-    cpu: float = 0.0
-    bytes: int = 0
-
-
-@dataclass
 class StageLog:
     """Collects stage times and counters during one solve. Nested stages are timed apart from their parents."""
 
-    _tallies: dict[str, _Tally] = field(default_factory=dict)
-    _counters: dict[str, int] = field(default_factory=dict)
-    _open: list[str] = field(default_factory=list)
-    _mark: tuple[float, float] = field(default_factory=lambda: (time.perf_counter(), processor_seconds()))
-    _start: tuple[float, float] = field(default_factory=lambda: (time.perf_counter(), processor_seconds()))
+    def __init__(self) -> None:
+        self._tallies: dict[str, list[float]] = {}  # calls, wall seconds, processor seconds, bytes
+        self._counters: dict[str, int] = {}
+        self._open: list[str] = []
+        self._start = self._mark = _now()
 
     @contextmanager
     def stage(self, name: str) -> Iterator[None]:
         """Time the body of a `with` statement under this name."""
         self._settle()
         self._open.append(name)
-        self._tallies.setdefault(name, _Tally()).calls += 1
+        self._tallies.setdefault(name, [0, 0.0, 0.0, 0])[0] += 1
         try:
             yield
         finally:
@@ -91,34 +82,39 @@ class StageLog:
 
     def hold(self, *sizes: int) -> None:
         """Declare bytes of arrays made by the stage that is open."""
-        self._tallies[self._open[-1]].bytes += sum(sizes)
+        self._tallies[self._open[-1]][3] += sum(sizes)
 
     def _settle(self) -> None:
-        """Give the time since the last mark to the innermost open stage."""
-        now = (time.perf_counter(), processor_seconds())
+        """Add the time since the last mark to the innermost open stage."""
+        now = _now()
         if self._open:
             tally = self._tallies[self._open[-1]]
-            tally.wall += now[0] - self._mark[0]
-            tally.cpu += now[1] - self._mark[1]
+            tally[1] += now[0] - self._mark[0]
+            tally[2] += now[1] - self._mark[1]
         self._mark = now
 
     @property
     def records(self) -> tuple[StageRecord, ...]:
         """One record for each stage, in order of first call."""
         return tuple(
-            StageRecord(name=name, calls=t.calls, wall_seconds=t.wall, cpu_seconds=t.cpu, bytes=t.bytes)
-            for name, t in self._tallies.items()
+            StageRecord(name=name, calls=int(calls), wall_seconds=wall, cpu_seconds=cpu, bytes=int(size))
+            for name, (calls, wall, cpu, size) in self._tallies.items()
         )
 
     def cost(self, *, unknowns: int) -> Cost:
         """Cost since the log was made."""
+        wall, cpu = _now()
         return Cost(
-            wall_seconds=time.perf_counter() - self._start[0],
-            cpu_seconds=processor_seconds() - self._start[1],
+            wall_seconds=wall - self._start[0],
+            cpu_seconds=cpu - self._start[1],
             peak_memory_bytes=peak_memory_bytes(),
             unknowns=unknowns,
             counters=dict(self._counters),
         )
+
+
+def _now() -> tuple[float, float]:
+    return time.perf_counter(), processor_seconds()
 
 
 def processor_seconds() -> float:
@@ -133,18 +129,12 @@ def peak_memory_bytes() -> int:
     """High-water mark of this program's resident memory, plus that of the largest process it started; 0 on Windows."""
     if resource is None:
         return 0
-    return _own_peak() + _in_bytes(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)
-
-
-def _own_peak() -> int:
-    # On Linux `getrusage` also remembers the program that started this one, so the kernel's own file is read.
+    # `getrusage` counts bytes on macOS and kilobytes elsewhere.
+    unit = 1 if sys.platform == "darwin" else 1024
+    children = unit * resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss
     try:
-        with Path("/proc/self/status").open("rb", buffering=0) as status:
-            return 1024 * int(status.read().split(b"VmHWM:")[1].split(maxsplit=1)[0])
+        # On Linux `getrusage` also counts the program that started this one, so the kernel's own file is read.
+        status = Path("/proc/self/status").read_bytes()
     except FileNotFoundError:
-        return _in_bytes(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
-
-
-def _in_bytes(peak: int) -> int:
-    """As `getrusage` tells it: kilobytes, but on macOS bytes."""
-    return peak if sys.platform == "darwin" else 1024 * peak
+        return children + unit * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    return children + 1024 * int(status.split(b"VmHWM:")[1].split(maxsplit=1)[0])

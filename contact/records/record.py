@@ -1,4 +1,4 @@
-"""`record`: a frozen, keyword-only dataclass of pydantic whose errors say value, place and remedy."""
+"""`record`: a frozen, keyword-only dataclass of pydantic whose errors give value, place and remedy."""
 
 from __future__ import annotations
 
@@ -6,8 +6,22 @@ import dataclasses
 import functools
 import inspect
 import re
-from collections.abc import Iterable, Mapping
-from typing import Annotated, Any, ClassVar, Self, TypeVar, Union, dataclass_transform, get_args, get_type_hints
+from abc import ABCMeta
+from collections.abc import Iterable, Mapping, Sequence
+from difflib import get_close_matches
+from typing import (
+    TYPE_CHECKING,
+    Annotated,
+    Any,
+    ClassVar,
+    Self,
+    TypeVar,
+    Union,
+    cast,
+    dataclass_transform,
+    get_args,
+    get_type_hints,
+)
 
 import numpy as np
 import pydantic
@@ -22,8 +36,8 @@ from contact.records.units import Unit
 
 # Validators are built when the first record of a class is made: scenes use few of the classes.
 _CONFIG = pydantic.ConfigDict(arbitrary_types_allowed=True, extra="forbid", strict=True, defer_build=True)
-# Fields by other names that books and users give them.
-_MEANT = {
+# Other names that books and users give to fields.
+_SYNONYMS = {
     "base": "support",
     "substrate": "support",
     "h": "thickness",
@@ -32,20 +46,54 @@ _MEANT = {
     "mu": "coefficient",
     "gamma": "work_of_adhesion",
 }
-# One error tells so many problems: as many as a user mends before trying again.
+# Problems named in one error; half as many hide problems of an ordinary scene, twice as many fill a screen.
 _MOST_LINES = 8
-# How pydantic calls the members of a union in the path of an error; users do not see it.
+# Prefix of a union's members in the paths of pydantic's errors; paths are shown without them.
 _TAG = "kind:"
 
 
+class _RecordType(ABCMeta):
+    """Type of all records: a constructor raises `InvalidInput`, and `help` shows its fields without validators."""
+
+    if not TYPE_CHECKING:  # type checkers read the fields
+
+        def __call__(cls, *args: Any, **kwargs: Any) -> Any:
+            try:
+                return super().__call__(*args, **kwargs)
+            except pydantic.ValidationError as error:
+                names = [field.name for field in dataclasses.fields(cls)]
+                raise InvalidInput(describe(error, cls.__name__, names)) from None
+
+        @property
+        def __signature__(cls) -> inspect.Signature:
+            return inspect.Signature([_parameter(field) for field in dataclasses.fields(cls)])
+
+        @__signature__.setter
+        def __signature__(cls, of_pydantic: object) -> None:
+            """Pydantic's own signature lists validators."""
+
+
+def _parameter(field: dataclasses.Field[Any]) -> inspect.Parameter:
+    given = field.default
+    default, by_name = (given.default, given.kw_only) if isinstance(given, FieldInfo) else (given, True)
+    return inspect.Parameter(
+        field.name,
+        inspect.Parameter.POSITIONAL_OR_KEYWORD if by_name is False else inspect.Parameter.KEYWORD_ONLY,
+        default=inspect.Parameter.empty if default in (dataclasses.MISSING, PydanticUndefined) else default,
+        annotation=re.sub(r"Annotated\[([^,]+), .*", r"\1", str(field.type)),
+    )
+
+
 @pydantic.dataclasses.dataclass(frozen=True, kw_only=True, eq=False, config=_CONFIG)
-class Record:
+class Record(metaclass=_RecordType):
     """Base of all records: equality, hash and change by copying, by content (arrays included)."""
 
     NAMED: ClassVar[bool] = False
-    """Whether files tell by the entry `kind` which record is meant."""
-    WRITTEN: ClassVar[Mapping[str, Any]] = {}
-    """Of the JSON Schema: properties that files may have instead of fields, and which fields those may replace."""
+    """Whether files name the record by the entry `kind`."""
+    SHORTHANDS: ClassVar[Mapping[str, Any]] = {}
+    """Entries of files that replace fields, with their JSON schemas."""
+    REPLACED: ClassVar[Mapping[str, str]] = {}
+    """Fields that files may leave out, with the shorthand that replaces them; "" for another part of the scene."""
 
     def _content(self) -> tuple[Any, ...]:
         values = [getattr(self, field.name) for field in dataclasses.fields(self)]
@@ -63,39 +111,42 @@ class Record:
 
     @classmethod
     def kind(cls) -> str:
-        """The name by which files call a record: TruncatedCone is "truncated_cone"."""
+        """Name of the record in files: TruncatedCone is "truncated_cone"."""
         return re.sub(r"(?<!^)(?=[A-Z])", "_", cls.__name__).lower()
 
     @model_validator(mode="before")
     @classmethod
     def _known_fields(cls, given: Any) -> Any:
-        """Fields without the entry `kind` that chose the class, or one message on all that are none."""
-        fields = given.kwargs if isinstance(given, ArgsKwargs) else given
+        """The fields without the entry `kind` that chose the class; one error lists all unknown names."""
+        fields = given.kwargs or {} if isinstance(given, ArgsKwargs) else given
         if not isinstance(fields, Mapping):
             return given
-        if not isinstance(given, ArgsKwargs) and fields.get("kind") == cls.kind():
+        names = [field.name for field in dataclasses.fields(cls)]
+        if fields is given and fields.get("kind") == cls.kind():
             given = fields = {name: value for name, value in fields.items() if name != "kind"}
-        known = [field.name for field in dataclasses.fields(cls)]
-        unknown = [name for name in fields or () if name not in known]
-        if unknown:
-            raise refused(*(f"{_key(name)} = {shown(fields[name])}: {_no_such(name, known)}" for name in unknown))
+        if unknown := [name for name in fields if name not in names]:
+            raise refused(*(f"{_key(name)} = {shown(fields[name])}: {_no_such(name, names)}" for name in unknown))
         return given
 
     @classmethod
     def __get_pydantic_json_schema__(cls, core: Any, handler: Any) -> dict[str, Any]:
-        """Its fields, each with its line of the docstring, and `kind`."""
+        """The schema of pydantic, with `kind`, shorthands and each field's line of the docstring."""
         schema: dict[str, Any] = handler.resolve_ref_schema(handler(core))
         text = inspect.cleandoc(cls.__doc__ or "")
-        schema["description"] = text.partition("\n")[0]
-        for name, field in schema.get("properties", {}).items():
-            lines = [line for line in text.splitlines() if line.strip().startswith(f"{name}: ")]
-            field["description"] = lines[0].partition(": ")[2] if lines else ""
-        further = dict(cls.WRITTEN)
-        own = {"kind": {"const": cls.kind()}} if cls.NAMED else {}
-        schema["properties"] = own | schema.get("properties", {}) | further.pop("properties", {})
-        replaced = further.pop("replaced", ())
-        required = [name for name in schema.get("required", ()) if name not in replaced]
-        return schema | further | {"required": [*(["kind"] if cls.NAMED else []), *required]}
+        lines = dict(re.findall(r"^ *(\w+): (.*)", text, re.MULTILINE))
+        for name, field in schema["properties"].items():
+            field["description"] = lines.get(name, "")
+        required = [name for name in schema.get("required", ()) if name not in cls.REPLACED]
+        named = {"kind": {"const": cls.kind()}} if cls.NAMED else {}
+        either = [
+            {"oneOf": [{"required": [name]}, {"required": [other]}]} for name, other in cls.REPLACED.items() if other
+        ]
+        return schema | {
+            "description": text.partition("\n")[0],
+            "properties": named | schema["properties"] | dict(cls.SHORTHANDS),
+            "required": [*named, *required],
+            **({"allOf": either} if either else {}),
+        }
 
 
 R = TypeVar("R", bound=Record)
@@ -108,56 +159,8 @@ def record(cls: type[R]) -> type[R]:
     Raises:
         InvalidInput: At construction, one line for each offending field.
     """
-    made: Any = pydantic.dataclasses.dataclass(cls, frozen=True, kw_only=True, eq=False, config=_CONFIG)
-    unchecked = made.__init__
-
-    @functools.wraps(unchecked)
-    def checked(self: R, *args: Any, **kwargs: Any) -> None:
-        """Construct; what pydantic complains of becomes one `InvalidInput`."""
-        complete(made)
-        try:
-            unchecked(self, *args, **kwargs)
-        except pydantic.ValidationError as error:
-            names = [field.name for field in dataclasses.fields(made)]
-            raise InvalidInput(describe(error, made.__name__, names)) from None
-
-    made.__init__, made.__signature__ = checked, _Signature()
-    # pydantic returns the class that it was given.
-    return made  # type: ignore[no-any-return]
-
-
-def complete(cls: type[Record]) -> None:
-    """Build the validator of a record's class if that has not happened yet.
-
-    pydantic replaces the class's constructor and signature then, and both are put back.
-    """
-    if not cls.__pydantic_complete__:  # type: ignore[attr-defined]  # every record is a pydantic dataclass
-        constructor = cls.__init__
-        pydantic.dataclasses.rebuild_dataclass(cls)  # type: ignore[arg-type]  # as above
-        cls.__init__ = constructor  # type: ignore[method-assign]  # as above
-        cls.__signature__ = _Signature()  # type: ignore[attr-defined]  # as above
-
-
-class _Signature:
-    """What `help`, editors and notebooks show of a record's constructor: its fields, by name, without validators."""
-
-    def __get__(self, instance: object, owner: type[Any]) -> inspect.Signature:
-        return inspect.Signature([_parameter(field) for field in dataclasses.fields(owner)])
-
-
-def _parameter(field: dataclasses.Field[Any]) -> inspect.Parameter:
-    given = field.default
-    default, by_name = (given.default, given.kw_only) if isinstance(given, FieldInfo) else (given, True)
-    kind = inspect.Parameter.POSITIONAL_OR_KEYWORD if by_name is False else inspect.Parameter.KEYWORD_ONLY
-    # As written, and without what checks it.
-    written, checked = str(field.type), "Annotated["
-    none = default in (dataclasses.MISSING, PydanticUndefined)
-    return inspect.Parameter(
-        field.name,
-        kind,
-        default=inspect.Parameter.empty if none else default,
-        annotation=written.removeprefix(checked).partition(", ")[0] if written.startswith(checked) else written,
-    )
+    made = pydantic.dataclasses.dataclass(cls, frozen=True, kw_only=True, eq=False, config=_CONFIG)
+    return cast(type[R], made)  # pydantic returns the class that it was given
 
 
 class OneOf:
@@ -178,26 +181,30 @@ class OneOf:
         if not isinstance(value, Mapping):
             return f"{_TAG}instance"
         kind = value.get("kind")
-        if kind is None and self.plain is not None:
-            return f"{_TAG}{self.plain.kind()}"
-        return f"{_TAG}{self.names[kind].kind()}" if isinstance(kind, str) and kind in self.names else "none of them"
+        found = self.plain if kind is None else self.names.get(kind) if isinstance(kind, str) else None
+        return f"{_TAG}{found.kind()}" if found else "none of them"
 
 
 def read(cls: type[R], table: Mapping[str, Any], name: str, context: object = None) -> R:
     """A record from nested tables of a file.
 
     Raises:
-        InvalidInput: One line for each problem, with its place in the tables; the record itself is called by the name.
+        InvalidInput: One line for each problem, with its place in the tables; `name` is that of the whole.
     """
     try:
-        return TypeAdapter(cls).validate_python(table, strict=False, context=context)
+        return cast(R, _adapter(cls).validate_python(table, strict=False, context=context))
     except pydantic.ValidationError as error:
         raise InvalidInput(describe(error, "", top=name)) from None
 
 
+@functools.cache
+def _adapter(cls: type[Record]) -> TypeAdapter[Any]:
+    return TypeAdapter(cls)
+
+
 def unit_of(cls: type[Record], field: str) -> str | None:
-    """SI unit of a field of a record; None where it is a pure number or no number."""
-    return _units(cls).get(field)  # type: ignore[arg-type]  # a class is hashable, whatever its instances are
+    """SI unit of a field of a record; None for a pure number and for a field that is no number."""
+    return _units(cls).get(field)
 
 
 @functools.cache
@@ -212,41 +219,38 @@ def _parts(annotation: Any) -> Iterable[Any]:
         yield from _parts(part)
 
 
-def describe(error: pydantic.ValidationError, place: str, names: list[str] | None = None, top: str = "") -> str:
-    """One line for each problem: path of the field below a place, its value, what is required, how to mend it.
+def describe(error: pydantic.ValidationError, place: str, names: Sequence[str] = (), top: str = "") -> str:
+    """One line for each problem: path of the field below a place, its value, what is required and the remedy.
 
     Args:
         error: Of pydantic.
-        place: What every path begins with.
-        names: Of fields that may be given by position.
+        place: Beginning of every path.
+        names: Fields that may be given by position.
         top: Name of the whole in a message that is not about one field; by default the place.
     """
     lines: list[str] = []
     for detail in error.errors():
-        path = [step for step in detail["loc"] if not str(step).startswith(_TAG)]
-        if names and path and isinstance(path[0], int) and path[0] < len(names):
-            path[0] = names[path[0]]
-        lines += _lines(_path(place, path) or top, dict(detail), in_file=not place, is_top=not place and not path)
+        steps = [step for step in detail["loc"] if not str(step).startswith(_TAG)]
+        if names and steps and isinstance(steps[0], int) and steps[0] < len(names):
+            steps[0] = names[steps[0]]
+        path = functools.reduce(_below, steps, place)
+        lines += _lines(path or top, dict(detail), in_file=not place, is_whole=not steps)
     more = len(lines) - _MOST_LINES
     return "\n".join([*lines[:_MOST_LINES], f"{place or top}: {more} more problems"] if more > 0 else lines)
 
 
-def _path(place: str, steps: Iterable[str | int]) -> str:
-    """As in layer.sublayers[0].thickness."""
-    text = place
-    for step in steps:
-        text += f"[{step}]" if isinstance(step, int) else f".{_key(step)}" if text else _key(step)
-    return text
+def _below(place: str, step: str | int) -> str:
+    """The place of an entry below another, as in layer.sublayers[0].thickness."""
+    return f"{place}[{step}]" if isinstance(step, int) else f"{place}.{_key(step)}" if place else _key(step)
 
 
-def _lines(place: str, detail: dict[str, Any], *, in_file: bool, is_top: bool) -> list[str]:
+def _lines(place: str, detail: dict[str, Any], *, in_file: bool, is_whole: bool) -> list[str]:
     value, kind = detail["input"], detail["type"]
     if kind == "union_tag_invalid":
-        names = re.findall(rf"{_TAG}(\w+)", detail["ctx"]["expected_tags"])
-        known = ", ".join(sorted(name for name in names if name != "instance"))
-        return [f"{place}.kind = {shown(value.get('kind'))}: must be one of {known}"]
+        known = sorted({*re.findall(rf"{_TAG}(\w+)", detail["ctx"]["expected_tags"])} - {"instance"})
+        return [f"{place}.kind = {shown(value.get('kind'))}: must be one of {', '.join(known)}"]
     if kind == OF_PARTS:
-        return [line if is_top else f"{place}.{line}" for line in detail["ctx"]["lines"]]
+        return [line if is_whole and in_file else f"{place}.{line}" for line in detail["ctx"]["lines"]]
     if kind.startswith("missing"):
         return [f"{place} is missing; add it"]
     if kind == "unexpected_positional_argument":
@@ -256,17 +260,14 @@ def _lines(place: str, detail: dict[str, Any], *, in_file: bool, is_top: bool) -
         message = f"must be a table of named values; write [{place}]"
     if kind == "tuple_type":
         message = "must be a list"
-    is_whole = is_top or isinstance(value, ArgsKwargs | Record)
-    return [f"{place}: {message}" if is_whole else f"{place} = {shown(value)}: {message}"]
+    whole = (is_whole and in_file) or isinstance(value, ArgsKwargs | Record)
+    return [f"{place}: {message}" if whole else f"{place} = {shown(value)}: {message}"]
 
 
 def _no_such(written: object, names: list[str]) -> str:
-    """The remedy for a name that no field has: the one that was meant, if one is close to it."""
-    # Only a scene with a mistake pays for this import.
-    from difflib import get_close_matches  # noqa: PLC0415
-
+    """The remedy for a name that no field has: the closest name, if one is close."""
     close = get_close_matches(written, names, n=1) if isinstance(written, str) else []
-    meant = [name for name in (_MEANT.get(str(written)), *close) if name in names]
+    meant = [name for name in (_SYNONYMS.get(str(written)), *close) if name in names]
     return f"no such field; {f'write {meant[0]} instead' if meant else 'remove it or correct its spelling'}"
 
 

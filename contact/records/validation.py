@@ -1,13 +1,15 @@
-"""Field validators: each names what is required and how to mend it; the value and its place are added by `record`.
+"""Types of fields: each validator states what is required and the remedy; `record` adds value and place.
 
-Numbers of fields with a unit may be texts with one. Vectors may be lists, ranges and columns of CSV files as well.
+Numbers of fields with a unit may be texts with one. Vectors may be single numbers, lists, ranges and columns of CSV
+files as well. Files that mix numbers with and without units are read a second time by `UnitsRequired`.
 """
 
 from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from numbers import Real
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Self, TypeAlias, overload
@@ -16,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import PlainValidator, ValidationInfo, WithJsonSchema
 
+from contact.records.columns import MAX_ENTRIES, column_in_si
 from contact.records.errors import refused, shown
 from contact.records.units import Unit, in_si
 
@@ -24,7 +27,7 @@ IntArray: TypeAlias = NDArray[np.int64]
 BoolArray: TypeAlias = NDArray[np.bool_]
 Number: TypeAlias = np.floating[Any] | np.integer[Any]
 Numbers: TypeAlias = float | Sequence[float] | Sequence[np.floating[Any]] | np.ndarray[Any, np.dtype[Number]]
-"""What a vector may be given as: a number, a list, tuple or range of numbers, or an array of shape (n,)."""
+"""Values of a vector: a number, a list, tuple or range of numbers, or an array of shape (n,)."""
 
 if TYPE_CHECKING:
 
@@ -43,8 +46,6 @@ else:
 
 # Magnitudes outside these are refused, whatever their unit: products of four of them still fit into double precision.
 SMALLEST, LARGEST = 1e-75, 1e75
-# A longer list in a scene is refused: it is a mistake or an attack, never a measurement.
-MAX_ENTRIES = 1_000_000
 RANGE = frozenset({"start", "stop", "count", "spacing"})
 COLUMN = frozenset({"file", "column", "unit"})
 
@@ -52,17 +53,60 @@ COLUMN = frozenset({"file", "column", "unit"})
 Checked: TypeAlias = tuple[Any, ...]
 
 
+class Derived(float):
+    """A number that follows from others of the scene, and so needs no unit."""
+
+
+@dataclass
+class Reading:
+    """How the numbers of one scene are read, and whether they have units.
+
+    Attributes:
+        folder: CSV files are named relative to it; None where no file may be named.
+        units_required: Whether numbers without a unit are refused.
+        example: The first number with a unit; empty where there was none.
+        bare: Whether some dimensional number, neither zero nor infinite, had no unit.
+    """
+
+    folder: Path | None = None
+    units_required: bool = False
+    example: str = ""
+    bare: bool = False
+
+    def note(self, value: object, unit: str) -> None:
+        """Note a dimensional number, and the unit that it was written with.
+
+        Raises:
+            ValueError: If it has no unit where the other numbers of the scene have one.
+        """
+        if unit:
+            self.example = self.example or shown(value)
+        elif _is_number(value) and not isinstance(value, Derived) and value not in (0, math.inf):
+            self.bare = True
+            if self.units_required:
+                raise ValueError(
+                    f"no unit, but other numbers of this scene have one ({self.example}); write every length, time, "
+                    'force, .. with its unit, as in "5 um", or none of them (SI)'
+                )
+
+
 def _is_number(value: object) -> bool:
     return isinstance(value, Real) and not isinstance(value, bool | np.bool_)
 
 
-def _number(value: object, remedy: str, unit: str | None) -> float:
-    value = value if unit is None else in_si(value, unit)
-    if not _is_number(value):
+def read_number(value: object, remedy: str, unit: str | None, reading: Reading | None = None) -> float:
+    """A number, or a text with a number and its unit, in SI.
+
+    Raises:
+        ValueError: If it is neither, or too large for double precision.
+    """
+    number = value if unit is None else in_si(value, unit)
+    if unit is not None and reading is not None:
+        reading.note(value, "" if number is value else unit)
+    if not _is_number(number):
         raise ValueError(f"must be a number; {remedy}")
     try:
-        # Every Real has __float__.
-        return float(value)  # type: ignore[arg-type]
+        return float(number)  # type: ignore[arg-type]  # every Real has __float__
     except OverflowError:
         raise ValueError(f"must fit into double precision; {remedy}") from None
 
@@ -74,81 +118,70 @@ def _in_bounds(number: float, remedy: str) -> float:
     return number
 
 
-def _schema(numbers: Mapping[str, Any], unit: str | None) -> WithJsonSchema:
-    """Of a number with these limits; with a unit, a text may stand for it, to which no limit applies."""
-    written = {"type": ["number", "string"], "pattern": r"^\s*[-+.\d]"} if unit else {"type": "number"}
-    return WithJsonSchema({**written, **numbers})
+def _written(unit: str | None, *, infinite: bool = False) -> dict[str, Any]:
+    """JSON Schema of a number, or of a text for it."""
+    if unit is None and not infinite:
+        return {"type": "number"}
+    return {"type": ["number", "string"], "pattern": r"^\s*[-+.\d]|^inf$" if infinite else r"^\s*[-+.\d]"}
 
 
-def _scalar(
+def number(
     remedy: str,
-    required: str,
-    fits: Callable[[float], bool],
-    unit: str | None,
-    limits: Mapping[str, Any],
+    unit: str | None = None,
     *,
-    scaled: bool = True,
-    words: Mapping[object, float | None] | None = None,
+    low: float = 0.0,
+    high: float = math.inf,
+    above: bool = False,
+    infinite: bool = False,
 ) -> Checked:
-    """A number that fits; where it is scaled, its magnitude lies between `SMALLEST` and `LARGEST`.
+    """A number in [low, high], or above zero; infinity, where allowed, may be the text "inf"."""
+    if math.isfinite(high):
+        required = f"lie in [{low:g}, {high:g}]"
+    elif above:
+        required = "be positive" if infinite else "be positive and finite"
+    else:
+        required = f"be at least {low:g}" if infinite else f"be finite and at least {low:g}"
 
-    The words are other values that stand for a number or for none.
-    """
-
-    def validate(value: object) -> float | None:
+    def validate(value: object, info: ValidationInfo) -> float:
         """The number, or one error with what is required and the remedy."""
-        known = words or {}
-        if (value is None or isinstance(value, str)) and value in known:
-            return known[value]
-        number = _number(value, remedy, unit)
-        if not fits(number):
+        found = math.inf if infinite and value == "inf" else read_number(value, remedy, unit, info.context)
+        if not (low <= found <= high and (infinite or math.isfinite(found)) and (found > low or not above)):
             raise ValueError(f"must {required}; {remedy}")
-        return _in_bounds(number, remedy) if scaled else number
+        return found if math.isfinite(high) else _in_bounds(found, remedy)
 
-    return PlainValidator(validate), _schema(limits, unit), *([Unit(unit)] if unit else [])
+    limits = {"exclusiveMinimum" if above else "minimum": low} | ({"maximum": high} if math.isfinite(high) else {})
+    schema = WithJsonSchema({**_written(unit, infinite=infinite), **limits})
+    return PlainValidator(validate), schema, *([Unit(unit)] if unit else [])
 
 
 def positive(remedy: str, unit: str | None = None) -> Checked:
     """A finite number above zero."""
-    limits = {"exclusiveMinimum": 0}
-    return _scalar(remedy, "be positive and finite", lambda number: 0.0 < number < math.inf, unit, limits)
-
-
-def positive_or_infinite(remedy: str, unit: str | None = None) -> Checked:
-    """A number above zero; infinity is allowed."""
-    return _scalar(remedy, "be positive", lambda number: number > 0.0, unit, {"exclusiveMinimum": 0})
-
-
-def not_negative_or_infinite(remedy: str) -> Checked:
-    """A number of at least zero; infinity is allowed, in files that have none as the text "inf"."""
-    validator, _ = _scalar(remedy, "be at least 0", lambda number: number >= 0.0, None, {}, words={"inf": math.inf})
-    return validator, WithJsonSchema({"anyOf": [{"type": "number", "minimum": 0}, {"const": "inf"}]})
-
-
-def not_negative_or_none(remedy: str, unit: str | None = None) -> Checked:
-    """A finite number of at least zero, or None."""
-    required = "be finite and at least 0"
-    return _scalar(remedy, required, lambda n: 0.0 <= n < math.inf, unit, {"minimum": 0}, words={None: None})
+    return number(remedy, unit, above=True)
 
 
 def in_range(low: float, high: float, remedy: str, unit: str | None = None) -> Checked:
-    """A finite number in the closed interval [low, high]; where it has no upper end, `LARGEST` is one."""
-    has_end = math.isfinite(high)
-    required = f"lie in [{low:g}, {high:g}]" if has_end else f"be finite and at least {low:g}"
-    limits = {"minimum": low} | ({"maximum": high} if has_end else {})
-    return _scalar(remedy, required, lambda n: low <= n <= high and math.isfinite(n), unit, limits, scaled=not has_end)
+    """A finite number in the closed interval [low, high]; `LARGEST` is the largest where it has no upper end."""
+    return number(remedy, unit, low=low, high=high)
 
 
 PositiveLength = Annotated[float, *positive("give the length in metres", "m")]
+Modulus = Annotated[float, *positive("give the modulus in pascals", "Pa")]
+PoissonsRatio = Annotated[float, *in_range(0.0, 0.5, "Poisson's ratio is 0.5 for incompressible materials")]
 
 
 def _is_masked(value: object) -> bool:
-    """Whether an array is masked; where none was ever made, numpy's module of them need not be loaded to tell."""
+    """Whether an array is masked; numpy's module of them is not loaded where none was ever made."""
     masked = sys.modules.get("numpy.ma")
     return masked is not None and isinstance(value, masked.MaskedArray)
 
 
-def _as_vector(value: object, remedy: str, unit: str | None) -> FloatArray:
+def as_vector(value: object, remedy: str, unit: str | None, reading: Reading | None) -> FloatArray:
+    """A read-only vector of finite numbers from a number, a list, a range or a column, shape (n,).
+
+    Raises:
+        ValueError: If it is none of these, empty, too long, or holds a number that is not finite.
+    """
+    value = _written_out(value, unit, reading)
     if _is_number(value) or (isinstance(value, str) and unit is not None and in_si(value, unit) is not value):
         value = [value]
     if isinstance(value, str | bytes) or not isinstance(value, Sequence | np.ndarray):
@@ -157,35 +190,33 @@ def _as_vector(value: object, remedy: str, unit: str | None) -> FloatArray:
         raise ValueError(f"must be a one-dimensional array of real numbers; {remedy}")
     if _is_masked(value):
         raise ValueError(f"must not be masked: what hides under the mask is no number; {remedy}")
-    if len(value) == 0:
-        raise ValueError(f"must hold at least one number; {remedy}")
-    if len(value) > MAX_ENTRIES:
-        raise ValueError(f"must hold at most {MAX_ENTRIES} numbers, got {len(value)}; {remedy}")
-    entries = value if isinstance(value, np.ndarray) else [_number(entry, remedy, unit) for entry in value]
+    if not 0 < len(value) <= MAX_ENTRIES:
+        raise ValueError(f"must hold at least one number and at most {MAX_ENTRIES} numbers, got {len(value)}; {remedy}")
+    entries = value if isinstance(value, np.ndarray) else [read_number(one, remedy, unit, reading) for one in value]
     vector = np.array(entries, dtype=np.float64)
     bad = np.flatnonzero(~np.isfinite(vector))
     if bad.size:
         raise ValueError(f"must be finite, but entry {bad[0]} is {vector[bad[0]]}; {remedy}")
-    extreme = np.flatnonzero((vector != 0.0) & ((np.abs(vector) < SMALLEST) | (np.abs(vector) > LARGEST)))
-    if extreme.size:
-        _in_bounds(float(vector[extreme[0]]), remedy)
+    magnitudes = np.abs(vector[vector != 0.0])
+    for extreme in (magnitudes.min(initial=1.0), magnitudes.max(initial=1.0)):
+        _in_bounds(float(extreme), remedy)
     vector.setflags(write=False)
     return vector
 
 
-def _written_out(value: object, unit: str | None, folder: Path | None) -> object:
+def _written_out(value: object, unit: str | None, reading: Reading | None) -> object:
     """The numbers of a range or of a column; anything else is returned as it came."""
     if isinstance(value, Mapping) and value and value.keys() <= RANGE:
-        return range_of(value, unit)
+        return range_of(value, unit, reading)
     if isinstance(value, Mapping) and "file" in value and value.keys() <= COLUMN:
-        # Only scenes that name a file pay for this import.
-        from contact.files.columns import column_in_si  # noqa: PLC0415
-
-        return column_in_si(value, unit, folder)
+        numbers, written = column_in_si(value, unit, reading.folder if reading else None)
+        if reading and unit:
+            reading.note(f"1 {written}" if written else float(np.max(np.abs(numbers))), written)
+        return numbers
     return value
 
 
-def range_of(table: Mapping[str, Any], unit: str | None) -> FloatArray:
+def range_of(table: Mapping[str, Any], unit: str | None, reading: Reading | None = None) -> FloatArray:
     """Values from start to stop, both included, evenly spaced or by equal factors.
 
     Raises:
@@ -199,40 +230,46 @@ def range_of(table: Mapping[str, Any], unit: str | None) -> FloatArray:
         raise refused(f"count = {shown(count)}: must be a whole number from 2 to {MAX_ENTRIES}")
     if spacing not in ("linear", "log"):
         raise refused(f'spacing = {shown(spacing)}: must be "linear" or "log"')
-    start, stop = (_end(table[name], unit, name) for name in ("start", "stop"))
+    start, stop = (_end(table[name], unit, name, reading) for name in ("start", "stop"))
     if spacing == "log" and min(start, stop) <= 0.0:
         raise ValueError(f"equal factors need ends above 0, got {start:g} and {stop:g}")
     return np.linspace(start, stop, count) if spacing == "linear" else np.geomspace(start, stop, count)
 
 
-def _end(value: object, unit: str | None, name: str) -> float:
+def _end(value: object, unit: str | None, name: str, reading: Reading | None) -> float:
     try:
-        number = value if unit is None else in_si(value, unit)
+        end = read_number(value, f"give one up to {LARGEST:g}, or a text with its unit", unit, reading)
     except ValueError as error:
         raise refused(f"{name} = {shown(value)}: {error}") from None
-    # Whole numbers of any length compare with a float; not all of them convert to one.
-    if not isinstance(number, int | float) or isinstance(number, bool) or not abs(number) <= LARGEST:
-        raise refused(f"{name} = {shown(value)}: must be a number up to {LARGEST:g}, or a text with its unit")
-    return float(number)
+    if not abs(end) <= LARGEST:
+        raise refused(f"{name} = {shown(value)}: must be a number up to {LARGEST:g}")
+    return end
 
 
-def _vector_validator(
-    check: Callable[[FloatArray], tuple[str, BoolArray] | None], remedy: str, unit: str | None
+def vector(
+    remedy: str,
+    unit: str | None = None,
+    *,
+    least: float = -math.inf,
+    above: float = -math.inf,
+    increasing: bool = False,
 ) -> Checked:
-    """A validator of finite vectors; `check` returns what is required and where it is violated."""
+    """Finite numbers, each at least or above a bound, and strictly increasing where asked."""
 
     def validate(value: object, info: ValidationInfo) -> FloatArray:
-        """The vector, read-only, if `check` finds no offending entry; else a ValueError that names the first."""
-        vector = _as_vector(_written_out(value, unit, info.context), remedy, unit)
-        verdict = check(vector)
-        if verdict is not None and verdict[1].any():
-            entry = int(np.flatnonzero(verdict[1])[0])
-            raise ValueError(f"must {verdict[0]}, but entry {entry} is {vector[entry]:g}; {remedy}")
-        return vector
+        """The vector, read-only; an error names the first offending entry."""
+        found = as_vector(value, remedy, unit, info.context)
+        for required, wrong in (
+            (f"be at least {least:g}", found < least),
+            (f"be above {above:g}", found <= above),
+            ("increase strictly", increasing & np.append(False, np.diff(found) <= 0.0)),
+        ):
+            if wrong.any():
+                entry = int(np.flatnonzero(wrong)[0])
+                raise ValueError(f"must {required}, but entry {entry} is {found[entry]:g}; {remedy}")
+        return found
 
-    one = _schema({}, unit).json_schema
-    listed = {"type": "array", "items": one, "minItems": 1, "maxItems": MAX_ENTRIES}
-    end, text = {"type": ["number", "string"]}, {"type": "string"}
+    one, end, text = _written(unit), {"type": ["number", "string"]}, {"type": "string"}
     span = {
         "start": end,
         "stop": end,
@@ -244,37 +281,6 @@ def _vector_validator(
         {"type": "object", "properties": properties, "required": required, "additionalProperties": False}
         for properties, required in ((span, ["start", "stop", "count"]), (column, ["file"]))
     ]
+    listed = {"type": "array", "items": one, "minItems": 1, "maxItems": MAX_ENTRIES}
     schema = WithJsonSchema({"anyOf": [listed, one, *tables]})
     return PlainValidator(validate), schema, *([Unit(unit)] if unit else [])
-
-
-def finite_vector(remedy: str, unit: str | None = None) -> Checked:
-    """Finite numbers in any order."""
-    return _vector_validator(lambda _: None, remedy, unit)
-
-
-def increasing_vector(
-    remedy: str, unit: str | None = None, *, least: float | None = None, above: float | None = None
-) -> Checked:
-    """Strictly increasing finite numbers, the first at `least` or strictly `above` a bound where given."""
-
-    def check(vector: FloatArray) -> tuple[str, BoolArray]:
-        """What is required of the first number or of the steps, and where a vector of shape (n,) violates it."""
-        if least is not None and vector[0] < least:
-            return f"be at least {least:g}", vector < least
-        if above is not None and vector[0] <= above:
-            return f"be above {above:g}", vector <= above
-        return "increase strictly", np.concatenate([[False], np.diff(vector) <= 0.0])
-
-    return _vector_validator(check, remedy, unit)
-
-
-def bounded_vector(remedy: str, unit: str | None = None, *, least: float, strict: bool = False) -> Checked:
-    """Finite numbers, each at least (or, if strict, above) a bound."""
-    relation = "be above" if strict else "be at least"
-
-    def check(vector: FloatArray) -> tuple[str, BoolArray]:
-        """The bound in words, and where a vector of shape (n,) violates it."""
-        return f"{relation} {least:g}", vector <= least if strict else vector < least
-
-    return _vector_validator(check, remedy, unit)

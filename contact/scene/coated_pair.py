@@ -7,12 +7,14 @@ from typing import Annotated
 from pydantic import model_validator
 
 from contact.records.record import Record, record
-from contact.records.validation import PositiveLength, in_range, positive, positive_or_infinite
+from contact.records.validation import Modulus, PoissonsRatio, PositiveLength, number
 from contact.scene.effects import Effect
 from contact.scene.layer import Layer, Support
 from contact.scene.loading import Loading
 from contact.scene.profiles import Paraboloid
 from contact.scene.scene import Scene
+
+_Radius = Annotated[float, *number("give the radius of curvature in metres", "m", above=True, infinite=True)]
 
 
 @record
@@ -31,12 +33,12 @@ class CoatedPair(Record):
         effects: As in a scene.
     """
 
-    first_radius: Annotated[float, *positive_or_infinite("give the radius of curvature in metres", "m")]
-    second_radius: Annotated[float, *positive_or_infinite("give the radius of curvature in metres", "m")]
+    first_radius: _Radius
+    second_radius: _Radius
     first_thickness: PositiveLength
     second_thickness: PositiveLength
-    youngs_modulus: Annotated[float, *positive("give Young's modulus of the coatings in pascals", "Pa")]
-    poissons_ratio: Annotated[float, *in_range(0.0, 0.5, "Poisson's ratio is 0.5 for incompressible coatings")]
+    youngs_modulus: Modulus
+    poissons_ratio: PoissonsRatio
     support: Support = "bonded"
     loading: Loading
     effects: tuple[Effect, ...] = ()

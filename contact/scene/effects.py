@@ -10,10 +10,10 @@ import numpy as np
 from pydantic import model_validator
 
 from contact.records.record import Record, record
-from contact.records.validation import FloatArray, Vector, bounded_vector, in_range, not_negative_or_infinite, positive
+from contact.records.validation import FloatArray, Modulus, Vector, in_range, number, positive, vector
 
-_MODULUS = "give the shear modulus in pascals"
 _VISCOSITY = "give the viscosity in pascal seconds"
+_LongTermModulus = Annotated[float, *in_range(0.0, math.inf, "give the long-term shear modulus in pascals", "Pa")]
 
 
 class Effect(Record):
@@ -74,7 +74,7 @@ class Friction(Effect):
         coefficient: mu [-]; infinity is full stick: what touches does not slide.
     """
 
-    coefficient: Annotated[float, *not_negative_or_infinite("give the coefficient of friction, or inf for full stick")]
+    coefficient: Annotated[float, *number("give the coefficient of friction, or inf for full stick", infinite=True)]
 
     @property
     def is_stick(self) -> bool:
@@ -91,7 +91,7 @@ class KelvinVoigt(Viscoelasticity):
         viscosity: eta [Pa s].
     """
 
-    shear_modulus: Annotated[float, *positive(_MODULUS, "Pa")]
+    shear_modulus: Modulus
     viscosity: Annotated[float, *in_range(0.0, math.inf, _VISCOSITY, "Pa s")]
 
     @property
@@ -112,8 +112,8 @@ class StandardSolid(Viscoelasticity):
         viscosity: eta [Pa s] of the Maxwell element; it relaxes in eta / G_1.
     """
 
-    long_term_shear_modulus: Annotated[float, *in_range(0.0, math.inf, _MODULUS, "Pa")]
-    maxwell_shear_modulus: Annotated[float, *positive(_MODULUS, "Pa")]
+    long_term_shear_modulus: _LongTermModulus
+    maxwell_shear_modulus: Modulus
     viscosity: Annotated[float, *positive(_VISCOSITY, "Pa s")]
 
     @property
@@ -135,11 +135,9 @@ class PronySeries(Viscoelasticity):
         relaxation_times: tau_j [s], shape (m,).
     """
 
-    long_term_shear_modulus: Annotated[float, *in_range(0.0, math.inf, _MODULUS, "Pa")]
-    shear_moduli: Annotated[Vector, *bounded_vector("give the shear moduli in pascals", "Pa", least=0.0)]
-    relaxation_times: Annotated[
-        Vector, *bounded_vector("give the relaxation times in seconds", "s", least=0.0, strict=True)
-    ]
+    long_term_shear_modulus: _LongTermModulus
+    shear_moduli: Annotated[Vector, *vector("give the shear moduli in pascals", "Pa", least=0.0)]
+    relaxation_times: Annotated[Vector, *vector("give the relaxation times in seconds", "s", above=0.0)]
 
     @model_validator(mode="after")
     def _check(self) -> PronySeries:

@@ -1,26 +1,186 @@
-"""A layer whose elastic constants change with depth z, counted from the surface."""
+"""A layer whose elastic constants are functions of depth z, counted from the surface."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
-from typing import Annotated, ClassVar, Self
+from functools import cached_property
+from typing import TYPE_CHECKING, Annotated, ClassVar, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
-from pydantic import Discriminator, Tag, model_validator
+from pydantic import BeforeValidator, Discriminator, Tag, ValidationInfo, model_validator
 
-from contact.records.errors import refused
-from contact.records.record import OneOf, record
-from contact.records.validation import FloatArray, PositiveLength, in_range
-from contact.scene.depth_functions import DEPTH_FUNCTIONS, NO_ZERO, DepthFunction, TabulatedDepth
-from contact.scene.elastic_layer import ElasticLayer
-from contact.scene.layer_stack import ElasticBase, Sublayer, Supported
+from contact.records.errors import refused, shown
+from contact.records.record import OneOf, Record, record
+from contact.records.validation import (
+    FloatArray,
+    Modulus,
+    PoissonsRatio,
+    PositiveLength,
+    Vector,
+    as_vector,
+    in_range,
+    positive,
+    vector,
+)
+from contact.scene.layer import ElasticBase, ElasticLayer, Sublayer, Supported
 
-_NUMBER = in_range(0.0, 0.5, "give Poisson's ratio, or a TabulatedDepth of it")
+if TYPE_CHECKING:
+    from scipy.interpolate import PchipInterpolator
+
+NO_ZERO = (
+    "a modulus of zero at the surface leaves no contact modulus E*, and such a layer follows other equations "
+    "(Hess 2016); give a small positive one, as E0 (1 + z/z0)^m has"
+)
 
 
-def _kind_of_ratio(value: object) -> str:
-    return "kind:table" if isinstance(value, Mapping | TabulatedDepth) else "kind:number"
+class DepthFunction(Record):
+    """Base of the functions of depth; z [m] lies in [0, thickness]."""
+
+    NAMED: ClassVar[bool] = True
+
+    def at(self, depth: ArrayLike, thickness: float) -> FloatArray:
+        """Values at depths z [m] of any shape in a layer of this thickness [m]."""
+        raise TypeError(f"{type(self).__name__} declares no values")
+
+    def slope(self, depth: ArrayLike, thickness: float) -> FloatArray:
+        """Derivative by z [1/m]."""
+        raise TypeError(f"{type(self).__name__} declares no slope")
+
+    def scaled(self, length: float, value: float) -> Self:
+        """The same function with depths over a length [m], and values over another value."""
+        raise TypeError(f"{type(self).__name__} cannot be scaled")
+
+    def breakpoints(self, thickness: float) -> tuple[float, ...]:
+        """Depths [m] inside the layer where the function is not analytic."""
+        return ()
+
+
+@record
+class _BetweenFaces(DepthFunction):
+    """Base of those that are given by their values at both faces, whatever the thickness."""
+
+    surface: Annotated[float, *positive(NO_ZERO, "Pa")]
+    base: Modulus
+
+    def scaled(self, length: float, value: float) -> Self:
+        return self.replace(surface=self.surface / value, base=self.base / value)
+
+
+@record
+class ExponentialDepth(_BetweenFaces):
+    """surface (base/surface)^(z/h).
+
+    Attributes:
+        surface: Value at z = 0.
+        base: Value at z = h.
+    """
+
+    def at(self, depth: ArrayLike, thickness: float) -> FloatArray:
+        return np.asarray(self.surface * np.exp(np.asarray(depth) * (self._rate / thickness)))
+
+    def slope(self, depth: ArrayLike, thickness: float) -> FloatArray:
+        return self.at(depth, thickness) * (self._rate / thickness)
+
+    @property
+    def _rate(self) -> float:
+        return math.log(self.base / self.surface)
+
+
+@record
+class LinearDepth(_BetweenFaces):
+    """surface + (base - surface) z/h.
+
+    Attributes:
+        surface: Value at z = 0.
+        base: Value at z = h.
+    """
+
+    def at(self, depth: ArrayLike, thickness: float) -> FloatArray:
+        return np.asarray(self.surface + (self.base - self.surface) * (np.asarray(depth) / thickness))
+
+    def slope(self, depth: ArrayLike, thickness: float) -> FloatArray:
+        return np.full(np.shape(depth), (self.base - self.surface) / thickness)
+
+
+@record
+class PowerLawDepth(DepthFunction):
+    """surface (1 + z/z0)^m.
+
+    Attributes:
+        surface: Value at z = 0.
+        reference_depth: z0 [m].
+        exponent: m, of either sign.
+    """
+
+    surface: Annotated[float, *positive(NO_ZERO, "Pa")]
+    reference_depth: PositiveLength
+    exponent: Annotated[float, *in_range(-10.0, 10.0, "give the exponent m of surface (1 + z/z0)^m")]
+
+    def at(self, depth: ArrayLike, thickness: float) -> FloatArray:
+        return np.asarray(self.surface * (1.0 + np.asarray(depth) / self.reference_depth) ** self.exponent)
+
+    def slope(self, depth: ArrayLike, thickness: float) -> FloatArray:
+        rate = self.exponent / (self.reference_depth + np.asarray(depth))
+        return np.asarray(self.at(depth, thickness) * rate)
+
+    def scaled(self, length: float, value: float) -> Self:
+        return self.replace(surface=self.surface / value, reference_depth=self.reference_depth / length)
+
+
+@record
+class TabulatedDepth(DepthFunction):
+    """Values at given depths, and piecewise cubic between them without overshoot (Fritsch and Carlson 1980).
+
+    Attributes:
+        depths: z [m], increasing from zero to at least the layer's thickness, shape (n,).
+        values: There, shape (n,).
+    """
+
+    depths: Annotated[Vector, *vector("give depths in metres, from the surface down", "m", least=0.0, increasing=True)]
+    values: Annotated[Vector, *vector("give one value for each depth", "Pa", least=0.0)]
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        if self.depths.shape != self.values.shape or self.depths.size < 2:
+            sizes = f"got {self.depths.size} depths and {self.values.size} values"
+            raise ValueError(f"a table needs at least two depths and one value for each; {sizes}")
+        if self.depths[0] != 0.0:
+            raise ValueError(f"a table starts at the surface z = 0, got {self.depths[0]:g}")
+        return self
+
+    @cached_property
+    def _curve(self) -> PchipInterpolator:
+        # Only scenes with a table pay for this import.
+        from scipy.interpolate import PchipInterpolator  # noqa: PLC0415
+
+        return PchipInterpolator(self.depths, self.values)
+
+    def at(self, depth: ArrayLike, thickness: float) -> FloatArray:
+        return np.asarray(self._curve(np.asarray(depth, dtype=np.float64)))
+
+    def slope(self, depth: ArrayLike, thickness: float) -> FloatArray:
+        return np.asarray(self._curve(np.asarray(depth, dtype=np.float64), 1))
+
+    def scaled(self, length: float, value: float) -> Self:
+        return self.replace(depths=self.depths / length, values=self.values / value)
+
+    def breakpoints(self, thickness: float) -> tuple[float, ...]:
+        return tuple(float(z) for z in self.depths[1:] if z < thickness)
+
+
+DEPTH_FUNCTIONS: tuple[type[DepthFunction], ...] = (ExponentialDepth, LinearDepth, PowerLawDepth, TabulatedDepth)
+
+
+def _pure(given: object, info: ValidationInfo) -> object:
+    """A table of Poisson's ratio, whose values are pure numbers."""
+    if not isinstance(given, Mapping) or "values" not in given:
+        return given
+    try:
+        return {**given, "values": as_vector(given["values"], "give Poisson's ratios", None, info.context)}
+    except ValueError as error:
+        raise refused(f"values = {shown(given['values'])}: {error}") from None
 
 
 @record
@@ -39,21 +199,23 @@ class GradedLayer(ElasticLayer):
     thickness: PositiveLength
     youngs_modulus: Annotated[DepthFunction, OneOf(*DEPTH_FUNCTIONS)]
     poissons_ratio: Annotated[
-        Annotated[float, *_NUMBER, Tag("kind:number")] | Annotated[TabulatedDepth, Tag("kind:table")],
-        Discriminator(_kind_of_ratio),
+        Annotated[PoissonsRatio, Tag("kind:number")]
+        | Annotated[TabulatedDepth, BeforeValidator(_pure), Tag("kind:table")],
+        Discriminator(lambda nu: "kind:table" if isinstance(nu, Mapping | TabulatedDepth) else "kind:number"),
     ]
     support: Supported = "bonded"
 
     @model_validator(mode="after")
     def _check(self) -> Self:
-        tables = (self.youngs_modulus, self.poissons_ratio)
-        for table in (table for table in tables if isinstance(table, TabulatedDepth)):
-            if table.depths[-1] < self.thickness:
+        for table in (self.youngs_modulus, self.poissons_ratio):
+            if isinstance(table, TabulatedDepth) and table.depths[-1] < self.thickness:
                 reach = f"the table ends at z = {table.depths[-1]:g} m, above the base at {self.thickness:g} m"
                 raise ValueError(f"{reach}; tabulate the whole layer")
-        if isinstance(self.youngs_modulus, TabulatedDepth):
-            _refuse_zero(self.youngs_modulus)
-        ratio = self.poissons_ratio
+        modulus, ratio = self.youngs_modulus, self.poissons_ratio
+        if isinstance(modulus, TabulatedDepth) and not modulus.values.all():
+            entry = int(np.argmin(modulus.values))
+            remedy = "give Young's modulus" if entry else NO_ZERO
+            raise ValueError(f"youngs_modulus.values: must be positive, but entry {entry} is 0; {remedy}")
         if isinstance(ratio, TabulatedDepth) and (worst := float(ratio.values.max())) > 0.5:
             raise refused(f"poissons_ratio: must lie in [0, 0.5], but the table holds {worst:g}")
         return self
@@ -64,17 +226,9 @@ class GradedLayer(ElasticLayer):
         modulus = float(self.youngs_modulus.at(0.0, self.thickness))
         return Sublayer(thickness=self.thickness, youngs_modulus=modulus, poissons_ratio=float(self.ratio_at(0.0)))
 
-    @property
-    def is_incompressible(self) -> bool:
-        """Whether nu = 1/2 at every depth and in an elastic base."""
-        base = self.support.poissons_ratio if isinstance(self.support, ElasticBase) else 0.5
-        own = self.poissons_ratio
-        return base == 0.5 and bool(np.all(own.values == 0.5) if isinstance(own, TabulatedDepth) else own == 0.5)
-
-    @property
-    def has_elastic_base(self) -> bool:
-        """Whether it rests on an elastic half-space."""
-        return isinstance(self.support, ElasticBase)
+    def _ratios(self) -> tuple[float, ...]:
+        nu = self.poissons_ratio
+        return tuple(nu.values.tolist()) if isinstance(nu, TabulatedDepth) else (nu,)
 
     @property
     def title(self) -> str:
@@ -94,35 +248,23 @@ class GradedLayer(ElasticLayer):
     @property
     def breakpoints(self) -> tuple[float, ...]:
         """Depths [m] where E or nu is not analytic."""
-        functions = (self.youngs_modulus, self.poissons_ratio)
-        return tuple(
-            sorted({z for f in functions if isinstance(f, DepthFunction) for z in f.breakpoints(self.thickness)})
-        )
+        functions = [f for f in (self.youngs_modulus, self.poissons_ratio) if isinstance(f, DepthFunction)]
+        return tuple(sorted({z for function in functions for z in function.breakpoints(self.thickness)}))
 
     def in_own_units(self) -> Self:
         """The same layer with thickness 1 and E* = 1 at the surface."""
-        length, modulus, nu, support = self.thickness, self.contact_modulus, self.poissons_ratio, self.support
+        return self._scaled(self.thickness, self.contact_modulus, thickness=1.0)
+
+    def stretched(self, factor: float) -> Self:
+        """The same layer with all depths multiplied by the factor."""
+        # One division for all depths, so that a table that ends at the base still does.
+        return self._scaled(1.0 / factor, 1.0, thickness=self.thickness / (1.0 / factor))
+
+    def _scaled(self, length: float, modulus: float, *, thickness: float) -> Self:
+        nu, support = self.poissons_ratio, self.support
         return self.replace(
-            thickness=1.0,
+            thickness=thickness,
             youngs_modulus=self.youngs_modulus.scaled(length, modulus),
             poissons_ratio=nu.scaled(length, 1.0) if isinstance(nu, TabulatedDepth) else nu,
             support=support.scaled(modulus) if isinstance(support, ElasticBase) else support,
         )
-
-    def stretched(self, factor: float) -> Self:
-        """The same layer with all depths so many times as large."""
-        # One division for all depths, so that a table that ends at the base still does.
-        nu, length = self.poissons_ratio, 1.0 / factor
-        return self.replace(
-            thickness=self.thickness / length,
-            youngs_modulus=self.youngs_modulus.scaled(length, 1.0),
-            poissons_ratio=nu.scaled(length, 1.0) if isinstance(nu, TabulatedDepth) else nu,
-        )
-
-
-def _refuse_zero(table: TabulatedDepth) -> None:
-    zero = np.flatnonzero(table.values <= 0.0)
-    if zero.size and zero[0] == 0:
-        raise ValueError(f"youngs_modulus.values: must be positive, but entry 0 is 0; {NO_ZERO}")
-    if zero.size:
-        raise ValueError(f"youngs_modulus.values: must be positive, but entry {zero[0]} is 0; give Young's modulus")

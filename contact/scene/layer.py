@@ -1,19 +1,131 @@
-"""The layer: an isotropic linear elastic slab on a rigid base, or its limit, the half-space."""
+"""Elastic layers: one uniform slab, its limit the half-space, or several slabs on a rigid or an elastic base."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Annotated, Any, ClassVar, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self, TypeAlias
 
-from pydantic import model_validator
+from pydantic import Discriminator, Field, Tag, model_validator
 
 from contact.records.errors import refused, shown
-from contact.records.record import record
-from contact.records.validation import in_range, positive, positive_or_infinite
-from contact.scene.elastic_layer import ElasticLayer
+from contact.records.record import Record, record
+from contact.records.validation import Modulus, PoissonsRatio, PositiveLength, number
 
-Support = Literal["bonded", "unbonded"]
+Support: TypeAlias = Literal["bonded", "unbonded"]
+Interface: TypeAlias = Literal["bonded", "unbonded"]
+# More sublayers are refused: a graded material is a `GradedLayer`.
+MAX_SUBLAYERS = 1000
+
+
+@record
+class Sublayer(Record):
+    """One uniform layer of a stack.
+
+    Attributes:
+        thickness: h_i [m].
+        youngs_modulus: E_i [Pa].
+        poissons_ratio: nu_i in [0, 0.5]; 0.5 is exactly incompressible.
+    """
+
+    thickness: PositiveLength
+    youngs_modulus: Modulus
+    poissons_ratio: PoissonsRatio
+
+
+@record
+class ElasticBase(Record):
+    """An elastic half-space below a layer.
+
+    Attributes:
+        youngs_modulus: E [Pa].
+        poissons_ratio: nu in [0, 0.5].
+        interface: "bonded", or "unbonded" (frictionless, no lift-off), between base and layer.
+    """
+
+    youngs_modulus: Modulus
+    poissons_ratio: PoissonsRatio
+    interface: Interface = "bonded"
+
+    def scaled(self, modulus: float) -> Self:
+        """The same base with its modulus over another one [Pa]."""
+        return self.replace(youngs_modulus=self.youngs_modulus / modulus)
+
+
+class ElasticLayer(Record):
+    """Base of `Layer`, `LayerStack` and `GradedLayer`: what every layer has."""
+
+    if TYPE_CHECKING:  # at run time properties would hide fields of these names
+
+        @property
+        def thickness(self) -> float:
+            """h [m], of all sublayers together; infinite for a half-space."""
+
+        @property
+        def support(self) -> Support | ElasticBase:
+            """The base: rigid, with its interface, or elastic."""
+
+    @property
+    def surface(self) -> Layer | Sublayer:
+        """The uniform part that touches the indenter."""
+        raise TypeError(f"{type(self).__name__} declares no surface")
+
+    def in_own_units(self) -> Self:
+        """The same layer with thickness 1 and E* = 1; a half-space stays infinite."""
+        raise TypeError(f"{type(self).__name__} has no units of its own")
+
+    def stretched(self, factor: float) -> ElasticLayer:
+        """The same layer with all depths multiplied by the factor."""
+        raise TypeError(f"{type(self).__name__} cannot be stretched")
+
+    def simplest(self) -> ElasticLayer:
+        """The plainest record of the same body."""
+        return self
+
+    @property
+    def is_half_space(self) -> bool:
+        """Whether the layer is infinitely thick and uniform."""
+        return math.isinf(self.thickness)
+
+    @property
+    def is_uniform(self) -> bool:
+        """Whether it is of one material."""
+        return isinstance(self, Layer)
+
+    @property
+    def is_piecewise_uniform(self) -> bool:
+        """Whether it is of one material, or of several on top of each other."""
+        return isinstance(self, Layer | LayerStack)
+
+    @property
+    def has_elastic_base(self) -> bool:
+        """Whether it rests on an elastic half-space of another material, and not on a rigid base."""
+        return isinstance(self.support, ElasticBase)
+
+    @property
+    def is_incompressible(self) -> bool:
+        """Whether nu = 1/2 everywhere, an elastic base included."""
+        base = self.support.poissons_ratio if isinstance(self.support, ElasticBase) else 0.5
+        return all(nu == 0.5 for nu in (base, *self._ratios()))
+
+    def _ratios(self) -> tuple[float, ...]:
+        return (self.surface.poissons_ratio,)
+
+    @property
+    def contact_modulus(self) -> float:
+        """E* = E / (1 - nu^2) [Pa] at the surface."""
+        nu = self.surface.poissons_ratio
+        return self.surface.youngs_modulus / ((1.0 - nu) * (1.0 + nu))
+
+    @property
+    def shear_modulus(self) -> float:
+        """G = E / (2 (1 + nu)) [Pa] at the surface."""
+        return self.surface.youngs_modulus / (2.0 * (1.0 + self.surface.poissons_ratio))
+
+    @property
+    def title(self) -> str:
+        """A few words for headings."""
+        return type(self).__name__
 
 
 @record
@@ -27,21 +139,19 @@ class Layer(ElasticLayer):
         support: "bonded" (no displacement at the base) or "unbonded" (frictionless base, no lift-off).
     """
 
-    WRITTEN: ClassVar[Mapping[str, Any]] = {
-        "properties": {"half_space": {"type": "boolean", "description": "instead of a thickness"}},
-        # A viscoelastic effect may give the modulus.
-        "replaced": ("thickness", "youngs_modulus"),
-        "oneOf": [
-            {"required": ["thickness"]},
-            {"properties": {"half_space": {"const": True}}, "required": ["half_space"]},
-        ],
+    SHORTHANDS: ClassVar[Mapping[str, Any]] = {
+        "half_space": {"type": "boolean", "description": "instead of a thickness"}
     }
+    REPLACED: ClassVar[Mapping[str, str]] = {"thickness": "half_space", "youngs_modulus": ""}
 
     thickness: Annotated[
-        float, *positive_or_infinite("give the thickness in metres, or use Layer.half_space for an infinite one", "m")
+        float,
+        *number(
+            "give the thickness in metres, or use Layer.half_space for an infinite one", "m", above=True, infinite=True
+        ),
     ]
-    youngs_modulus: Annotated[float, *positive("give Young's modulus in pascals", "Pa")]
-    poissons_ratio: Annotated[float, *in_range(0.0, 0.5, "Poisson's ratio is 0.5 for an incompressible layer")]
+    youngs_modulus: Modulus
+    poissons_ratio: PoissonsRatio
     support: Support = "bonded"
 
     @model_validator(mode="before")
@@ -53,11 +163,9 @@ class Layer(ElasticLayer):
         rest = {name: value for name, value in given.items() if name != "half_space"}
         if not isinstance(given["half_space"], bool):
             raise refused(f"half_space = {shown(given['half_space'])}: must be true or false")
-        if not given["half_space"]:
-            return rest
-        if "thickness" in rest:
+        if given["half_space"] and "thickness" in rest:
             raise refused(f"thickness = {shown(rest['thickness'])}: a half-space has none; drop one of the two")
-        return rest | {"thickness": math.inf}
+        return rest | ({"thickness": math.inf} if given["half_space"] else {})
 
     @classmethod
     def half_space(cls, *, youngs_modulus: float, poissons_ratio: float) -> Self:
@@ -70,29 +178,9 @@ class Layer(ElasticLayer):
         return cls(thickness=thickness, youngs_modulus=3.0 * shear_modulus, poissons_ratio=0.5, support=support)
 
     @property
-    def is_half_space(self) -> bool:
-        """Whether the layer is infinitely thick."""
-        return math.isinf(self.thickness)
-
-    @property
     def surface(self) -> Self:
         """The layer itself: it is uniform."""
         return self
-
-    @property
-    def is_uniform(self) -> bool:
-        """Whether it is of one material."""
-        return True
-
-    @property
-    def is_piecewise_uniform(self) -> bool:
-        """Whether it is of one material, or of several on top of each other."""
-        return True
-
-    @property
-    def is_incompressible(self) -> bool:
-        """Whether nu = 1/2."""
-        return self.poissons_ratio == 0.5
 
     @property
     def title(self) -> str:
@@ -103,13 +191,84 @@ class Layer(ElasticLayer):
     def in_own_units(self) -> Self:
         """The same layer with thickness 1 and E* = 1; a half-space stays infinite."""
         nu = self.poissons_ratio
-        thickness = math.inf if self.is_half_space else 1.0
-        return self.replace(thickness=thickness, youngs_modulus=(1.0 - nu) * (1.0 + nu))
+        return self.replace(thickness=math.inf if self.is_half_space else 1.0, youngs_modulus=(1.0 - nu) * (1.0 + nu))
 
     @property
     def confined_modulus(self) -> float:
         """Modulus of uniaxial strain, E (1-nu) / ((1+nu)(1-2nu)) [Pa], Eq. (16); infinite at nu = 1/2."""
         nu = self.poissons_ratio
-        if nu == 0.5:
-            return math.inf
-        return self.youngs_modulus * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu))
+        return math.inf if nu == 0.5 else self.youngs_modulus * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu))
+
+
+Supported: TypeAlias = Annotated[
+    Annotated[Support, Tag("kind:rigid")] | Annotated[ElasticBase, Tag("kind:elastic")],
+    Discriminator(lambda support: "kind:elastic" if isinstance(support, Mapping | ElasticBase) else "kind:rigid"),
+]
+"""A rigid base, by its interface to the layer, or an elastic one."""
+
+
+@record
+class LayerStack(ElasticLayer):
+    """Uniform layers on top of each other. A scene takes a stack of one on a rigid base as that `Layer`.
+
+    Attributes:
+        sublayers: From the top; the first touches the indenter.
+        interfaces: One fewer than sublayers: "bonded", or "unbonded" (frictionless, no lift-off).
+        support: "bonded" or "unbonded" to a rigid base, or an `ElasticBase`.
+    """
+
+    NAMED: ClassVar[bool] = True
+
+    sublayers: Annotated[tuple[Sublayer, ...], Field(max_length=MAX_SUBLAYERS, strict=False)]
+    interfaces: Annotated[tuple[Interface, ...], Field(strict=False)] = ()
+    support: Supported = "bonded"
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        count = len(self.sublayers)
+        if not 1 <= count <= MAX_SUBLAYERS:
+            raise ValueError(f"sublayers: a stack has 1 to {MAX_SUBLAYERS}, got {count}; list them from the top")
+        if len(self.interfaces) != count - 1:
+            raise ValueError(
+                f"interfaces: {count} sublayers meet at {count - 1} interfaces, got {len(self.interfaces)}; "
+                'write "bonded" or "unbonded" for each, from the top'
+            )
+        return self
+
+    @property
+    def thickness(self) -> float:
+        """All sublayers together [m]."""
+        return math.fsum(one.thickness for one in self.sublayers)
+
+    @property
+    def surface(self) -> Sublayer:
+        """The sublayer that touches the indenter."""
+        return self.sublayers[0]
+
+    def _ratios(self) -> tuple[float, ...]:
+        return tuple(one.poissons_ratio for one in self.sublayers)
+
+    @property
+    def title(self) -> str:
+        """As in: stack of 3, elastic base."""
+        return f"stack of {len(self.sublayers)}, {'elastic base' if self.has_elastic_base else self.support}"
+
+    def simplest(self) -> ElasticLayer:
+        """A stack of one on a rigid base is a `Layer`."""
+        if len(self.sublayers) > 1 or isinstance(self.support, ElasticBase):
+            return self
+        return Layer(**vars(self.surface), support=self.support)
+
+    def in_own_units(self) -> Self:
+        """The same stack with thickness 1 and E* = 1."""
+        length, modulus, support = self.thickness, self.contact_modulus, self.support
+        sublayers = tuple(
+            one.replace(thickness=one.thickness / length, youngs_modulus=one.youngs_modulus / modulus)
+            for one in self.sublayers
+        )
+        base = support.scaled(modulus) if isinstance(support, ElasticBase) else support
+        return self.replace(sublayers=sublayers, support=base)
+
+    def stretched(self, factor: float) -> Self:
+        """The same stack with every sublayer so many times as thick."""
+        return self.replace(sublayers=tuple(one.replace(thickness=one.thickness * factor) for one in self.sublayers))

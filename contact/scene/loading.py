@@ -7,10 +7,13 @@ from typing import Annotated, ClassVar, Literal, TypeAlias
 from pydantic import Field, model_validator
 
 from contact.records.record import Record, record
-from contact.records.validation import FloatArray, PositiveLength, Vector, finite_vector, increasing_vector, positive
+from contact.records.validation import FloatArray, PositiveLength, Vector, positive, vector
 
 Controlled: TypeAlias = Literal["displacement", "force", "machine"]
 """What a detachment prescribes: depth, force, or the displacement of a machine that gives way."""
+
+
+Instants: TypeAlias = Annotated[Vector, *vector("give instants in seconds that increase", "s", increasing=True)]
 
 
 class Loading(Record):
@@ -27,7 +30,7 @@ class ContactRadii(Loading):
         values: a [m], positive and increasing, shape (n,).
     """
 
-    values: Annotated[Vector, *increasing_vector("give contact radii in metres that increase", "m", above=0.0)] = Field(
+    values: Annotated[Vector, *vector("give contact radii in metres", "m", above=0.0, increasing=True)] = Field(
         kw_only=False
     )
 
@@ -44,7 +47,7 @@ class IndentationDepths(Loading):
         values: delta [m], shape (n,); negative only with adhesion.
     """
 
-    values: Annotated[Vector, *finite_vector("give indentation depths in metres", "m")] = Field(kw_only=False)
+    values: Annotated[Vector, *vector("give indentation depths in metres", "m")] = Field(kw_only=False)
 
 
 @record
@@ -55,7 +58,7 @@ class NormalForces(Loading):
         values: F_N [N], pressing positive, shape (n,); negative only with adhesion.
     """
 
-    values: Annotated[Vector, *finite_vector("give normal forces in newtons", "N")] = Field(kw_only=False)
+    values: Annotated[Vector, *vector("give normal forces in newtons", "N")] = Field(kw_only=False)
 
 
 @record
@@ -115,8 +118,8 @@ class DepthHistory(Loading):
         depth: delta [m] at these instants, shape (n,).
     """
 
-    time: Annotated[Vector, *increasing_vector("give instants in seconds that increase", "s")]
-    depth: Annotated[Vector, *finite_vector("give one depth in metres for each instant", "m")]
+    time: Instants
+    depth: Annotated[Vector, *vector("give one depth in metres for each instant", "m")]
 
     @model_validator(mode="after")
     def _check(self) -> DepthHistory:
@@ -133,8 +136,8 @@ class ForceHistory(Loading):
         force: F_N [N] at these instants, shape (n,).
     """
 
-    time: Annotated[Vector, *increasing_vector("give instants in seconds that increase", "s")]
-    force: Annotated[Vector, *finite_vector("give one force in newtons for each instant", "N")]
+    time: Instants
+    force: Annotated[Vector, *vector("give one force in newtons for each instant", "N")]
 
     @model_validator(mode="after")
     def _check(self) -> ForceHistory:

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
-from pydantic import model_validator
+from pydantic import ValidationInfo, model_validator
 
 from contact.records.errors import InvalidInput, refused, shown
 from contact.records.record import Record, record
@@ -22,12 +22,12 @@ from contact.records.units import in_si
 from contact.records.validation import (
     FloatArray,
     PositiveLength,
+    Reading,
     Vector,
-    finite_vector,
     in_range,
-    increasing_vector,
-    not_negative_or_none,
     positive,
+    read_number,
+    vector,
 )
 
 if TYPE_CHECKING:
@@ -35,20 +35,6 @@ if TYPE_CHECKING:
 
 # Half angles beyond these are no indenter: in radians, a needle and a plane.
 _NARROWEST, _WIDEST = 1e-3, math.pi / 2 - 1e-6
-_SLOPED: dict[str, Any] = {
-    "properties": {"half_angle": {"type": "string", "description": 'from the axis to the flank, as in "35 deg"'}},
-    "replaced": ("slope",),
-    "oneOf": [{"required": ["slope"]}, {"required": ["half_angle"]}],
-}
-_FROM_FILE: Mapping[str, Any] = {
-    "properties": {
-        "file": {"type": "string", "description": "CSV: radii, heights"},
-        "unit": {"type": "string", "description": "of both columns, where the file names none"},
-        "noise": {"type": ["number", "string"], "description": "of the heights, smoothed away"},
-    },
-    "replaced": ("radii", "heights"),
-    "oneOf": [{"required": ["radii", "heights"]}, {"required": ["file"]}],
-}
 PYRAMID_NOTE = (
     "the pyramid is solved as the cone of equal cross-sections; on a half-space the force of the square pyramid is "
     "4 % larger (0.7453 in place of 0.7183 E* tan(alpha) d^2, Bilodeau 1992)"
@@ -108,31 +94,43 @@ class Profile(Record, ABC):
             """Radius [m] of the flat end; zero for a profile that starts in a point."""
 
 
-def sloped(given: Any) -> Any:
-    """A table with slope = 1/tan(half angle), the angle measured from the axis to the flank.
+_Slope = Annotated[float, *positive("the slope is the tangent of the angle between flank and surface")]
 
-    A square pyramid with the half angle alpha of its faces has at each height the cross-section 4 z^2 tan(alpha)^2; the
-    cone of equal cross-sections, pi z^2/slope^2, has the slope sqrt(pi)/2/tan(alpha).
-    """
-    if not isinstance(given, Mapping) or not ("half_angle" in given or given.get("kind") == "pyramid"):
-        return given
-    if "slope" in given:
-        raise refused(f"slope = {shown(given['slope'])}: follows from half_angle; drop one of the two")
-    written = given.get("half_angle")
-    try:
-        angle = in_si(written, "rad")
-    except InvalidInput as error:
-        raise refused(f"half_angle = {shown(written)}: {error}") from None
-    if written is None:
-        raise refused('half_angle is missing; a pyramid needs it, as in half_angle = "35 deg"')
-    if angle is written:
-        wrong = "must be an angle with its unit, from the axis to the flank"
-        raise refused(f'half_angle = {shown(written)}: {wrong}; write half_angle = "35 deg"')
-    if not _NARROWEST <= angle <= _WIDEST:
-        raise refused(f"half_angle = {shown(written)}: must lie between 0 and 90 degrees")
-    rest = {name: value for name, value in given.items() if name not in ("half_angle", "kind")}
-    is_pyramid = given.get("kind") == "pyramid"
-    return rest | {"slope": (math.sqrt(math.pi) / 2 if is_pyramid else 1.0) / math.tan(angle)}
+
+class Sloped(Profile):
+    """A profile with a straight flank; files may give the half angle, from axis to flank, instead of the slope."""
+
+    SHORTHANDS: ClassVar[Mapping[str, Any]] = {
+        "half_angle": {"type": "string", "description": 'from the axis to the flank, as in "35 deg"'}
+    }
+    REPLACED: ClassVar[Mapping[str, str]] = {"slope": "half_angle"}
+
+    @model_validator(mode="before")
+    @classmethod
+    def _half_angle(cls, given: Any) -> Any:
+        """A table with slope = 1/tan(half angle).
+
+        A square pyramid with the half angle alpha of its faces has at each height the cross-section 4 z^2 tan(alpha)^2;
+        the cone of equal cross-sections, pi z^2/slope^2, has the slope sqrt(pi)/2/tan(alpha).
+        """
+        if not isinstance(given, Mapping) or not ("half_angle" in given or given.get("kind") == "pyramid"):
+            return given
+        if "slope" in given:
+            raise refused(f"slope = {shown(given['slope'])}: follows from half_angle; drop one of the two")
+        if (written := given.get("half_angle")) is None:
+            raise refused('half_angle is missing; a pyramid needs it, as in half_angle = "35 deg"')
+        try:
+            angle = in_si(written, "rad")
+        except InvalidInput as error:
+            raise refused(f"half_angle = {shown(written)}: {error}") from None
+        if angle is written:
+            wrong = 'must be an angle with its unit, from the axis to the flank, as in "35 deg"'
+            raise refused(f"half_angle = {shown(written)}: {wrong}")
+        if not _NARROWEST <= angle <= _WIDEST:
+            raise refused(f"half_angle = {shown(written)}: must lie between 0 and 90 degrees")
+        rest = {name: value for name, value in given.items() if name not in ("half_angle", "kind")}
+        factor = math.sqrt(math.pi) / 2 if given.get("kind") == "pyramid" else 1.0
+        return rest | {"slope": factor / math.tan(angle)}
 
 
 class Pointed(Profile):
@@ -219,24 +217,16 @@ class Sphere(Pointed):
 
 
 @record
-class Cone(Pointed):
+class Cone(Sloped, Pointed):
     """f(r) = slope r.
 
     Attributes:
         slope: tan(theta) [-], theta the angle between the cone's flank and the surface.
     """
 
-    WRITTEN: ClassVar[Mapping[str, Any]] = _SLOPED | {
-        "properties": _SLOPED["properties"] | {"kind": {"enum": ["cone", "pyramid"]}}
-    }
+    SHORTHANDS: ClassVar[Mapping[str, Any]] = {**Sloped.SHORTHANDS, "kind": {"enum": ["cone", "pyramid"]}}
 
-    slope: Annotated[float, *positive("the slope is the tangent of the angle between flank and surface")]
-
-    @model_validator(mode="before")
-    @classmethod
-    def _half_angle(cls, given: Any) -> Any:
-        """In files an angle may stand for the slope."""
-        return sloped(given)
+    slope: _Slope
 
     def height(self, radius: ArrayLike) -> FloatArray:
         return self.slope * np.asarray(radius, dtype=np.float64)
@@ -246,7 +236,7 @@ class Cone(Pointed):
 
 
 @record
-class Spheroconical(Pointed):
+class Spheroconical(Sloped, Pointed):
     """A cone whose apex is a sphere that it touches at b = R sin(theta): f is the sphere's up to b, then straight.
 
     Attributes:
@@ -254,16 +244,8 @@ class Spheroconical(Pointed):
         slope: tan(theta) [-], theta the angle between the cone's flank and the surface.
     """
 
-    WRITTEN: ClassVar[Mapping[str, Any]] = _SLOPED
-
     radius: PositiveLength
-    slope: Annotated[float, *positive("the slope is the tangent of the angle between flank and surface")]
-
-    @model_validator(mode="before")
-    @classmethod
-    def _half_angle(cls, given: Any) -> Any:
-        """In files an angle may stand for the slope."""
-        return sloped(given)
+    slope: _Slope
 
     def height(self, radius: ArrayLike) -> FloatArray:
         r, b = np.asarray(radius, dtype=np.float64), self.tangent_radius
@@ -288,7 +270,7 @@ class Spheroconical(Pointed):
 
 
 @record
-class TruncatedCone(Profile):
+class TruncatedCone(Sloped):
     """Eq. (35): flat up to b, then f(r) = slope (r - b).
 
     Attributes:
@@ -296,16 +278,8 @@ class TruncatedCone(Profile):
         slope: tan(theta) [-].
     """
 
-    WRITTEN: ClassVar[Mapping[str, Any]] = _SLOPED
-
     flat_radius: PositiveLength
-    slope: Annotated[float, *positive("the slope is the tangent of the angle between flank and surface")]
-
-    @model_validator(mode="before")
-    @classmethod
-    def _half_angle(cls, given: Any) -> Any:
-        """In files an angle may stand for the slope."""
-        return sloped(given)
+    slope: _Slope
 
     def height(self, radius: ArrayLike) -> FloatArray:
         return self.slope * np.maximum(np.asarray(radius, dtype=np.float64) - self.flat_radius, 0.0)
@@ -376,32 +350,35 @@ class Tabulated(Pointed):
         smoothing: Largest change [m] of a height by `smoothed`; none for a table as it was measured.
     """
 
-    WRITTEN: ClassVar[Mapping[str, Any]] = _FROM_FILE
+    SHORTHANDS: ClassVar[Mapping[str, Any]] = {
+        "file": {"type": "string", "description": "CSV: radii, heights"},
+        "unit": {"type": "string", "description": "of both columns, where the file names none"},
+        "noise": {"type": ["number", "string"], "description": "of the heights, smoothed away"},
+    }
+    REPLACED: ClassVar[Mapping[str, str]] = {"radii": "file", "heights": "file"}
 
-    radii: Annotated[Vector, *increasing_vector("give radii in metres that start at 0 and increase", "m", least=0.0)]
-    heights: Annotated[Vector, *finite_vector("give heights in metres, one for each radius", "m")]
-    smoothing: Annotated[float | None, *not_negative_or_none("leave it to Tabulated.smoothed", "m")] = None
+    radii: Annotated[Vector, *vector("give radii in metres from 0 on", "m", least=0.0, increasing=True)]
+    heights: Annotated[Vector, *vector("give heights in metres, one for each radius", "m")]
+    smoothing: Annotated[float, *in_range(0.0, math.inf, "leave it to Tabulated.smoothed", "m")] | None = None
 
     @model_validator(mode="wrap")
     @classmethod
-    def _from_file(cls, given: Any, handler: Any) -> Any:
+    def _from_file(cls, given: Any, handler: Any, info: ValidationInfo) -> Any:
         """In files: the first two columns of a CSV file, and the noise that is smoothed away."""
         if not isinstance(given, Mapping):
             return handler(given)
         table = dict(given)
         noise = table.pop("noise", None)
         if "file" in table:
-            twice = [
-                f"{name}: stands in the file already; drop one of the two"
-                for name in ("radii", "heights")
-                if name in table
-            ]
-            if twice:
-                raise refused(*twice)
+            if twice := table.keys() & {"radii", "heights"}:
+                raise refused(*(f"{name}: stands in the file already; drop one of the two" for name in sorted(twice)))
             source = {name: table.pop(name) for name in ("file", "unit") if name in table}
             table |= {name: source | {"column": i} for i, name in enumerate(("radii", "heights"))}
         made = handler(table)
-        return made if noise is None else made.smoothed(noise=in_si(noise, "m"))
+        if noise is None:
+            return made
+        reading = info.context if isinstance(info.context, Reading) else None
+        return made.smoothed(noise=read_number(noise, "give the noise of the heights in m", "m", reading))
 
     @model_validator(mode="after")
     def _check(self) -> Tabulated:

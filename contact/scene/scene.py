@@ -12,10 +12,8 @@ from typing_extensions import TypeVar
 
 from contact.records.record import OneOf, Record, record
 from contact.scene.effects import EFFECTS, Adhesion, Effect, Friction, Viscoelasticity
-from contact.scene.elastic_layer import ElasticLayer
 from contact.scene.graded_layer import GradedLayer
-from contact.scene.layer import Layer
-from contact.scene.layer_stack import LayerStack
+from contact.scene.layer import ElasticLayer, Layer, LayerStack
 from contact.scene.loading import LOADINGS, ContactRadii, Detachment, IndentationDepths, Loading, NormalForces
 from contact.scene.profiles import PROFILES, Cone, FlatPunch, Profile
 

@@ -1,26 +1,26 @@
-"""Force curves of indentation tests: one master curve a scene, fits of one curve, and of whole maps.
+"""Force curves of indentation tests: one force curve per scene, fits of one curve, and of whole maps.
 
 Enters: a scene, and measured depths and forces. Leaves: moduli with intervals, and what formulas in use would say.
-Read `force_curve` first, then `fit`.
+Read `force_curve` first, then `contact_point` and `fit`.
 """
 
 from mdr.curves.fit import Limit, fit_curve
 from mdr.curves.force_curve import ForceCurve
 from mdr.curves.formulas import Formula, formulas_for
-from mdr.curves.map_fit import MapFit, fit_map
+from mdr.curves.histories import fit_history
+from mdr.curves.maps import MapFit, fit_map
 from mdr.curves.reading import read_curve, read_map
 from mdr.curves.result import CurveFit, FormulaFit
-from mdr.curves.search import CurveShape
 
 __all__ = [
     "CurveFit",
-    "CurveShape",
     "ForceCurve",
     "Formula",
     "FormulaFit",
     "Limit",
     "MapFit",
     "fit_curve",
+    "fit_history",
     "fit_map",
     "formulas_for",
     "read_curve",

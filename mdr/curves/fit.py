@@ -1,7 +1,7 @@
 """Young's modulus from one force curve, with intervals, warnings, and what formulas in use would have said.
 
-Model: F = E phi(d - d0) + f0 + k (d - d0), with phi the force curve of the scene; where one modulus of several is
-fitted, the force curve of the scene with that modulus.
+Model: F = E phi(d - d0) + f0 + k (d - d0), with phi the force curve of the scene, of one family of shapes where more
+than E is fitted (`families`).
 """
 
 from __future__ import annotations
@@ -13,21 +13,37 @@ from typing import Final, Literal
 
 import numpy as np
 
-from contact import Adhesion, InvalidInput, NotConvergedError, Scene, UnsupportedSceneError
+from contact import Adhesion, InvalidInput, NotConvergedError, Scene
+from contact.answer.small_strains import depth_note
 from contact.records.validation import FloatArray
-from mdr.curves.adhering import fit_adhesive
+from mdr.curves.adhesion import Adhering, adhesive_error, fit_adhesive, points_beyond, tabor_sentence
+from mdr.curves.contact_point import (
+    FURTHEST,
+    Data,
+    Fitted,
+    least_squares,
+    modulus_and_residual,
+    rough_indentation,
+    trial_indentations,
+)
+from mdr.curves.families import (
+    BACKGROUND,
+    Family,
+    Plain,
+    Solved,
+    changed,
+    check_parameters,
+    elastic_family,
+)
+from mdr.curves.force_curve import ForceCurve, curve_to, longest_curve
 from mdr.curves.formulas import formulas_for
-from mdr.curves.models import BACKGROUND, Model, check_parameters, curve_to, is_modulus, linearised, modulus_of
-from mdr.curves.result import CurveFit, FormulaFit, check_contact, stated
-from mdr.curves.search import FURTHEST, CurveShape, Values, best_point, least_squares, rough_fit
+from mdr.curves.result import CurveFit, FormulaFit, confounded, spread_of
 
 DEFAULT_PARAMETERS: Final = ("youngs_modulus", "contact_point", "baseline", "tilt")
-# A fitted thickness stays within this factor of the scene's: beyond it the scene is another one.
-_THICKNESS_FACTOR: Final = 10.0
-# First guesses of a named modulus over the scene's: one is within a factor of 1.7 of any from 1/200 to 200 times it.
-_FACTORS: Final = tuple(3.0**k for k in range(-5, 6))
-# Halvings of the reach until an indenter is long enough for it: from a travel of a thousand times its length.
-_HALVINGS: Final = 20
+# Relative step of central differences by u. Errors grow as its square; at a tenth of it rounding shows.
+_STEP: Final = 1e-3
+# Points in contact beside the parameters of the contact. With one less the interval of E may be ten times too narrow.
+_SPARE_POINTS: Final = 2
 
 
 @dataclass(frozen=True)
@@ -62,7 +78,7 @@ def fit_curve(
             of any length may be among them.
         force: Measured forces [N], shape (n,).
         parameters: "youngs_modulus", or of a stack "layer[0].youngs_modulus", "base.youngs_modulus"; and any of
-            "contact_point", "baseline", "tilt", "thickness", "work_of_adhesion".
+            "contact_point", "baseline", "tilt", and one of "thickness", "work_of_adhesion".
         confidence: Of the intervals.
         limit: Points up to a depth, a force or a fraction of the largest force are fitted; by default all.
         formulas: Whether formulas in use are fitted too.
@@ -70,134 +86,23 @@ def fit_curve(
     Raises:
         InvalidInput: For data that are no curve or show no contact, parameters that the scene does not have, and
             effects that a fit would leave out.
-        NotConvergedError: If the least squares do not converge, or end in several places.
+        NotConvergedError: If the least squares end in several places, or at no value.
     """
     check_parameters(scene, parameters)
-    d, f = _checked(depth, force, parameters)
-    found = _fitted(scene, d, f, tuple(parameters), confidence)
+    data = _checked(depth, force, parameters)
+    found = _fitted(scene, data, confidence)
     if limit is not None:
-        found = _limited(found, limit, d, f)
-    bare = [name for name in parameters if name in ("youngs_modulus", *BACKGROUND)]
+        found = _limited(found, limit, data)
     if not formulas or scene.effects or "youngs_modulus" not in parameters:
         return found
-    return replace(found, formulas=_by_formulas(found, bare))
-
-
-def fit_elastic(scene: Scene, d: FloatArray, f: FloatArray, parameters: Sequence[str]) -> tuple[Model, Values, bool]:
-    """The model and values of least squares of a curve without adhesion, and whether the steps have converged.
-
-    Raises:
-        InvalidInput: If the indenter is shorter than the depth of indentation.
-    """
-    rough, deepest = check_contact(d, f, parameters), float(d.max())
-    reach, tip_ends = _reach(scene, 2.0 ** math.ceil(math.log2(4 * rough)))
-    while True:
-        model = Model(scene, d, parameters, reach)
-        lowest = max(deepest - reach, deepest - FURTHEST * float(np.ptp(d)))
-        ends = []
-        for start in _starts(model, f, min(rough, reach)):
-            bounds = _bounds(start, lowest, deepest)
-            ends.append(least_squares(model.linearised, start, f, bounds))
-        values, _, converged = min(ends, key=lambda end: end[1])
-        if model.family is not None:
-            model.family = None
-            values, _, converged = least_squares(model.linearised, values, f, _bounds(values, lowest, deepest))
-        shallow = values.get("contact_point", 0.0) > lowest + 1e-6 * reach
-        if shallow or lowest > deepest - reach:
-            return model, values, converged
-        if tip_ends:
-            curve_to(scene, 2 * reach)
-        rough, reach = reach, 2 * reach
-
-
-def _reach(scene: Scene, reach: float) -> tuple[float, bool]:
-    """The reach [m], halved until the indenter is that long, and whether it was."""
-    for halvings in range(60):
-        try:
-            curve_to(scene, reach)
-        except (InvalidInput, UnsupportedSceneError):
-            if halvings == _HALVINGS:
-                raise
-            reach /= 2
-        else:
-            return reach, halvings > 0
-    raise AssertionError
-
-
-def _starts(model: Model, force: FloatArray, rough: float) -> list[Values]:
-    """First values: the best trial contact point of the curve's own shape, for named moduli at each of many factors."""
-    scene, names, starts = model.scene, model.parameters, list[Values]()
-    named = [name for name in names if "." in name]
-    if len(named) == 1:
-        model.tabulate(named[0], [factor * modulus_of(scene, named[0]) for factor in _FACTORS])
-    for factor in _FACTORS if named else (1.0,):
-        guess = {name: factor * modulus_of(scene, name) for name in named}
-        curve = model.curve(guess)
-        modulus = curve.scene.layer.surface.youngs_modulus if named else None
-        best = best_point(curve, model.depth, force, names, rough=rough, reach=model.reach, modulus=modulus) | guess
-        best["thickness"] = scene.layer.thickness
-        if not named:
-            best["youngs_modulus"] = abs(best["youngs_modulus"]) or 1.0
-        starts.append({name: best[name] for name in names})
-    return starts
-
-
-def _bounds(start: Values, lowest: float, deepest: float) -> dict[str, tuple[float, float]]:
-    """Least and largest value of each parameter that has them."""
-    bounds = {"contact_point": (lowest, deepest)}
-    for name, value in start.items():
-        if is_modulus(name):
-            bounds[name] = (1e-6 * value, 1e6 * value) if "." not in name else (1e-3 * value, 1e3 * value)
-        elif name == "thickness":
-            bounds[name] = (value / _THICKNESS_FACTOR, value * _THICKNESS_FACTOR)
-    return bounds
-
-
-def _fitted(scene: Scene, d: FloatArray, f: FloatArray, parameters: tuple[str, ...], confidence: float) -> CurveFit:
-    solve = fit_elastic if scene.effect(Adhesion) is None else fit_adhesive
-    model, values, converged = solve(scene, d, f, parameters)
-    if not converged:
-        raise NotConvergedError("the fit did not converge; fit fewer parameters, or a shorter range of the curve")
-    return stated(model, values, f, confidence)
-
-
-def _limited(found: CurveFit, limit: Limit, d: FloatArray, f: FloatArray) -> CurveFit:
-    """The fit up to the limit; twice, for the first one finds the contact point from all points."""
-    names, largest = tuple(found.values), math.nan
-    for _ in range(2):
-        point = found.values.get("contact_point", 0.0)
-        deepest = point + limit.value
-        if limit.kind != "depth":
-            order = np.argsort(found.depth)
-            contact = np.maximum.accumulate((found.fitted - found.background)[order])
-            largest = contact[-1] if math.isnan(largest) else largest
-            share = limit.value if limit.kind == "force" else limit.value * largest
-            deepest = float(np.interp(share, contact, found.depth[order]))
-        kept = d <= deepest
-        found = _fitted(found.scene, *_checked(d[kept], f[kept], names), names, found.confidence)
-    return found
-
-
-def _by_formulas(found: CurveFit, parameters: Sequence[str]) -> tuple[FormulaFit, ...]:
-    return tuple(
-        FormulaFit(formula=formula, youngs_modulus=other, bias=other / found.youngs_modulus - 1.0)
-        for formula in formulas_for(found.scene)
-        for other in [_modulus_by(formula, found.depth, found.force, parameters)]
-    )
-
-
-def _modulus_by(shape: CurveShape, d: FloatArray, f: FloatArray, parameters: Sequence[str]) -> float:
-    """E [Pa] by least squares with the same parameters as the curve itself."""
-    start = best_point(shape, d, f, parameters, rough=rough_fit(d, f, parameters)[0], reach=math.inf)
-    start = {name: start[name] for name in parameters}
-    bounds = {"contact_point": (float(d.max()) - FURTHEST * float(np.ptp(d)), float(d.max()))}
-    values, _, _ = least_squares(lambda values: linearised(shape, d, values), start, f, bounds)
-    return values["youngs_modulus"]
+    names = [name for name in parameters if name in ("youngs_modulus", *BACKGROUND)]
+    bare = Data.of(found.depth, found.force, names)
+    return replace(found, formulas=_by_formulas(scene, bare, found.youngs_modulus))
 
 
 def _checked(
     depth: Sequence[float] | FloatArray, force: Sequence[float] | FloatArray, parameters: Sequence[str]
-) -> tuple[FloatArray, FloatArray]:
+) -> Data:
     d, f = (np.asarray(values, dtype=np.float64) for values in (depth, force))
     if d.ndim != 1 or d.shape != f.shape or d.size <= len(parameters):
         raise InvalidInput(
@@ -207,4 +112,188 @@ def _checked(
     fixed = "contact_point" not in parameters
     if not (np.isfinite(d).all() and np.isfinite(f).all() and np.ptp(d) > 0.0) or (fixed and not d.max() > 0.0):
         raise InvalidInput("a curve needs finite numbers, and depths that grow beyond 0; pressing is positive")
-    return d, f
+    return Data.of(d, f, parameters)
+
+
+def _fitted(scene: Scene, data: Data, confidence: float) -> CurveFit:
+    fitted = _fit_elastic(scene, data) if scene.effect(Adhesion) is None else fit_adhesive(scene, data)
+    return _stated(scene, data, fitted, confidence)
+
+
+def _fit_elastic(scene: Scene, data: Data) -> Fitted:
+    """Values of least squares without adhesion; the curve is solved deeper until it reaches the contact point."""
+    rough = rough_indentation(data)
+    wanted = 2.0 ** math.ceil(math.log2(4 * rough))
+    reach = longest_curve(scene, wanted).largest_depth
+    while True:
+        best = _search(data, elastic_family(scene, data.names, reach), min(rough, reach), reach)
+        if isinstance(best.family, Solved):
+            value = best.family.value(best.u, 1.0)[0]
+            _check_inside(best.family, best.u, value)
+            near = elastic_family(scene, data.names, reach, value)
+            best = _search(data, near, best.indentation, reach)
+        if best.indentation <= reach * (1 + 1e-9):
+            return best
+        if best.indentation > FURTHEST * float(np.ptp(data.depth)) and data.has_free_point:
+            raise InvalidInput(
+                "no contact point within half a travel before the first depth: the curve is almost straight; measure "
+                "a baseline before contact, or fit without tilt (--with contact_point)"
+            )
+        if reach < wanted:
+            curve_to(scene, 2 * reach)  # says in words why the indenter is not that long
+        rough, reach = best.indentation, 2.0 ** math.ceil(math.log2(1.5 * best.indentation))
+
+
+def _search(data: Data, family: Family, rough: float, reach: float) -> Fitted:
+    points = trial_indentations(data, rough, reach)
+    return least_squares(data, family, dict.fromkeys(family.starts, points))[0]
+
+
+def _check_inside(family: Solved, u: float, value: float) -> None:
+    """Refuse values at the ends of what is tried.
+
+    Raises:
+        NotConvergedError: With the remedy.
+    """
+    if not family.starts[0] < u < family.starts[-1]:
+        raise NotConvergedError(
+            f"{family.varied}: no value within a factor of {math.exp(family.starts[-1] - family.starts[0]) ** 0.5:.0f} "
+            f"of the scene's fits best (the fit ends at {value:.3g}); the curve does not determine it, or the scene "
+            "is another one"
+        )
+
+
+def _stated(scene: Scene, data: Data, fitted: Fitted, confidence: float) -> CurveFit:
+    """Covariance, intervals, band and warnings of the values of least squares."""
+    family, u = fitted.family, fitted.u
+    modulus, _ = modulus_and_residual(data, family, fitted.indentation, u)
+    point = data.deepest - fitted.indentation
+    pressed = family.attached if isinstance(family, Adhering) else data.depth > point
+    contact_names = [name for name in data.names if name not in ("baseline", "tilt")]
+    if int(pressed.sum()) < len(contact_names) + _SPARE_POINTS or not modulus > 0.0:
+        raise InvalidInput(
+            f"{int(pressed.sum())} points in contact, from {point:.4g} m on: a fit of {' and '.join(contact_names)} "
+            f"needs {len(contact_names) + _SPARE_POINTS}; measure more points in contact"
+        )
+    shifted = data.depth - point
+    phi, slope = family.at(u).with_slope(shifted)
+    line = _background(data, data.force - modulus * phi, shifted)
+    varied, by_u, by_modulus = family.value(u, modulus)
+    known = line | {"contact_point": point, family.varied: varied}
+    values = {name: known.get(name, modulus) for name in data.names}
+    derivative = -(modulus * slope + line.get("tilt", 0.0))
+    columns = {"contact_point": derivative, "baseline": np.ones_like(shifted), "tilt": shifted}
+    columns |= {family.varied: _by_u(family, u, shifted, modulus)} if family.varied else {}
+    jacobian = np.stack([columns.get(name, phi) for name in values], axis=1)
+    fitted_force = modulus * phi + line.get("baseline", 0.0) + line.get("tilt", 0.0) * shifted
+    order = np.argsort(data.depth, kind="stable")
+    spread = spread_of(
+        jacobian, (data.force - fitted_force)[order], pressed[order], float(np.ptp(data.force)), confidence
+    )
+    changes = _changes(values, family, by_u, by_modulus)
+    covariance = changes @ spread.covariance @ changes.T
+    errors = dict(zip(values, np.sqrt(np.maximum(np.diag(covariance), 0.0)).tolist(), strict=True))
+    if "work_of_adhesion" in values:
+        raw = float(spread.covariance[list(values).index("work_of_adhesion")][list(values).index("work_of_adhesion")])
+        errors["work_of_adhesion"] = math.hypot(errors["work_of_adhesion"], modulus * raw)  # w = E u^2 near u = 0
+    band = spread.quantile * np.sqrt(np.maximum(np.sum((jacobian @ spread.covariance) * jacobian, axis=1), 0.0))
+    warnings, notes = _words(scene, data, fitted, values, modulus)
+    return CurveFit(
+        scene=scene,
+        depth=data.depth,
+        force=data.force,
+        fitted=fitted_force,
+        values=values,
+        standard_error=errors,
+        covariance=covariance,
+        quantile=spread.quantile,
+        confidence=confidence,
+        band=band,
+        numerical_error=_numerical_error(fitted, shifted),
+        warnings=(*warnings, *spread.warnings, *confounded(values, covariance, spread.quantile)),
+        notes=notes,
+        per_modulus=phi,
+    )
+
+
+def _background(data: Data, remaining: FloatArray, shifted: FloatArray) -> dict[str, float]:
+    """Baseline [N] at the contact point, and tilt [N/m]."""
+    columns = {"baseline": np.ones_like(shifted), "tilt": shifted}
+    columns = {name: column for name, column in columns.items() if name in data.names}
+    if not columns:
+        return {}
+    matrix = np.stack(list(columns.values()), axis=1)
+    length = np.linalg.norm(matrix, axis=0)
+    solved = np.linalg.lstsq(matrix / length, remaining, rcond=None)[0] / length
+    return dict(zip(columns, solved.tolist(), strict=True))
+
+
+def _by_u(family: Family, u: float, shifted: FloatArray, modulus: float) -> FloatArray:
+    """Derivative of the force by u, shape (n,), by central differences."""
+    step = _STEP * (max(abs(u), abs(family.starts[len(family.starts) // 2])) if family.varied[0] == "w" else 1.0)
+
+    def force(at: float) -> FloatArray:
+        factor = modulus if family.is_scaled else family.factor(at)
+        return factor * family.at(at).extended(shifted)
+
+    return (force(u + step) - force(u - step)) / (2 * step)
+
+
+def _changes(values: dict[str, float], family: Family, by_u: float, by_modulus: float) -> FloatArray:
+    """Derivatives of the parameters by those of least squares (E and u), shape (p, p)."""
+    matrix, names = np.eye(len(values)), list(values)
+    if family.varied:
+        row = names.index(family.varied)
+        matrix[row, row] = by_u
+        if family.is_scaled:
+            matrix[row, names.index("youngs_modulus")] = by_modulus
+    return matrix
+
+
+def _numerical_error(fitted: Fitted, shifted: FloatArray) -> float:
+    shape = fitted.family.at(fitted.u)
+    if isinstance(fitted.family, Adhering):
+        return adhesive_error(fitted.family, fitted.u, shifted)
+    return shape.error if isinstance(shape, ForceCurve) else 0.0
+
+
+def _words(
+    scene: Scene, data: Data, fitted: Fitted, values: dict[str, float], modulus: float
+) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Warnings on depth and pull-off, and notes."""
+    family = fitted.family
+    as_fitted = changed(scene, family.varied, values[family.varied]) if isinstance(family, Solved) else scene
+    warnings, notes = [depth_note(as_fitted, fitted.indentation)], []
+    effect = scene.effect(Adhesion)
+    if effect is not None:
+        beyond = points_beyond(data, fitted)
+        if beyond > 1:
+            warnings.append(f"{beyond} points in contact are beyond the pull-off of the fit; see the residuals")
+        notes.append(tabor_sentence(scene, modulus, values.get("work_of_adhesion", effect.work_of_adhesion)))
+    return tuple(filter(None, warnings)), tuple(filter(None, notes))
+
+
+def _limited(found: CurveFit, limit: Limit, data: Data) -> CurveFit:
+    """The fit up to the limit; twice, for the first one finds the contact point from all points."""
+    largest = math.nan
+    for _ in range(2):
+        deepest = found.values.get("contact_point", 0.0) + limit.value
+        if limit.kind != "depth":
+            order = np.argsort(found.depth)
+            contact = np.maximum.accumulate((found.fitted - found.background)[order])
+            largest = contact[-1] if math.isnan(largest) else largest
+            share = limit.value if limit.kind == "force" else limit.value * largest
+            deepest = float(np.interp(share, contact, found.depth[order]))
+        kept = data.depth <= deepest
+        found = _fitted(found.scene, _checked(data.depth[kept], data.force[kept], data.names), found.confidence)
+    return found
+
+
+def _by_formulas(scene: Scene, data: Data, own: float) -> tuple[FormulaFit, ...]:
+    """Each formula fitted to the same curve with the same background."""
+    found, rough = [], rough_indentation(data)
+    for formula in formulas_for(scene):
+        best = _search(data, Plain(formula), rough, math.inf)
+        modulus, _ = modulus_and_residual(data, best.family, best.indentation, best.u)
+        found.append(FormulaFit(formula=formula, youngs_modulus=modulus, bias=modulus / own - 1.0))
+    return tuple(found)

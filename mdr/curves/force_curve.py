@@ -1,7 +1,7 @@
-"""The master curve of a scene: force over modulus against depth, solved once and then evaluated at once.
+"""The force curve of a scene: force over modulus against depth, solved once and then interpolated.
 
 Without effects the force is linear in Young's modulus, F = E phi(d). Between solved depths ln(phi) is a cubic in ln(d)
-with the exact slopes d k_N / F at its ends, for dF/dd = k_N. Below the first depth phi goes on as a power of d.
+with the exact slopes d k_N / F, for dF/dd = k_N. Outside the solved depths phi continues as a power of d.
 """
 
 from __future__ import annotations
@@ -12,24 +12,27 @@ from functools import lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.interpolate import CubicHermiteSpline, CubicSpline
 
-from contact import ContactPath, IndentationDepths, InvalidInput, Scene
+from contact import IndentationDepths, InvalidInput, Scene, UnsupportedSceneError
 from contact.records.validation import FloatArray
 from mdr.method import Mdr
 
-# Decades of depth between the first and the last solved one; below them phi has the power of its first two depths.
+# Decades of depth between the first and the last solved one. With half as many the power law below errs by 1e-3.
 _DECADES = 5.0
-# Solved depths: the error of the cubics falls with the fourth power of their number, and is stated, not assumed.
+# Solved depths. The error of the cubics falls with the fourth power of their number, and is stated.
 _DEPTHS = 257
-# Halving the spacing of cubics divides their error by 16; half of that is claimed.
+# Halving the spacing divides the error of cubics by 16. Half of that is claimed.
 _CLAIMED_GAIN = 8.0
+# Halvings of the reach until an indenter is long enough for it: from a travel of a million times its length.
+_HALVINGS = 20
 
 
 class ForceCurve:
-    """The force of an elastic scene as a function of depth, from one solution.
+    """The force of an elastic scene as a function of depth.
 
     Attributes:
-        scene: Layer, indenter, and a loading by depths whose largest is how far the curve reaches.
+        scene: Layer, indenter, and a loading by depths whose largest is the reach of the curve.
         error: Stated relative error of the force: of the method and of the interpolation.
     """
 
@@ -46,18 +49,26 @@ class ForceCurve:
             raise InvalidInput(f"loading.values = {deepest:g}: give the largest depth that the curve shall reach")
         self.scene = scene
         self._method = method or Mdr()
-        path = _solved(self._method, scene, deepest)
-        modulus = scene.layer.surface.youngs_modulus
-        self._log_depth = np.log(path.indentation_depth)
-        self._log_force = np.log(path.normal_force / modulus)
-        self._power = path.contact_stiffness * path.indentation_depth / path.normal_force
-        self._step = float(self._log_depth[-1] - self._log_depth[0]) / (path.indentation_depth.size - 1)
-        self.error = float(path.error_estimate["normal_force"].max()) + self._interpolation_error()
+        depths = deepest * np.logspace(-_DECADES, 0.0, _DEPTHS)
+        depths[-1] = deepest
+        path = self._method.solve(scene.replace(loading=IndentationDepths(depths), beyond_small_strains=True))
+        log_depth = np.log(path.indentation_depth)
+        log_force = np.log(path.normal_force / scene.layer.surface.youngs_modulus)
+        power = path.contact_stiffness * path.indentation_depth / path.normal_force
+        self._interpolate(log_depth, log_force, power)
+        coarse = CubicHermiteSpline(log_depth[::2], log_force[::2], power[::2])(log_depth[1::2])
+        interpolation = float(np.abs(coarse - log_force[1::2]).max()) / _CLAIMED_GAIN
+        self.error = float(path.error_estimate["normal_force"].max()) + interpolation
+
+    def _interpolate(self, log_depth: FloatArray, log_force: FloatArray, power: FloatArray) -> None:
+        self._nodes = log_depth, log_force, power
+        self._log_force = CubicHermiteSpline(log_depth, log_force, power)
+        self._power = self._log_force.derivative()
 
     @property
     def largest_depth(self) -> float:
-        """How far the curve reaches [m]."""
-        return float(np.exp(self._log_depth[-1]))
+        """Reach of the curve [m]."""
+        return float(np.exp(self._nodes[0][-1]))
 
     def __call__(self, depth: ArrayLike, youngs_modulus: float | None = None) -> FloatArray:
         """Force [N] at depths [m]: that of the scene's own modulus [Pa], or of another one at the surface."""
@@ -68,22 +79,56 @@ class ForceCurve:
         """phi = F/E [m^2], zero for depths of at most zero.
 
         Raises:
-            InvalidInput: If a depth is beyond the curve.
+            InvalidInput: If a depth is beyond the reach of the curve.
         """
-        return self._value_and_power(depth)[0]
+        d = np.asarray(depth, dtype=np.float64)
+        if d.size and not float(d.max()) <= self.largest_depth * (1 + 1e-12):
+            raise InvalidInput(
+                f"depth = {float(d.max()):g} m: this curve reaches {self.largest_depth:g} m; give the scene deeper ones"
+            )
+        return self.extended(d)
 
     def per_modulus_slope(self, depth: ArrayLike) -> FloatArray:
         """d(phi)/d(depth) = k_N/E [m]."""
         return self.with_slope(depth)[1]
 
-    def with_slope(self, depth: ArrayLike) -> tuple[FloatArray, FloatArray]:
-        """phi and its derivative together."""
-        force, power = self._value_and_power(depth)
+    def extended(self, depth: ArrayLike) -> FloatArray:
+        """phi [m^2], beyond the reach as a power of the depth."""
         d = np.asarray(depth, dtype=np.float64)
-        return force, np.divide(power * force, d, out=np.zeros_like(force), where=d > 0.0)
+        touches = d > 0.0
+        log_depth = np.log(d[touches])
+        inside = np.clip(log_depth, self._nodes[0][0], self._nodes[0][-1])
+        log_force = self._log_force(inside)
+        outside = inside != log_depth
+        if outside.any():
+            log_force[outside] += self._power(inside[outside]) * (log_depth - inside)[outside]
+        phi = np.zeros_like(d)
+        phi[touches] = np.exp(np.minimum(log_force, 700.0))
+        return phi
+
+    def with_slope(self, depth: ArrayLike) -> tuple[FloatArray, FloatArray]:
+        """phi [m^2] and its derivative [m]."""
+        d, phi = np.asarray(depth, dtype=np.float64), self.extended(depth)
+        touches = d > 0.0
+        slope = np.zeros_like(d)
+        inside = np.clip(np.log(d[touches]), self._nodes[0][0], self._nodes[0][-1])
+        slope[touches] = self._power(inside) * phi[touches] / d[touches]
+        return phi, slope
+
+    def depth_of(self, per_modulus: ArrayLike) -> FloatArray:
+        """Depth [m] at F/E [m^2], zero where that is at most zero."""
+        phi = np.asarray(per_modulus, dtype=np.float64)
+        log_depth, log_force, power = self._nodes
+        touches = phi > 0.0
+        wanted = np.log(phi[touches])
+        inside = np.clip(wanted, log_force[0], log_force[-1])
+        inverse = CubicHermiteSpline(log_force, log_depth, 1 / power)
+        depth = np.zeros_like(phi)
+        depth[touches] = np.exp(inverse(inside) + (wanted - inside) / np.interp(inside, log_force, power))
+        return depth
 
     def replaced(self, **changes: object) -> ForceCurve:
-        """The curve with other numbers of layer or indenter, as in `replaced(thickness=2e-6, radius=1e-5)`; kept.
+        """The curve with other numbers of layer or indenter, as in `replaced(thickness=2e-6, radius=1e-5)`; cached.
 
         Raises:
             InvalidInput: If neither has such a field.
@@ -96,66 +141,44 @@ class ForceCurve:
                 indenter = indenter.replace(**{name: value})
             else:
                 raise InvalidInput(f"{name}: neither the layer nor the indenter has it")
-        return _kept(self.scene.replace(layer=layer, indenter=indenter), self._method)
+        return _cached(self.scene.replace(layer=layer, indenter=indenter), self._method)
 
-    def _value_and_power(self, depth: ArrayLike) -> tuple[FloatArray, FloatArray]:
-        """phi and d ln(phi)/d ln(d)."""
-        d = np.asarray(depth, dtype=np.float64)
-        if d.size and not float(d.max()) <= self.largest_depth * (1 + 1e-12):
-            raise InvalidInput(
-                f"depth = {float(d.max()):g} m: this curve reaches {self.largest_depth:g} m; give the scene deeper ones"
-            )
-        touches = d > 0.0
-        log_depth = np.log(np.where(touches, d, 1.0))
-        log_force, power = _cubic(self._log_depth, self._log_force, self._power, log_depth, self._step)
-        return np.where(touches, np.exp(log_force), 0.0), power
 
-    def _interpolation_error(self) -> float:
-        """From every other depth: the largest relative error at those left out, less what halving the spacing gains."""
-        x, y, slope = self._log_depth[::2], self._log_force[::2], self._power[::2]
-        coarse = _cubic(x, y, slope, self._log_depth[1::2], 2 * self._step)[0]
-        return float(np.abs(coarse - self._log_force[1::2]).max()) / _CLAIMED_GAIN
+def curve_to(scene: Scene, reach: float) -> ForceCurve:
+    """The elastic curve of the scene up to a depth [m]; the last 64 are cached."""
+    return _cached(scene.replace(loading=IndentationDepths([reach]), effects=(), beyond_small_strains=True), Mdr())
+
+
+def longest_curve(scene: Scene, reach: float) -> ForceCurve:
+    """The elastic curve up to a depth [m], halved until the indenter is that long.
+
+    Raises:
+        InvalidInput, UnsupportedSceneError: If no reach is answered.
+    """
+    for halvings in range(_HALVINGS + 1):
+        try:
+            return curve_to(scene, reach / 2**halvings)
+        except (InvalidInput, UnsupportedSceneError):
+            if halvings == _HALVINGS:
+                raise
+    raise AssertionError
 
 
 def blended(numbers: Sequence[float], curves: Sequence[ForceCurve]) -> Callable[[float], ForceCurve]:
-    """Curves of one reach between those at the given numbers, by cubic splines of ln(F) over ln(number)."""
-    from scipy.interpolate import CubicSpline  # noqa: PLC0415  # loaded only where one modulus of several is fitted
-
-    parts = [np.stack([one._log_force + np.log(one.scene.layer.surface.youngs_modulus), one._power]) for one in curves]
-    spline = CubicSpline(np.log(numbers), np.stack(parts))
+    """Curves of one reach between those at the given numbers, by cubic splines of ln(F/E) over ln(number)."""
+    spline = CubicSpline(np.log(numbers), np.stack([np.stack(one._nodes[1:]) for one in curves]))
 
     def at(number: float) -> ForceCurve:
         """The curve at a number."""
         curve = copy.copy(curves[0])
-        log_force, curve._power = spline(np.log(number))
-        curve._log_force = log_force - np.log(curve.scene.layer.surface.youngs_modulus)
+        log_force, power = spline(np.log(number))
+        curve._interpolate(curves[0]._nodes[0], log_force, power)
+        curve.error = max(one.error for one in curves)
         return curve
 
     return at
 
 
-def _solved(method: Mdr, scene: Scene, deepest: float) -> ContactPath:
-    depths = deepest * np.logspace(-_DECADES, 0.0, _DEPTHS)
-    depths[-1] = deepest
-    return method.solve(scene.replace(loading=IndentationDepths(depths), beyond_small_strains=True))
-
-
-def _cubic(
-    x: FloatArray, y: FloatArray, slope: FloatArray, at: FloatArray, step: float
-) -> tuple[FloatArray, FloatArray]:
-    """Hermite cubics on evenly spaced x, values and slopes at `at`; linear beyond the ends."""
-    piece = np.clip(((at - x[0]) / step).astype(np.intp), 0, x.size - 2)
-    t = np.clip((at - x[piece]) / step, -np.inf, np.inf)
-    y0, y1, m0, m1 = y[piece], y[piece + 1], step * slope[piece], step * slope[piece + 1]
-    rise = y1 - y0
-    c, d = 3 * rise - 2 * m0 - m1, m0 + m1 - 2 * rise
-    before = t < 0.0
-    value = np.where(before, y0 + m0 * t, y0 + t * (m0 + t * (c + t * d)))
-    found_slope = np.where(before, m0, m0 + t * (2 * c + 3 * d * t)) / step
-    return value, found_slope
-
-
 @lru_cache(maxsize=64)
-def _kept(scene: Scene, method: Mdr) -> ForceCurve:
-    """Curves of changed scenes, the last 64."""
+def _cached(scene: Scene, method: Mdr) -> ForceCurve:
     return ForceCurve(scene, method)

@@ -45,6 +45,10 @@ class Formula:
         x = (d / self.length) ** self.share
         return np.asarray(self.factor * d**self.power * np.polynomial.polynomial.polyval(x, self.coefficients))
 
+    def extended(self, depth: ArrayLike) -> FloatArray:
+        """phi [m^2], as `per_modulus`."""
+        return self.per_modulus(depth)
+
     def per_modulus_slope(self, depth: ArrayLike) -> FloatArray:
         """d(phi)/d(depth) [m]."""
         d = np.maximum(np.asarray(depth, dtype=np.float64), 0.0)

@@ -5,20 +5,24 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final
 
 import numpy as np
 
 from contact import InvalidInput
-from contact.files.columns import MAX_BYTES
+from contact.records.columns import MAX_BYTES
 from contact.records.errors import printable
-from contact.records.validation import FloatArray
+from contact.records.validation import FloatArray, IntArray
 
-_UNIT = r"(?:[fpnumkM]?[mNVs]|kgf|Pa|%|[nu]n)"
+_UNIT = r"(?:[fpnumkM]?[mNVs]|kgf|Pa|%|[nu]n|[NU][MN])"
 _HEAD: Final = re.compile(rf"(?P<name>.*?)[\s_/:,]*[\[(<]?\s*(?<![A-Za-z0-9])(?P<unit>{_UNIT})\s*[\])>]?")
 _NAMED: Final = re.compile(r"(?P<name>[^\[(]*?)\s*[\[(](?P<unit>[^\])]*)[\])].*")
+# Comments of tables that JPK writes: names and units of the columns in two lines.
+_COLUMNS: Final = re.compile(r"#\s*columns:\s*(.*)")
+_UNITS: Final = re.compile(r"#\s*units:\s*(.*)")
+_SPRING_CONSTANT: Final = re.compile(r"#\s*springConstant:\s*([-+.\deE]+)")
 _GAPS: Final = frozenset({"", "nan", "na", "n/a", "-", "--", "null", "none"})
 _NUMBER: Final = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 _DECIMAL_COMMA: Final = re.compile(r"[-+]?\d+,\d+(?:[eE][-+]?\d+)?")
@@ -41,10 +45,21 @@ class Column:
 
 @dataclass(frozen=True)
 class Table:
-    """Columns with units, and what was recognised, in words."""
+    """Columns with units.
+
+    Attributes:
+        columns: All of them.
+        notes: What was recognised, in words.
+        spring_constant: Of the cantilever [N/m], where the head says it.
+    """
 
     columns: tuple[Column, ...]
     notes: tuple[str, ...] = ()
+    spring_constant: float | None = None
+
+    def at_rows(self, rows: IntArray) -> Table:
+        """The table with some of its rows."""
+        return replace(self, columns=tuple(replace(one, values=one.values[rows]) for one in self.columns))
 
 
 def read_table(file: Path, units: str = "") -> Table:
@@ -57,7 +72,7 @@ def read_table(file: Path, units: str = "") -> Table:
     Raises:
         InvalidInput: With the line, for cells that are no numbers, commas of two meanings, and columns without units.
     """
-    lines = [(i, line.strip("\ufeff \r\n")) for i, line in enumerate(_text(file).splitlines(), 1)]
+    lines = [(i, line.strip("\ufeff \r\n")) for i, line in enumerate(text_of(file).splitlines(), 1)]
     kept = [(i, line) for i, line in lines if line.strip()]
     first = next((k for k, (_, line) in enumerate(kept) if not line.startswith("#") and _is_data(line)), None)
     if first is None:
@@ -71,10 +86,21 @@ def read_table(file: Path, units: str = "") -> Table:
     found = _units(file, units, head_units, heads, kept[0][0])
     notes = (f"{len(gaps)} rows with gaps are left out (first: line {gaps[0]})",) if gaps else ()
     columns = (Column(name, unit, column) for name, unit, column in zip(heads, found, values.T, strict=True))
-    return Table(tuple(columns), notes)
+    return Table(tuple(columns), notes, _spring_constant(kept[:first]))
 
 
-def _text(file: Path) -> str:
+def _spring_constant(before: Sequence[tuple[int, str]]) -> float | None:
+    """The spring constant [N/m] of the comments of JPK."""
+    found = [_SPRING_CONSTANT.fullmatch(line) for _, line in before]
+    return next((float(one[1]) for one in found if one), None)
+
+
+def text_of(file: Path) -> str:
+    """The text of a file in UTF-8, UTF-16 or Latin-1.
+
+    Raises:
+        InvalidInput: If it cannot be read, or is too long.
+    """
     try:
         with file.open("rb") as stream:
             content = stream.read(MAX_BYTES + 1)
@@ -131,6 +157,9 @@ def _separator(file: Path, rows: Sequence[tuple[int, str]]) -> str:
 def _heads(before: Sequence[tuple[int, str]], separator: str, width: int) -> tuple[list[str], list[str]]:
     """Names and units from the lines before the numbers: the last ones with as many cells."""
     names, units = [""] * width, [""] * width
+    of_jpk = [next((m[1].split() for _, line in before if (m := p.fullmatch(line))), []) for p in (_COLUMNS, _UNITS)]
+    if all(len(words) == width for words in of_jpk):
+        return of_jpk[0], [_plain(unit) for unit in of_jpk[1]]
     for _, line in reversed(before[-3:]):
         text = line.lstrip("# ").strip()
         cells = next((c for s in (separator, "\t", ";", ",") for c in [_cells(text, s)] if len(c) == width), None)
@@ -141,14 +170,16 @@ def _heads(before: Sequence[tuple[int, str]], separator: str, width: int) -> tup
         if all(bare) and not any(units):
             units = bare
             continue
-        split = [_name_and_unit(cell) for cell in cells]
+        split = [name_and_unit(cell) for cell in cells]
         return [name for name, _ in split], [unit or old for (_, unit), old in zip(split, units, strict=True)]
     return names, units
 
 
 def _plain(unit: str) -> str:
     unit = unit.strip().replace("\u00b5", "u").replace("\u03bc", "u")
-    return {"nn": "nN", "un": "uN"}.get(unit, unit)
+    return {"nn": "nN", "un": "uN", "NM": "nm", "UM": "um", "NN": "nN", "UN": "uN", "\u00c5": "angstrom"}.get(
+        unit, unit
+    )
 
 
 def _bare_unit(cell: str) -> str:
@@ -156,7 +187,8 @@ def _bare_unit(cell: str) -> str:
     return cell if re.fullmatch(_UNIT, cell) else ""
 
 
-def _name_and_unit(cell: str) -> tuple[str, str]:
+def name_and_unit(cell: str) -> tuple[str, str]:
+    """Name and unit of a head, the unit empty where there is none."""
     cell = _plain(cell)
     if found := _NAMED.fullmatch(cell):
         return found["name"].strip(), _plain(found["unit"])

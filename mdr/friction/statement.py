@@ -22,7 +22,7 @@ from bem.kernels.of_layer import stack_kernel
 from bem.numerics import graded
 from contact import ContactPath, FlatPunch, InvalidInput, Scene
 from contact.records.validation import FloatArray
-from contact.scene.elastic_layer import ElasticLayer
+from contact.scene.layer import ElasticLayer
 from mdr.contact_surface import surface_of
 from mdr.equilibria import is_singular
 from mdr.inside import Body, field_sizes

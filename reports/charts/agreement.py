@@ -5,15 +5,17 @@ from collections.abc import Sequence
 from functools import partial
 
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.figure import Figure as Drawing
+from matplotlib.ticker import FuncFormatter, NullLocator
 
 from cases.results.records.claim import Claim, Kind
 from cases.results.records.run import CaseResult
 from reports.figures.axes_grid import numbered_parts
 from reports.figures.figure import Cell, ReportFigure
-from reports.figures.style import BLUE, GREEN, GREY, ORANGE, TINT, VERMILLION, mark_signed_decades
-from reports.words.method_names import display_name
-from reports.words.outcomes import tone_of
+from reports.pages.outcomes import tone_of
+from reports.style import BLUE, GREEN, GREY, ORANGE, TINT, VERMILLION, power_of_ten
+from reports.words import display_name
 
 # A figure has so many rows of comparisons: one page.
 ROWS_A_FIGURE = 40
@@ -108,3 +110,17 @@ def _spread(claim: Claim) -> float:
 
 def _label(claim: Claim) -> str:
     return f"{claim.scene}, {claim.quantity.replace('_', ' ')}, {' – '.join(map(display_name, claim.methods))}"
+
+
+def mark_signed_decades(axis: Axis, *, smallest: float, largest: float) -> None:
+    """Label zero and the decades from `smallest` to `largest` on both sides of it, every second where they are many."""
+    powers = range(round(math.log10(smallest)), math.floor(math.log10(largest)) + 1)
+    step = 1 + len(powers) // 6
+    marked = [10.0**power for power in powers if power % step == 0]
+    axis.set_ticks([*(-value for value in reversed(marked)), 0.0, *marked])
+    axis.set_major_formatter(FuncFormatter(_signed_power_of_ten))
+    axis.set_minor_locator(NullLocator())
+
+
+def _signed_power_of_ten(value: float, _position: int | None = None) -> str:
+    return "0" if value == 0.0 else f"{'−' if value < 0.0 else ''}{power_of_ten(abs(value))}"

@@ -10,8 +10,8 @@ from cases.results.records.convergence import ConvergenceStudy, Grid
 from cases.results.records.run import CaseResult
 from reports.figures.figure import Cell, ReportFigure
 from reports.figures.panel_chart import PanelChart
-from reports.figures.style import BLUE, GREEN, GREY, ORANGE, PURPLE, VERMILLION, mark_decades
-from reports.words.method_names import display_name
+from reports.style import BLUE, GREEN, GREY, ORANGE, PURPLE, VERMILLION, mark_decades
+from reports.words import display_name
 
 # A bar is so wide, in decades of length: bars of grids refined by the root of two (0.15 decades) do not touch.
 BAR_WIDTH = 0.1

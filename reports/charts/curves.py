@@ -1,35 +1,42 @@
-"""Pictures of fits of force curves and of sweeps."""
+"""Pictures of fits of force curves."""
 
 from typing import Any
 
 import numpy as np
 
-from cases.measurements.sweep import Sweep
 from cases.results.records.figure import Figure, Panel, Series
 from contact.records.units import prefix_for
-from contact.records.validation import BoolArray, FloatArray
+from contact.records.validation import BoolArray, FloatArray, IntArray
 from mdr.curves import CurveFit, MapFit
-from reports.words.numbers import with_prefix
+from reports.words import with_prefix
 
 # Moduli at depths below this share of the largest are not drawn: forces there are lost in the scatter.
 _LEAST_SHARE = 0.05
 
+# Points of a series of symbols, of which the renderer draws all; it thins out longer ones.
+_SYMBOLS = 24
+
 
 def fit_figure(found: CurveFit) -> Figure:
-    """Measured curve with fit and formulas of the same modulus, moduli by formulas at each depth, residuals."""
-    panels = (_curve_panel(found), *([_apparent_panel(found)] if found.formulas else []), _residual_panel(found))
-    caption = f"Band: {100 * found.confidence:g} % confidence of the fitted curve."
+    """Measured and fitted curve, moduli at each depth, residuals."""
+    panels = (_curve_panel(found), *([_modulus_panel(found)] if found.per_modulus.size else []), _residual_panel(found))
+    point = ""
+    if "contact_point" in found.values:
+        factor, prefix = prefix_for([found.values["contact_point"], *found.interval("contact_point")])
+        ends = "{:.4g} to {:.4g}".format(*(end / factor for end in found.interval("contact_point")))
+        point = f" Contact point {ends} {prefix}m."
+    caption = f"Band: {100 * found.confidence:g} % confidence of the fitted curve. R^2 = {found.r_squared:.5f}.{point}"
     return Figure(name="fit", title="Fit", caption=caption, panels=panels)
 
 
 def _curve_panel(found: CurveFit) -> Panel:
     modulus = with_prefix(found.youngs_modulus, "Pa")
-    factor, prefix = prefix_for(found.force.tolist())
-    order = np.argsort(found.depth)
-    band = tuple((found.band[order] / factor).tolist())
+    factor, prefix = prefix_for(found.measured.tolist())
+    band = tuple((found.band[_order(found)] / factor).tolist())
+    name = "E" if found.per_modulus.size else "G"
     series = [
-        _line(found, "measured", found.force / factor, "symbols"),
-        _line(found, f"fit, E = {modulus}", found.fitted / factor, "solid", band),
+        _line(found, "measured", found.measured / factor, "symbols"),
+        _line(found, f"fit, {name} = {modulus}", found.fitted / factor, "solid", band),
     ]
     shifted, line = found.depth - found.values.get("contact_point", 0.0), found.background
     series += [
@@ -37,29 +44,36 @@ def _curve_panel(found: CurveFit) -> Panel:
         for one in found.formulas
         for phi in [one.formula.per_modulus(shifted)]
     ]
-    return Panel(title="Force curve", x_label=_depth_label(found), y_label=f"force [{prefix}N]", series=tuple(series))
+    label = f"force [{prefix}N]" if found.response == "force" else f"depth [{prefix}m]"
+    return Panel(title="Force curve", x_label=_x_label(found), y_label=label, series=tuple(series))
 
 
-def _apparent_panel(found: CurveFit) -> Panel:
-    """The modulus that a formula takes from the fitted force at each depth; the true one is level."""
+def _modulus_panel(found: CurveFit) -> Panel:
+    """The modulus of each point alone, and those that formulas take from the fitted force; the true one is level."""
     factor, prefix = prefix_for([found.youngs_modulus])
     shifted = found.depth - found.values.get("contact_point", 0.0)
-    pressed = shifted > _LEAST_SHARE * shifted.max()
+    pressed = (shifted > _LEAST_SHARE * shifted.max()) & (found.per_modulus > 0.0)
     level = np.full(found.depth.shape, found.youngs_modulus / factor)
-    series = [_line(found, f"fit, E = {with_prefix(found.youngs_modulus, 'Pa')}", level, "solid", kept=pressed)]
+    label = f"E = {with_prefix(found.youngs_modulus, 'Pa')}"
+    positive = pressed & (found.modulus_at_depth > 0.0)
+    series = [
+        _line(found, "measured", np.where(positive, found.modulus_at_depth, 1.0) / factor, "symbols", kept=positive),
+        _line(found, f"fit, {label}", level, "solid", kept=pressed),
+    ]
     for one in found.formulas:
         phi = np.where(pressed, one.formula.per_modulus(shifted), 1.0)
-        label = f"{one.formula.name}, E = {with_prefix(found.youngs_modulus, 'Pa')}"
-        series.append(_line(found, label, (found.fitted - found.background) / (factor * phi), "dashed", kept=pressed))
-    labels: Any = {"x_label": _depth_label(found), "y_label": f"E by a formula [{prefix}Pa]"}
-    return Panel(title="Modulus by a formula at each depth", y_scale="log", series=tuple(series), **labels)
+        apparent = (found.fitted - found.background) / (factor * phi)
+        series.append(_line(found, f"{one.formula.name}, {label}", apparent, "dashed", kept=pressed))
+    labels: Any = {"x_label": _x_label(found), "y_label": f"E [{prefix}Pa]"}
+    return Panel(title="Modulus at each depth", y_scale="log", series=tuple(series), **labels)
 
 
 def _residual_panel(found: CurveFit) -> Panel:
-    left = found.force - found.fitted
-    factor, prefix = prefix_for(left.tolist())
-    series = (_line(found, "measured", left / factor, "symbols"),)
-    labels: Any = {"x_label": _depth_label(found), "y_label": f"measured - fit [{prefix}N]"}
+    residual = found.measured - found.fitted
+    factor, prefix = prefix_for(residual.tolist())
+    series = (_line(found, "measured", residual / factor, "symbols"),)
+    unit = "N" if found.response == "force" else "m"
+    labels: Any = {"x_label": _x_label(found), "y_label": f"measured - fit [{prefix}{unit}]"}
     return Panel(title="Residual", series=series, **labels)
 
 
@@ -72,63 +86,52 @@ def _line(
     *,
     kept: BoolArray | None = None,
 ) -> Series:
-    """Values in the order of depth; only some of them where `kept` says so."""
-    factor, _ = prefix_for(found.depth.tolist())
-    order = np.argsort(found.depth)
+    """Values in the order of depth or time; only some of them where `kept` says so."""
+    places = found.time if found.time.size else found.depth
+    factor = 1.0 if found.time.size else prefix_for(found.depth.tolist())[0]
+    order = _order(found)
     order = order if kept is None else order[kept[order]]
-    x, y = tuple((found.depth[order] / factor).tolist()), tuple(values[order].tolist())
+    x, y = tuple((places[order] / factor).tolist()), tuple(values[order].tolist())
     method = {"symbols": "measured", "dashed": "formula"}.get(style, "mdr")
     return Series(label=label, method=method, group=label, x=x, y=y, half_width=band, style=style)
 
 
-def _depth_label(found: CurveFit) -> str:
-    return f"depth [{prefix_for(found.depth.tolist())[1]}m]"
+def _order(found: CurveFit) -> IntArray:
+    return np.argsort(found.time if found.time.size else found.depth)
+
+
+def _x_label(found: CurveFit) -> str:
+    return "time [s]" if found.time.size else f"depth [{prefix_for(found.depth.tolist())[1]}m]"
 
 
 def map_figure(found: MapFit) -> Figure:
-    """Share of curves below each modulus."""
-    known = np.sort(found.youngs_modulus[found.converged])
+    """Histogram of the moduli, and the moduli in x and y where the places are known."""
+    known = found.youngs_modulus[found.converged]
     factor, prefix = prefix_for(known.tolist())
-    share = 100 * np.arange(1, known.size + 1) / max(known.size, 1)
-    x, y = tuple((known / factor).tolist()), tuple(share.tolist())
-    series = Series(label="curves", method="mdr", group="", x=x, y=y, style="solid")
-    axes = Panel(title="Moduli", x_label=f"E [{prefix}Pa]", y_label="share of curves [%]", series=(series,))
-    return Figure(name="map", title="Moduli of a map", caption="Share of curves below each modulus.", panels=(axes,))
+    panels = [_histogram(known / factor, f"E [{prefix}Pa]")] if known.size else []
+    if known.size and np.isfinite(found.positions[found.converged]).all():
+        panels.append(_places(found, factor, f"{prefix}Pa"))
+    failed = found.converged.size - known.size
+    caption = f"{known.size} curves; {failed} more have no fit. Colours: fifths of the curves by modulus."
+    return Figure(name="map", title="Moduli of a map", caption=caption, panels=tuple(panels))
 
 
-def sweep_figure(found: Sweep) -> Figure:
-    """Each quantity over the varied number, a line for each state."""
-    columns = found.columns
-    x_head, *heads = (head for head in columns if "_uncertainty" not in head)
-    values = np.unique(columns[x_head])
-    states = len(columns[x_head]) // len(values)
-    panels = tuple(_panel(columns[x_head], columns[head], x_head, head, states) for head in heads)
-    kept = tuple(panel for panel in panels if len(set(panel.series[-1].y)) > 1)
-    return Figure(name="sweep", title=f"Over {found.swept.name}", caption="One line a state.", panels=kept or panels)
+def _histogram(moduli: FloatArray, label: str) -> Panel:
+    counts, ends = np.histogram(moduli, bins=min(40, 4 + round(np.sqrt(moduli.size))))
+    x, y = np.repeat(ends, 2), np.concatenate([[0], np.repeat(counts, 2), [0]])
+    series = Series(label="curves", method="mdr", group="", x=tuple(x.tolist()), y=tuple(y.tolist()), style="solid")
+    return Panel(title="Histogram", x_label=label, y_label="number of curves", series=(series,))
 
 
-def _panel(x: FloatArray, y: FloatArray, x_head: str, y_head: str, states: int) -> Panel:
-    x_factor, x_label = _scaled(x, x_head)
-    y_factor, y_label = _scaled(y, y_head)
-    series = tuple(
-        Series(
-            label=f"state {state + 1}",
-            method="mdr",
-            group=f"state {state + 1}",
-            x=tuple((x[state::states] / x_factor).tolist()),
-            y=tuple((y[state::states] / y_factor).tolist()),
-            style="solid",
-        )
-        for state in range(states)
-    )
-    return Panel(title=y_label, x_label=x_label, y_label=y_label, series=series)
-
-
-def _scaled(values: FloatArray, head: str) -> tuple[float, str]:
-    """Factor and label with a fitting prefix."""
-    name, bracket, unit = head.partition(" [")
-    words = name.replace("_", " ")
-    if not bracket:
-        return 1.0, words
-    factor, prefix = prefix_for(values.tolist())
-    return factor, f"{words} [{prefix}{unit}"
+def _places(found: MapFit, factor: float, unit: str) -> Panel:
+    """Places of the curves, in five groups by their modulus."""
+    places, moduli = found.positions[found.converged], found.youngs_modulus[found.converged] / factor
+    scale, prefix = prefix_for(np.ravel(places).tolist())
+    series = []
+    for rows in np.array_split(np.argsort(moduli), min(5, moduli.size)):
+        label = f"{moduli[rows].min():.3g} to {moduli[rows].max():.3g} {unit}"
+        for some in np.array_split(rows, -(-rows.size // _SYMBOLS)):
+            x, y = (tuple((places[some, axis] / scale).tolist()) for axis in (0, 1))
+            series.append(Series(label=label, method="measured", group=label, x=x, y=y, style="symbols"))
+    labels: Any = {"x_label": f"x [{prefix}m]", "y_label": f"y [{prefix}m]"}
+    return Panel(title="Map", series=tuple(series), **labels)

@@ -12,9 +12,9 @@ from cases.results.records.run import CaseResult
 from cases.results.status import Status
 from reports.figures.figure import Cell, ReportFigure
 from reports.figures.panel_chart import PanelChart
-from reports.figures.style import look_of, mark_decades
-from reports.words.method_names import display_name
-from reports.words.outcomes import worded
+from reports.pages.outcomes import worded
+from reports.style import look_of, mark_decades
+from reports.words import display_name
 
 # Significant digits of a double, the unit roundoff as digits.
 DOUBLE_DIGITS = -math.log10(2.0**-53)

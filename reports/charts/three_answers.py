@@ -13,9 +13,8 @@ from cases.results.records.reliability import Ladder
 from cases.results.records.run import RunResult
 from cases.results.status import Status
 from reports.figures.figure import Cell, ReportFigure
-from reports.figures.style import GREY, TINT, VERMILLION, look_of, mark_decades
-from reports.words.method_names import display_name
-from reports.words.numbers import small
+from reports.style import GREY, TINT, VERMILLION, look_of, mark_decades
+from reports.words import display_name, small
 
 # Inches: a third of a desk's width, or a phone's whole one.
 SIZE = (4.7, 3.9)

@@ -9,10 +9,8 @@ from matplotlib.figure import Figure as Drawing
 from cases.results.records.cost import WorkPoint, WorkPrecision
 from cases.results.records.run import CaseResult
 from reports.figures.figure import Cell, ReportFigure
-from reports.figures.style import BLACK, FAINT, GREY, look_of, mark_decades
-from reports.words.file_names import file_name
-from reports.words.method_names import display_name
-from reports.words.numbers import small
+from reports.style import BLACK, FAINT, GREY, look_of, mark_decades
+from reports.words import display_name, file_name, small
 
 COLUMNS = (
     "scene", "quantity", "method", "setting", "status", "error", "bound", "seconds", "lower_quartile", "upper_quartile",

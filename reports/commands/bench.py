@@ -1,24 +1,29 @@
-"""`contact-verify fit` and `sweep`: read, compute, print, and write the files asked for."""
+"""`contact-verify fit`: read, compute, print, and write the files asked for."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Final, Literal
 
-from cases.declare.guarded_method import build_guarded
+import numpy as np
+
 from cases.declare.uncertain_inputs import read_inputs
-from cases.measurements.sweep import read_range, sweep
 from cases.measurements.uncertain_fit import fit_uncertain
 from cases.results.files import write_whole
-from contact import Adhesion, InvalidInput, load_scene
-from contact.answer.small_strains import depth_note, depth_share, depths_of
+from contact import Adhesion, InvalidInput, Scene, load_scene
 from contact.files.scene_file import scene_notes, uses_units
 from contact.records.units import read_quantity
-from mdr.curves import Limit, fit_curve, fit_map
-from mdr.curves.reading import Cantilever, Measured, load_curves, read_map
-from reports.tables.curve_tables import fit_csv, fit_table, formula_table, map_csv, map_facts, shares_table, sweep_table
-from reports.terminal.terminal import console, show_facts, show_table
-from reports.words.numbers import small
+from contact.scene.effects import Viscoelasticity
+from mdr.curves import Limit, fit_curve, fit_history, fit_map
+from mdr.curves.fit import DEFAULT_PARAMETERS
+from mdr.curves.reading import Cantilever, Direction, Measured, load_curves, read_map
+from reports.files import PICTURES, check_outputs, write_picture
+from reports.tables.curve_tables import fit_csv, fit_table, formula_table, map_csv, map_facts, shares_table
+from reports.terminal import console, show_facts, show_table
+from reports.words import small
+
+# Stands for all that is fitted beside by default.
+ALL: Final = "all"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -26,8 +31,8 @@ class FitRequest:
     """What the command line says about a fit.
 
     Attributes:
-        fit: Names of the fitted moduli.
-        also: Names of what is fitted beside them.
+        fit: Names of the fitted moduli, empty for the default.
+        also: Names of what is fitted beside them, or `ALL`.
         units: Of columns without their own.
         spring_constant: With its unit, or empty.
         sensitivity: With its unit, or empty.
@@ -47,10 +52,13 @@ class FitRequest:
     confidence: float
     outputs: Sequence[Path]
 
-    @property
-    def parameters(self) -> tuple[str, ...]:
-        """Names of all that is fitted."""
-        return tuple(name.strip() for name in (*self.fit.split(","), *self.also.split(",")) if name.strip())
+    def parameters(self, scene: Scene) -> tuple[str, ...]:
+        """Names of all that is fitted; where options name nothing, the default of elastic or of relaxing scenes."""
+        first, *others = DEFAULT_PARAMETERS
+        if _relaxes(scene):
+            first, others = "moduli,times", ["contact_point", "baseline"]
+        also = ",".join(others) if self.also == ALL else self.also
+        return tuple(name.strip() for name in (*(self.fit or first).split(","), *also.split(",")) if name.strip())
 
     def limit(self) -> Limit | None:
         """The largest depth, force or share.
@@ -71,8 +79,8 @@ class FitRequest:
                 f"--until {text}: write a depth, a force or a share, 300nm, 2nN or 60% ({error})"
             ) from None
 
-    def curves(self, file: Path, scene: Any) -> list[Measured]:
-        """The curves of the file; of scenes with adhesion the withdrawal."""
+    def curves(self, file: Path, scene: Scene, *, is_map: bool = False) -> list[Measured]:
+        """The curves of the file: loading, with adhesion withdrawal, of relaxing scenes all points."""
         given = [
             read_quantity(text, unit, name) if text else None
             for text, unit, name in (
@@ -80,8 +88,18 @@ class FitRequest:
                 (self.sensitivity.partition("/")[0], "m", "--sensitivity"),
             )
         ]
-        direction: Literal["loading", "withdrawal"] = "loading" if scene.effect(Adhesion) is None else "withdrawal"
-        return load_curves(file, units=self.units, cantilever=Cantilever(*given), direction=direction)
+        direction: Direction = "loading" if scene.effect(Adhesion) is None else "withdrawal"
+        read = read_map if is_map else load_curves
+        return read(
+            file,
+            units=self.units,
+            cantilever=Cantilever(*given),
+            direction="history" if _relaxes(scene) else direction,
+        )
+
+
+def _relaxes(scene: Scene) -> bool:
+    return scene.effect(Viscoelasticity) is not None
 
 
 def fit_file(file: Path, scene_file: Path, request: FitRequest, *, uncertain: str) -> None:
@@ -90,25 +108,32 @@ def fit_file(file: Path, scene_file: Path, request: FitRequest, *, uncertain: st
     Raises:
         InvalidInput: For a wrong scene, curve, parameter or file.
     """
-    _check_outputs(request.outputs)
+    check_outputs(request.outputs, {".csv": "CSV", **PICTURES})
     scene = load_scene(scene_file)
     curves = request.curves(file, scene)
     if not 0 <= request.number < len(curves):
         raise InvalidInput(f"{file}: has no curve {request.number}; it has {len(curves)}, counted from 0")
     curve, terminal = curves[request.number], console()
-    options: Any = {"parameters": request.parameters, "confidence": request.confidence}
-    if uncertain:
+    options: Any = {"parameters": request.parameters(scene), "confidence": request.confidence}
+    shares = []
+    if _relaxes(scene):
+        if uncertain or request.until:
+            raise InvalidInput("--uncertain and --until are for scenes that do not relax; leave them out")
+        found = fit_history(scene, curve.time, curve.depth, curve.force, **options)
+    elif uncertain:
         inputs = read_inputs(uncertain, scene, with_units=uses_units(scene_file))
         carried = fit_uncertain(scene, curve.depth, curve.force, inputs, **options)
         found, shares = carried.fit, [shares_table(carried)]
     else:
-        found, shares = fit_curve(scene, curve.depth, curve.force, limit=request.limit(), **options), []
+        found = fit_curve(scene, curve.depth, curve.force, limit=request.limit(), **options)
     # Warnings come first: nobody reads them below the numbers.
     show_facts([("warning", line) for line in found.warnings], on=terminal)
     for table in (fit_table(found), *shares, formula_table(found)):
         show_table(table, on=terminal)
-    facts = [("numerical error", f"{small(found.numerical_error)} of E, in its interval")]
-    show_facts(facts + [("note", line) for line in (*curve.notes, *scene_notes(scene_file))], on=terminal)
+    facts = [("R^2 in contact", f"{found.r_squared:.6f}")]
+    facts += [("numerical error", f"{small(found.numerical_error)} of E, in its interval")]
+    notes = (*found.notes, *curve.notes, *scene_notes(scene_file))
+    show_facts(facts + [("note", line) for line in notes], on=terminal)
     _write_outputs(request.outputs, lambda: fit_csv(found), "fit_figure", found)
 
 
@@ -118,58 +143,23 @@ def fit_map_file(file: Path, scene_file: Path, request: FitRequest, *, progress:
     Raises:
         InvalidInput: For a wrong scene, map, parameter or file.
     """
-    _check_outputs(request.outputs)
+    check_outputs(request.outputs, {".csv": "CSV", **PICTURES})
     scene = load_scene(scene_file)
-    direction: Literal["loading", "withdrawal"] = "loading" if scene.effect(Adhesion) is None else "withdrawal"
-    curves = read_map(file, units=request.units, direction=direction)
+    if _relaxes(scene):
+        raise InvalidInput("--map: maps are fitted for scenes that do not relax; fit single curves (--curve NUMBER)")
+    curves = request.curves(file, scene, is_map=True)
     found = fit_map(
         scene,
         [one.depth for one in curves],
         [one.force for one in curves],
-        parameters=request.parameters,
+        parameters=request.parameters(scene),
         confidence=request.confidence,
         limit=request.limit(),
+        positions=np.array([one.position for one in curves]),
         progress=progress,
     )
     show_facts(map_facts(found), on=console())
     _write_outputs(request.outputs, lambda: map_csv(found), "map_figure", found)
-
-
-def sweep_file(
-    scene_file: Path, over: str, *, method: str, outputs: Sequence[Path], progress: Callable[[int, int], None]
-) -> None:
-    """Sweep, print the table, and write the files.
-
-    Raises:
-        InvalidInput: For a wrong scene, range or file, or if every value is refused.
-    """
-    _check_outputs(outputs)
-    scene = load_scene(scene_file)
-    found = sweep(
-        scene, read_range(over, scene, with_units=uses_units(scene_file)), build_guarded(method, {}), progress
-    )
-    if not found.answers:
-        raise InvalidInput(f"over {over}: no value was answered; the first refusal: {found.refused[0][1]}")
-    terminal = console()
-    pressed = [(answer.scene, depths_of(answer)) for _, answer in found.answers]
-    note = depth_note(*max(pressed, key=lambda one: depth_share(*one)))
-    show_facts([("warning", f"at its deepest, {note}")] * bool(note), on=terminal)
-    show_table(sweep_table(found), on=terminal)
-    show_facts([("refused", f"{value:g}: {reason}") for value, reason in found.refused], on=terminal)
-    _write_outputs(outputs, found.to_csv, "sweep_figure", found)
-
-
-def _check_outputs(outputs: Sequence[Path]) -> None:
-    """Refuse files that cannot be written.
-
-    Raises:
-        InvalidInput: For another ending than .csv or .svg, or a folder that is not there.
-    """
-    for path in outputs:
-        if path.suffix not in (".csv", ".svg"):
-            raise InvalidInput(f"--write {path}: the ending says the format; use .csv or .svg")
-        if path.is_dir() or not path.parent.is_dir():
-            raise InvalidInput(f"--write {path}: no file can be there; check that the folder exists")
 
 
 def _write_outputs(outputs: Sequence[Path], table: Callable[[], str], figure: str, found: object) -> None:
@@ -180,7 +170,7 @@ def _write_outputs(outputs: Sequence[Path], table: Callable[[], str], figure: st
         else:
             # Matplotlib only where it is asked for.
             from reports.charts import curves  # noqa: PLC0415
-            from reports.figures.renderer import figure_svg  # noqa: PLC0415
+            from reports.figures.renderer import draw  # noqa: PLC0415
 
-            write_whole(path, figure_svg(getattr(curves, figure)(found)))
+            write_picture(path, lambda: draw(getattr(curves, figure)(found)), key="fit")
         console().print(f"written: {path}")

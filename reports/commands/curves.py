@@ -1,12 +1,7 @@
-"""Commands of the bench: fit measured force curves, and solve a scene for a range of one of its numbers.
+"""The command `fit` with its options; what it needs is imported when it is called."""
 
-Each is declared here with its options; what it needs is imported when it is called.
-"""
-
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
@@ -18,22 +13,35 @@ def fit(
     curve: Annotated[
         Path,
         typer.Argument(
-            help="Table with columns of depth (or height) and force (or deflection); or .jpk-force, .h5, .tab, .ibw."
+            help="Table with columns of depth (or height) and force (or deflection), and time for scenes that relax; "
+            "or a microscope's file (.jpk-force, .h5, .tab, .ibw, .csv of AFM Workshop)."
         ),
     ],
     scene: SceneFile,
     *,
     moduli: Annotated[
-        str, typer.Option("--fit", help="Fitted modulus; of stacks layer[0].youngs_modulus, base.youngs_modulus.")
-    ] = "youngs_modulus",
+        str,
+        typer.Option(
+            "--fit",
+            help="What is fitted: youngs_modulus; of stacks layer[0].youngs_modulus, base.youngs_modulus; of scenes "
+            "that relax moduli,times (or moduli, which keeps the times).",
+        ),
+    ] = "",
     also: Annotated[
-        str, typer.Option("--with", help="Fitted beside: contact_point, baseline, tilt, thickness, work_of_adhesion.")
-    ] = "contact_point,baseline,tilt",
+        str,
+        typer.Option("--with", help="Fitted beside: contact_point,baseline,tilt (all), thickness, work_of_adhesion."),
+    ] = "all",
     units: Annotated[str, typer.Option(help='Of columns whose heads have none, "nm,nN".')] = "",
     spring_constant: Annotated[str, typer.Option(help='Of the cantilever, "0.05 N/m": for height, deflection.')] = "",
     sensitivity: Annotated[str, typer.Option(help='Of the deflection, "50 nm/V".')] = "",
     until: Annotated[str, typer.Option(help="Fitted up to a depth, force or share of it: 300nm, 2nN, 60%.")] = "",
-    curves: Annotated[bool, typer.Option("--map", help="One force curve in each column after the depths.")] = False,
+    curves: Annotated[
+        bool,
+        typer.Option(
+            "--map",
+            help="Fit all curves: a force curve in each column after the depths, or curves numbered by a column.",
+        ),
+    ] = False,
     uncertain: Annotated[
         str, typer.Option(help='What is known to a tolerance, "radius=5%, thickness=4e-6..6e-6"; joins the intervals.')
     ] = "",
@@ -41,11 +49,12 @@ def fit(
     confidence: Annotated[float, typer.Option(help="Of intervals and bands.")] = 0.95,
     write: Written = None,
 ) -> None:
-    """Find Young's modulus from a force curve, or from all curves of a map, with intervals.
+    """Find Young's modulus from a force curve or from all curves of a map, or relaxation moduli over time.
 
-    Says what Hertz, Dimitriadis and other formulas would have found on the same curve.
+    Every number has an interval. Prints what Hertz, Dimitriadis and other formulas would have found on the same curve.
     """
     from reports.commands.bench import FitRequest, fit_file, fit_map_file  # noqa: PLC0415 - see the first lines
+    from reports.terminal import progress_bar  # noqa: PLC0415
 
     request = FitRequest(
         fit=moduli,
@@ -60,41 +69,8 @@ def fit(
     )
     if uncertain and (curves or until):
         raise typer.BadParameter("--uncertain is for whole single curves; leave --map and --until out")
-    with _bar("curves") as progress:
+    with progress_bar("curves") as progress:
         if curves:
             fit_map_file(curve, scene, request, progress=progress)
         else:
             fit_file(curve, scene, request, uncertain=uncertain)
-
-
-def sweep(
-    scene: SceneFile,
-    *,
-    over: Annotated[
-        str, typer.Option(help='Number and range, "thickness=1um..10um:20", ":log" behind it for equal factors.')
-    ],
-    method: Annotated[str, typer.Option(help="Method that solves.")] = "mdr",
-    write: Written = None,
-) -> None:
-    """Solve a scene for a range of one of its numbers: a table, CSV and picture."""
-    from reports.commands.bench import sweep_file  # noqa: PLC0415 - see the first lines of this module
-
-    with _bar("scenes") as progress:
-        sweep_file(scene, over, method=method, outputs=write or [], progress=progress)
-
-
-COMMANDS: tuple[Callable[..., Any], ...] = (fit, sweep)
-
-
-@contextmanager
-def _bar(what: str) -> Iterator[Callable[[int, int], None]]:
-    """A bar on a terminal, and nothing in a pipe or a log."""
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn  # noqa: PLC0415
-
-    from reports.terminal.terminal import console  # noqa: PLC0415
-
-    terminal = console(stderr=True)
-    columns = TextColumn(what), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn()
-    with Progress(*columns, console=terminal, disable=not terminal.is_terminal, transient=True) as bar:
-        task = bar.add_task(what, total=None)
-        yield lambda done, total: bar.update(task, completed=done, total=total)

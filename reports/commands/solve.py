@@ -1,11 +1,13 @@
-"""`contact-verify solve`: one scene, one trustworthy answer with its error bar."""
+"""`contact-verify solve`: one scene, one answer with its error bars; or a range, uncertain inputs, advice."""
 
 import inspect
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 from cases.declare.guarded_method import build_guarded
 from cases.declare.methods import load
-from cases.declare.uncertain_inputs import UncertainInputs, read_inputs
+from cases.declare.uncertain_inputs import read_inputs
 from contact import (
     ContactPath,
     InvalidInput,
@@ -18,63 +20,120 @@ from contact import (
     load_scene,
 )
 from contact.answer.accuracy import shortfalls, told_where_less
-from contact.answer.small_strains import depth_note, depths_of
+from contact.answer.small_strains import depth_note, depth_share, depths_of
 from contact.files.scene_file import scene_notes, uses_units
-from reports.tables.solution_table import solution_csv, solution_facts, solution_table
-from reports.terminal.terminal import console, show_facts, show_table
-from reports.words.numbers import with_prefix
+from reports.answer import difference_table, propagated_table, solution_csv, solution_facts, solution_table, sweep_table
+from reports.files import PICTURES, check_outputs, write_picture
+from reports.terminal import console, show_facts, show_table
+from reports.words import with_prefix
 
-ENDINGS = {".csv": "CSV", ".h5": "HDF5", ".svg": "SVG", ".vtu": "VTU for ParaView", ".xdmf": "XDMF for ParaView"}
-MESHES = (".vtu", ".xdmf")
+MESHES = {".vtu": "VTU for ParaView", ".xdmf": "XDMF for ParaView"}
+ENDINGS = {".csv": "CSV", ".h5": "HDF5", **PICTURES, **MESHES}
 # A picture of that name shows the layer inside, by these two methods where both model the scene.
 INSIDE = "inside"
 SHOWN_BESIDE = {"fem": "mdr"}
+# Advice without an accuracy: effects below one per cent are called small.
+ADVISED_AT = 1e-2
 
 
-def solve(
-    scene_file: Path,
-    *,
-    method: str,
-    accuracy: float | None,
-    outputs: list[Path],
-    pressure_accuracy: float | None = None,
-    uncertain: str = "",
-    samples: int = 0,
-) -> None:
-    """Solve the scene of a TOML file, print the answer and write it to `outputs`, whose endings choose the format.
+@dataclass(frozen=True, kw_only=True)
+class Request:
+    """What the command line asks of a scene.
 
-    With an accuracy and no method, methods are tried from cheap to fine.
+    Attributes:
+        method: name, empty for the default.
+        accuracy: relative accuracy of the numbers, or None.
+        pressure_accuracy: relative accuracy of the pressure, or None.
+        uncertain: uncertain inputs in words, or empty.
+        samples: scenes to draw for them, 0 for differences.
+        over: number and range in words, or empty.
+        advise: whether effects are left out in turn.
+        against: second method, or empty.
+        outputs: files to write.
+    """
+
+    method: str = ""
+    accuracy: float | None = None
+    pressure_accuracy: float | None = None
+    uncertain: str = ""
+    samples: int = 0
+    over: str = ""
+    advise: bool = False
+    against: str = ""
+    outputs: Sequence[Path] = ()
+
+    def check(self) -> None:
+        """Refuse what cannot be asked, before anything is solved.
+
+        Raises:
+            InvalidInput: for a wrong accuracy, file or combination.
+        """
+        check_outputs(self.outputs, {".csv": "CSV", **PICTURES} if self.over else ENDINGS)
+        for name, wanted in (("accuracy", self.accuracy), ("pressure-accuracy", self.pressure_accuracy)):
+            if wanted is not None and not 0.0 < wanted < 1.0:
+                raise InvalidInput(f"--{name} {wanted:g}: a relative accuracy lies between 0 and 1")
+        if self.pressure_accuracy is not None and self.accuracy is None:
+            raise InvalidInput("--pressure-accuracy is asked besides an --accuracy of the numbers; give both")
+        if self.samples and not self.uncertain:
+            raise InvalidInput("--samples: of what? name the inputs with --uncertain")
+        asked = {
+            "--over": self.over,
+            "--advise": self.advise,
+            "--uncertain": self.uncertain,
+            "--against": self.against,
+        }
+        several = [name for name, value in asked.items() if value]
+        if len(several) > 1:
+            raise InvalidInput(f"{' and '.join(several)}: ask one at a time")
+
+    def solver(self) -> Method:
+        """The method, with the accuracies as settings where it has such settings."""
+        name = self.method or "mdr"
+        asked = {"accuracy": self.accuracy, "pressure_accuracy": self.pressure_accuracy}
+        known = inspect.signature(load(name)).parameters
+        return build_guarded(name, {key: value for key, value in asked.items() if key in known and value is not None})
+
+
+def solve(scene_file: Path, request: Request, progress: Callable[[int, int], None] | None = None) -> None:
+    """Solve the scene of a TOML file, print what was asked for, and write the files.
 
     Raises:
         InvalidInput: for a wrong scene, method or ending; before anything is solved.
     """
-    for path in outputs:
-        _check_ending(path)
-    _check_accuracies(accuracy, pressure_accuracy)
-    if samples and not uncertain:
-        raise InvalidInput("--samples: of what? name the inputs with --uncertain")
+    request.check()
     scene = load_scene(scene_file)
-    if uncertain:
-        inputs = read_inputs(uncertain, scene, with_units=uses_units(scene_file))
-        answer = _solve_uncertain(scene, inputs, samples, _solver(method or "mdr", accuracy, pressure_accuracy))
-        _write_all(answer, outputs)
-        return
-    facts: list[tuple[str, str]] = []
-    if accuracy is not None and not method:
-        from cases.measurements.accuracy import solve as solve_to_accuracy  # noqa: PLC0415 - only where it is asked for
-
-        found = solve_to_accuracy(scene, accuracy=accuracy, pressure_accuracy=pressure_accuracy)
-        solution: Solution = found.answer
-        facts = [("achieved", f"stated error {found.stated_error:.1e}, asked for {accuracy:g}, by {found.method}")]
+    if request.advise:
+        _advise(scene, request)
+    elif request.over:
+        _sweep(scene, scene_file, request, progress)
     else:
-        solution = _solver(method or "mdr", accuracy, pressure_accuracy).solve(scene)
-        if accuracy is not None:
-            _refuse_less(solution, accuracy, pressure_accuracy)
-            solution = told_where_less(solution, accuracy, pressure_accuracy)
-    terminal = console()
+        solution = _uncertain(scene, scene_file, request) if request.uncertain else _answer(scene, scene_file, request)
+        for path in request.outputs:
+            _write(solution, path)
+            console().print(f"written: {path}")
+
+
+def _answer(scene: Scene, scene_file: Path, request: Request) -> Solution:
+    """Solve, with methods from cheap to fine where an accuracy is asked for and no method."""
+    facts: list[tuple[str, str]] = []
+    if request.accuracy is not None and not request.method:
+        from cases.measurements.accuracy import solve as solve_to_accuracy  # noqa: PLC0415 - where it is asked for
+
+        found = solve_to_accuracy(scene, accuracy=request.accuracy, pressure_accuracy=request.pressure_accuracy)
+        solution: Solution = found.answer
+        stated = f"stated error {found.stated_error:.1e}, asked for {request.accuracy:g}, by {found.method}"
+        facts = [("achieved", stated)]
+    else:
+        solution = request.solver().solve(scene)
+        if request.accuracy is not None:
+            _refuse_less(solution, request.accuracy, request.pressure_accuracy)
+            solution = told_where_less(solution, request.accuracy, request.pressure_accuracy)
     _show_answer(solution)
-    show_facts(solution_facts(solution) + facts + _notes(scene_file, solution), on=terminal)
-    _write_all(solution, outputs)
+    if request.against:
+        other = build_guarded(request.against, {}).solve(scene)
+        show_table(difference_table(solution, other), on=console())
+    show_facts(solution_facts(solution) + facts + _notes(scene_file, solution), on=console())
+    return solution
 
 
 def _show_answer(solution: Solution) -> None:
@@ -85,7 +144,7 @@ def _show_answer(solution: Solution) -> None:
 
 
 def _notes(scene_file: Path, solution: Solution) -> list[tuple[str, str]]:
-    """How the file was read, what smoothing a tip may move, and how far the theory reaches."""
+    """How the file was read, what smoothing a tip changes, and where the theory is valid."""
     from cases.measurements.advice import validity_lines  # noqa: PLC0415 - MDR only where it is asked for
 
     lines = scene_notes(scene_file)
@@ -100,40 +159,8 @@ def _notes(scene_file: Path, solution: Solution) -> list[tuple[str, str]]:
     return told + [("validity", line) for line in validity_lines(solution.scene, solution)]
 
 
-def _write_all(solution: Solution, outputs: list[Path]) -> None:
-    for path in outputs:
-        _write(solution, path)
-        console().print(f"written: {path}")
-
-
-def _solve_uncertain(scene: Scene, uncertain: UncertainInputs, samples: int, method: Method) -> Solution:
-    """Solve a scene with uncertain inputs, print what they make of the answer, and return the one at their middle."""
-    from cases.run.propagation import propagate  # noqa: PLC0415 - only where it is asked for
-    from reports.tables.uncertain_tables import propagated_table  # noqa: PLC0415 - as above
-
-    found = propagate(scene, uncertain, method=method, samples=samples)
-    _show_answer(found.answer)
-    show_table(propagated_table(found), on=console())
-    return found.answer
-
-
-def _check_accuracies(accuracy: float | None, pressure_accuracy: float | None) -> None:
-    for name, wanted in (("accuracy", accuracy), ("pressure-accuracy", pressure_accuracy)):
-        if wanted is not None and not 0.0 < wanted < 1.0:
-            raise InvalidInput(f"--{name} {wanted:g}: a relative accuracy lies between 0 and 1")
-    if pressure_accuracy is not None and accuracy is None:
-        raise InvalidInput("--pressure-accuracy is asked besides an --accuracy of the numbers; give both")
-
-
-def _solver(name: str, accuracy: float | None, pressure_accuracy: float | None) -> Method:
-    """The method, with the accuracies as settings where it has such settings."""
-    asked = {"accuracy": accuracy, "pressure_accuracy": pressure_accuracy}
-    settable = inspect.signature(load(name)).parameters
-    return build_guarded(name, {key: value for key, value in asked.items() if key in settable and value is not None})
-
-
 def _refuse_less(solution: Solution, accuracy: float, pressure_accuracy: float | None) -> None:
-    """Refuse an answer that states a larger error than was asked for of what was asked, or none at all."""
+    """Refuse an answer that states a larger error than was asked for, or none at all."""
     less = shortfalls(solution, accuracy, pressure_accuracy)
     if less:
         worst = max(less, key=lambda name: less[name])
@@ -144,63 +171,89 @@ def _refuse_less(solution: Solution, accuracy: float, pressure_accuracy: float |
         )
 
 
-def _check_ending(path: Path) -> None:
-    if path.suffix not in ENDINGS:
-        known = ", ".join(f"{ending} ({name})" for ending, name in ENDINGS.items())
-        raise InvalidInput(f"--write {path}: the ending says the format; use one of {known}")
-    if path.is_dir() or not path.parent.is_dir():
-        raise InvalidInput(f"--write {path}: no file can be there; check that the folder exists")
+def _uncertain(scene: Scene, scene_file: Path, request: Request) -> Solution:
+    """Print the effect of uncertain inputs on the answer, and return the answer at their middle."""
+    from cases.run.propagation import propagate  # noqa: PLC0415 - only where it is asked for
+
+    inputs = read_inputs(request.uncertain, scene, with_units=uses_units(scene_file))
+    found = propagate(scene, inputs, method=request.solver(), samples=request.samples)
+    _show_answer(found.answer)
+    show_table(propagated_table(found), on=console())
+    return found.answer
 
 
-def _put(path: Path, content: str | bytes) -> None:
-    from cases.results.files import write_whole  # noqa: PLC0415 - runs and their storage only where a file is written
+def _advise(scene: Scene, request: Request) -> None:
+    """Print which effects, and whether the finite thickness, change the answer by more than the accuracy."""
+    from cases.measurements.advice import advise  # noqa: PLC0415 - only where it is asked for
+
+    method = build_guarded(request.method or "mdr", {})
+    for line in advise(method, scene, request.accuracy or ADVISED_AT).lines:
+        console().print(line, soft_wrap=True)
+
+
+def _sweep(scene: Scene, scene_file: Path, request: Request, progress: Callable[[int, int], None] | None) -> None:
+    """Solve the scene over a range of one of its numbers, print the table and write the files.
+
+    Raises:
+        InvalidInput: if every value is refused.
+    """
+    from cases.measurements.sweep import read_range, sweep  # noqa: PLC0415 - only where it is asked for
+
+    swept = read_range(request.over, scene, with_units=uses_units(scene_file))
+    found = sweep(scene, swept, request.solver(), progress)
+    if not found.answers:
+        raise InvalidInput(f"over {request.over}: no value was answered; the first refusal: {found.refused[0][1]}")
+    pressed = [(answer.scene, depths_of(answer)) for _, answer in found.answers]
+    note = depth_note(*max(pressed, key=lambda one: depth_share(*one)))
+    show_facts([("warning", f"at its deepest, {note}")] * bool(note), on=console())
+    show_table(sweep_table(found), on=console())
+    show_facts([("refused", f"{value:g}: {reason}") for value, reason in found.refused], on=console())
+    for path in request.outputs:
+        if path.suffix == ".csv":
+            _put(path, found.to_csv())
+        else:
+            from reports.pictures import sweep_figure  # noqa: PLC0415 - Matplotlib only where it is asked for
+
+            write_picture(path, lambda: sweep_figure(found), key="sweep")
+        console().print(f"written: {path}")
+
+
+def _put(path: Path, content: str) -> None:
+    from cases.results.files import write_whole  # noqa: PLC0415 - storage only where a file is written
 
     write_whole(path, content)
 
 
 def _write(solution: Solution, path: Path) -> None:
+    """Write the answer in the format of the ending."""
     if path.suffix == ".csv":
         _put(path, solution_csv(solution))
     elif path.suffix == ".h5":
-        from contact.files.storage import save_solution  # noqa: PLC0415 - h5py only where it is asked for
-
-        save_solution(path, solution)
+        solution.save(path)
     elif path.suffix in MESHES:
-        _write_mesh(solution, path)
+        write = getattr(solution.inside(-1).fields, "write", None) if isinstance(solution, ContactPath) else None
+        if write is None:
+            raise InvalidInput(
+                f"--write {path}: {solution.method} has no mesh of this scene; add --method fem, or take .csv"
+            )
+        write(path)
     elif path.stem.startswith(INSIDE):
-        from reports.charts.inside import inside_svg  # noqa: PLC0415 - as below
+        from reports.inside import draw_inside  # noqa: PLC0415 - Matplotlib only where it is asked for
 
-        _put(path, inside_svg(solution, _compared(solution)))
+        other = _answer_or_none(SHOWN_BESIDE.get(solution.method, "fem"), solution.scene)
+        write_picture(path, lambda: draw_inside(solution, other), key=INSIDE)
     else:
-        from reports.charts.solution import between, solution_figure  # noqa: PLC0415 - Matplotlib only where it is asked for
-        from reports.figures.renderer import figure_svg  # noqa: PLC0415 - as above
+        from reports.pictures import between, solution_figure  # noqa: PLC0415 - as above
 
-        _put(path, figure_svg(solution_figure(solution, _between(solution, between(solution.scene)))))
-
-
-def _write_mesh(solution: Solution, path: Path) -> None:
-    """The fields inside on the mesh that solved the last state of a path."""
-    write = getattr(solution.inside(-1).fields, "write", None) if isinstance(solution, ContactPath) else None
-    if write is None:
-        raise InvalidInput(
-            f"--write {path}: {solution.method} has no mesh of this scene; add --method fem, or take .csv"
-        )
-    write(path)
+        # Other methods than MDR would take longer for states between than for the answer.
+        finer = between(solution.scene) if solution.method == "mdr" else None
+        curve = None if finer is None else _answer_or_none("mdr", finer)
+        write_picture(path, lambda: solution_figure(solution, curve), key="solution")
 
 
-def _between(solution: Solution, finer: Scene | None) -> Solution | None:
-    """The answer by MDR with states between the prescribed ones; None for other methods, which take longer."""
-    if finer is None or solution.method != "mdr":
-        return None
+def _answer_or_none(method: str, scene: Scene) -> Solution | None:
+    """The answer of a method, None where it does not model the scene or does not converge."""
     try:
-        return build_guarded(solution.method, {}).solve(finer)
-    except (UnsupportedSceneError, NotConvergedError):
-        return None
-
-
-def _compared(solution: Solution) -> Solution | None:
-    """The scene by a second method, where that models it."""
-    try:
-        return build_guarded(SHOWN_BESIDE.get(solution.method, "fem"), {}).solve(solution.scene)
+        return build_guarded(method, {}).solve(scene)
     except (UnsupportedSceneError, NotConvergedError):
         return None

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure as Drawing
 
 from cases.results.csv_table import csv_text
 from cases.results.files import write_whole
-from reports.figures.style import figure_style, png_bytes, svg_text
+from reports.style import figure_bytes, figure_style, svg_text
 
 Cell = str | float | int | bool | None
 
@@ -44,7 +44,7 @@ def write_figure(figure: ReportFigure, directory: Path) -> str:
         drawing = figure.paint()
         _lay_out(drawing)
         svg = svg_text(drawing, key=figure.name)
-        write_whole(directory / f"{figure.name}.png", png_bytes(drawing))
+        write_whole(directory / f"{figure.name}.png", figure_bytes(drawing, ".png", key=figure.name))
     write_whole(directory / f"{figure.name}.svg", svg)
     write_whole(directory / f"{figure.name}.csv", figure.csv_text())
     return svg

@@ -10,6 +10,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from itertools import groupby
+from typing import Any
 
 import numpy as np
 from matplotlib import colormaps
@@ -21,8 +22,8 @@ from matplotlib.lines import Line2D
 from cases.results.records.figure import Figure, Panel, Series
 from reports.figures.axes_grid import axes_of
 from reports.figures.figure import ReportFigure
-from reports.figures.style import BLACK, GREY, Dash, figure_style, look_of, mark_decades, svg_text
-from reports.words.method_names import base_of, display_name
+from reports.style import BLACK, GREY, look_of, mark_decades
+from reports.words import base_of, display_name
 
 PANEL_HEIGHT, PANEL_WIDTH, LEGEND_ROW = 2.75, 4.0, 0.2  # inches
 # A panel that stands alone is so many times larger.
@@ -44,7 +45,7 @@ SYMBOL_METHODS = ("fem", "bem", "integral_equation", "literature", "paper", "ref
 class Stroke:
     """Line and marker of a series in Matplotlib's words."""
 
-    line: Dash
+    line: Any
     marker: str
     width: float = FULL_WIDTH
 
@@ -66,12 +67,6 @@ def report_figure(figure: Figure, case: str) -> ReportFigure:
         columns=("panel", "series", "method", "group", "x", "y", "half_width"),
         rows=tuple(_rows(figure)),
     )
-
-
-def figure_svg(figure: Figure) -> str:
-    """The figure as SVG of its own, without a page around it."""
-    with figure_style():
-        return svg_text(draw(figure), key=figure.name)
 
 
 def _rows(figure: Figure) -> Iterable[tuple[str | float | None, ...]]:

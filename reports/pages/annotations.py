@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from cases.results.records.run import RunResult
-from reports.words.outcomes import CheckOutcome, outcomes
+from reports.pages.outcomes import CheckOutcome, outcomes
 
 # GitHub shows ten annotations of a step and hides the rest: nine leave room for its own.
 MOST = 9

@@ -7,8 +7,7 @@ from pathlib import Path
 from cases.declare.case import Case
 from cases.results.files import write_whole
 from reports.tables.declaration_tables import claim_table, method_table, scene_table
-from reports.tables.table import Table
-from reports.words.file_names import file_name
+from reports.words import Table, file_name
 
 SOLVERS = ("contact", "bem", "mdr", "fem_reference")
 CITED = re.compile(r"Eqs?\. \((\d+)\)(?: to \((\d+)\))?(?:, \((\d+)\))?")

@@ -10,9 +10,9 @@ from reports.figures.figure import ReportFigure
 from reports.figures.figure_files import FigureFolder, PlacedFigure
 from reports.figures.renderer import report_figure
 from reports.pages.claim_blocks import claim_blocks
+from reports.pages.outcomes import case_outcomes, severity
 from reports.tables import case_tables, cost_tables, hard_tables, referee_table
-from reports.tables.table import Table
-from reports.words.outcomes import case_outcomes, severity
+from reports.words import Table
 
 CaseView = dict[str, Any]
 

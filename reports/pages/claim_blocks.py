@@ -11,8 +11,8 @@ from cases.results.records.claim import Claim, Kind
 from cases.results.records.run import CaseResult
 from cases.results.status import Status
 from reports.pages.matrix import Cell, cell_of
-from reports.words.method_names import display_name
-from reports.words.outcomes import claim_outcome, severity
+from reports.pages.outcomes import claim_outcome, severity
+from reports.words import display_name
 
 # A relative tolerance beyond this is said beside the verdict: agreement within 5 % is another statement than AGREE.
 WIDE = 1e-2

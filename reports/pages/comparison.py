@@ -8,9 +8,7 @@ from cases.results.compare_runs import ChangeKind, ClaimChange, NumberChange, Ru
 from cases.results.files import write_whole
 from cases.results.records.run import RunResult
 from reports.pages.report import stamp_lines, stylesheet, template
-from reports.tables.table import Table, tabulated
-from reports.words.method_names import display_name
-from reports.words.numbers import duration, measured, scaled_unit, small
+from reports.words import Table, display_name, duration, measured, scaled_unit, small, tabulated
 
 # Rows of a table on the page; the largest changes come first and the rest is counted.
 MOST_ROWS = 400

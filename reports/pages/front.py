@@ -17,9 +17,7 @@ from reports.charts import three_answers
 from reports.charts.three_answers import climbed, compared
 from reports.figures.figure_files import FigureFolder, PlacedFigure
 from reports.tables.cost_tables import percent
-from reports.tables.table import Table, tabulated
-from reports.words.method_names import display_name
-from reports.words.numbers import duration, small
+from reports.words import Table, display_name, duration, small, tabulated
 
 # Where a case stands: its page, or its place on this one.
 Address = Callable[[str], str]

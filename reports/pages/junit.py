@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 from cases.results.records.run import CaseResult, RunResult
 from cases.results.status import Status
-from reports.words.outcomes import CheckOutcome, case_outcomes
+from reports.pages.outcomes import CheckOutcome, case_outcomes
 
 # Statuses that JUnit calls an error (no answer) and not a failure (a wrong answer).
 BROKEN = (Status.INVALID, Status.TIMEOUT, Status.INCOMPARABLE)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from cases.results.records.claim import Kind
 from cases.results.records.run import CaseResult, RunResult
 from cases.results.status import Status
-from reports.words.outcomes import CheckOutcome, case_outcomes, severity
+from reports.pages.outcomes import CheckOutcome, case_outcomes, severity
 
 
 @dataclass(frozen=True, kw_only=True)

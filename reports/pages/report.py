@@ -16,13 +16,12 @@ from reports.pages.case_view import CaseView, case_view
 from reports.pages.claim_blocks import is_wide
 from reports.pages.front import Answer, pairs_table, three_answers_of
 from reports.pages.matrix import run_matrix
+from reports.pages.moves import baseline_sentence
+from reports.pages.one_factor import one_factor
+from reports.pages.outcomes import EXPLANATIONS, counts, headline, outcomes, tone_of
 from reports.tables import convergence_table, cost_tables
 from reports.tables.sharing_tables import shared_things
-from reports.words.file_names import file_name
-from reports.words.moves import baseline_sentence
-from reports.words.numbers import duration
-from reports.words.one_factor import one_factor
-from reports.words.outcomes import EXPLANATIONS, counts, headline, outcomes, tone_of
+from reports.words import duration, file_name
 
 # The folder of the pages of single cases.
 CASES = "cases"

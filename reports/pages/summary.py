@@ -7,10 +7,10 @@ from collections.abc import Iterable, Sequence
 from cases.results.records.run import RunResult
 from contact.records.errors import printable
 from reports.pages.matrix import Cell, run_matrix
-from reports.words.moves import baseline_sentence
-from reports.words.numbers import duration
-from reports.words.one_factor import one_factor
-from reports.words.outcomes import CheckOutcome, counts, headline, outcomes
+from reports.pages.moves import baseline_sentence
+from reports.pages.one_factor import one_factor
+from reports.pages.outcomes import CheckOutcome, counts, headline, outcomes
+from reports.words import duration
 
 # Bytes: what a reader scrolls through. GitHub refuses a job summary above 1 MiB.
 LARGEST = 64 * 1000

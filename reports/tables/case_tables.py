@@ -7,9 +7,7 @@ from cases.results.records.cost import CheapestRun, EffectEntry, WorkPrecision
 from cases.results.records.run import CaseResult
 from cases.results.records.scene_run import Quantity, SceneRun
 from contact import UNITS
-from reports.tables.table import Table, tabulated
-from reports.words.method_names import display_name
-from reports.words.numbers import duration, last_value, memory, small
+from reports.words import Table, display_name, duration, measured, memory, scaled_unit, small, tabulated
 
 # Beyond so many decades of time for one digit, factors are not worth telling apart.
 MOST_DECADES = 3
@@ -160,3 +158,11 @@ def _dropped_at(entry: EffectEntry) -> str:
     return (
         ", ".join(f"{100 * tau:g} %" for tau in DROPPED_AT if entry.may_be_dropped(tau)) or "none of " + DROPPED_WORDS
     )
+
+
+def last_value(quantity: Quantity) -> str:
+    """What a quantity ends with, its uncertainty and a fitting unit: 12.345(67) mN."""
+    value = quantity.values[-1]
+    factor, unit = scaled_unit(value, quantity.unit)
+    uncertainty = quantity.uncertainty[-1] if quantity.uncertainty else float("inf")
+    return f"{measured(value / factor, uncertainty / factor)} {unit}".strip()

@@ -4,9 +4,7 @@ from collections.abc import Iterator
 
 from cases.results.records.convergence import ConvergenceStudy
 from cases.results.records.run import RunResult
-from reports.tables.table import Table
-from reports.words.method_names import display_name
-from reports.words.numbers import small
+from reports.words import Table, display_name, small
 
 NOTE = (
     "Order: of the errors against the reference where one is exact enough, else of the values. Asymptotic: whether the "

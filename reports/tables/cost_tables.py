@@ -9,9 +9,7 @@ from cases.measurements.cost.cost_of_accuracy import (
 from cases.measurements.cost.overview import SHOWN, first_speed_up, methods, shortest, speed_up
 from cases.results.records.cost import WorkPoint, WorkPrecision
 from cases.results.records.run import RunResult
-from reports.tables.table import Table, tabulated
-from reports.words.method_names import display_name
-from reports.words.numbers import duration, memory, small
+from reports.words import Table, display_name, duration, memory, small, tabulated
 
 # A row of the table names so many stages, those that take most of the time.
 STAGES_SHOWN = 3

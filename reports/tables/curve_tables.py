@@ -1,17 +1,12 @@
-"""Fits of force curves and sweeps as tables and CSV files."""
-
-from collections.abc import Sequence
+"""Fits of force curves as tables and CSV files."""
 
 import numpy as np
 
-from cases.measurements.sweep import Sweep
 from cases.measurements.uncertain_fit import UncertainFit
 from cases.results.csv_table import csv_text
-from contact.records.validation import FloatArray
 from mdr.curves import CurveFit, MapFit
-from mdr.curves.models import unit_of_parameter
-from reports.tables.table import Table
-from reports.words.numbers import measured, scaled_unit, small, with_prefix
+from mdr.curves.families import unit_of_parameter
+from reports.words import Table, measured, scaled_unit, small, with_prefix
 
 
 def fit_table(found: CurveFit) -> Table:
@@ -62,30 +57,34 @@ def formula_table(found: CurveFit) -> Table:
 
 
 def fit_csv(found: CurveFit) -> str:
-    """Depth, force, fit, half width of its band and residual of each point, SI."""
-    residual = found.force - found.fitted
-    return _csv(
-        ("depth [m]", "force [N]", "fitted [N]", "band [N]", "residual [N]"),
-        (found.depth, found.force, found.fitted, found.band, residual),
-    )
+    """One row per point, SI: what was measured and fitted, and in the same columns of all rows the fitted numbers."""
+    unit = "N" if found.response == "force" else "m"
+    columns = {"time [s]": found.time} if found.time.size else {}
+    columns |= {"depth [m]": found.depth, "force [N]": found.force, f"fitted [{unit}]": found.fitted}
+    columns |= {f"band [{unit}]": found.band, f"residual [{unit}]": found.measured - found.fitted}
+    columns |= {"modulus_at_depth [Pa]": found.modulus_at_depth}
+    for name, value in found.values.items():
+        numbers = zip(("", "_low", "_high"), (value, *found.interval(name)), strict=True)
+        columns |= {f"{name}{end} [{unit_of_parameter(name)}]": np.full(found.depth.shape, v) for end, v in numbers}
+    columns |= {"r_squared": np.full(found.depth.shape, found.r_squared)}
+    rows = zip(*(column.tolist() for column in columns.values()), strict=True)
+    return csv_text(columns, ([value if np.isfinite(value) else "" for value in row] for row in rows))
 
 
 def map_csv(found: MapFit) -> str:
-    """One row a curve, SI; a curve without a fit has empty cells and the reason."""
-    low, high = found.interval
-    heads = ("youngs_modulus [Pa]", "low [Pa]", "high [Pa]", "contact_point [m]", "baseline [N]", "scatter [N]")
-    columns = (found.youngs_modulus, low, high, found.contact_point, found.baseline, found.scatter)
-    warnings = (
-        "; ".join(fit.warnings) if fit else reason for fit, reason in zip(found.curves, found.reasons, strict=True)
-    )
-    rows = zip(*(column.tolist() for column in columns), strict=True)
-    numbers = ([value if np.isfinite(value) else "" for value in row] for row in rows)
-    return csv_text((*heads, "warnings"), ([*row, words] for row, words in zip(numbers, warnings, strict=True)))
-
-
-def _csv(heads: Sequence[str], columns: Sequence[FloatArray]) -> str:
-    rows = zip(*(column.tolist() for column in columns), strict=True)
-    return csv_text(heads, ([value if np.isfinite(value) else "" for value in row] for row in rows))
+    """One row per curve, SI: every fitted number with its interval, or the reason why there is no fit."""
+    names = next((list(fit.values) for fit in found.curves if fit is not None), ["youngs_modulus"])
+    units = [unit_of_parameter(name) for name in names]
+    heads = [f"{name}{end} [{u}]" for name, u in zip(names, units, strict=True) for end in ("", "_low", "_high")]
+    rows = []
+    for number, (fit, reason, place) in enumerate(zip(found.curves, found.reasons, found.positions, strict=True)):
+        cells: list[object] = [""] * (len(heads) + 2)
+        if fit is not None:
+            cells = [cell for name in names for cell in (fit.values[name], *fit.interval(name))]
+            cells += [fit.r_squared, float(np.std(fit.measured - fit.fitted))]
+        cells += [number, *(value if np.isfinite(value) else "" for value in place.tolist())]
+        rows.append([*cells, reason if fit is None else "; ".join(fit.warnings)])
+    return csv_text([*heads, "r_squared", "scatter [N]", "curve", "x [m]", "y [m]", "warnings"], rows)
 
 
 def map_facts(found: MapFit) -> list[tuple[str, str]]:
@@ -95,6 +94,7 @@ def map_facts(found: MapFit) -> list[tuple[str, str]]:
         return [("warning", f"no curve could be fitted; the first: {found.reasons[0]}")]
     low, middle, high = np.quantile(known, (0.05, 0.5, 0.95))
     error = float(np.median(found.standard_error[found.converged] / known))
+    error_of_computation = max(fit.numerical_error for fit in found.curves if fit is not None)
     warned = [fit for fit in found.curves if fit is not None and fit.warnings]
     first = next((reason for reason in found.reasons if reason), "")
     facts = [("warning", f"{len(warned)} curves, the first: {warned[0].warnings[0]}")] if warned else []
@@ -107,25 +107,5 @@ def map_facts(found: MapFit) -> list[tuple[str, str]]:
             f"{with_prefix(middle, 'Pa')}; nine in ten from {with_prefix(low, 'Pa')} to {with_prefix(high, 'Pa')}",
         ),
         ("standard error of E", f"{100 * error:.2g} % in the median, from the scatter of each curve"),
-        ("numerical error", f"{small(found.numerical_error)} of E, in the intervals"),
+        ("numerical error", f"{small(error_of_computation)} of E, in the intervals"),
     ]
-
-
-def sweep_table(found: Sweep) -> Table:
-    """One row a state; quantities with their uncertainty in brackets."""
-    columns = found.columns
-    shown = {head: values for head, values in columns.items() if "_uncertainty" not in head}
-    texts = []
-    for head, values in shown.items():
-        name, bracket, unit = head.partition(" [")
-        spread = columns.get(f"{name}_uncertainty{bracket}{unit}", np.zeros_like(values))
-        texts.append([_cell(float(v), float(u)) for v, u in zip(values, spread, strict=True)])
-    note = "Digits in brackets: uncertainty of the last digits. A number without brackets is right to the digits shown."
-    heads, rows = tuple(shown), tuple(zip(*texts, strict=True))
-    return Table(title=f"Over {found.swept.name}", note=note, heads=heads, rows=rows, words=0)
-
-
-def _cell(value: float, uncertainty: float) -> str:
-    if not np.isfinite(uncertainty) or uncertainty < 0.5e-6 * abs(value) or value == 0.0:
-        return f"{value:.6g}"
-    return measured(value, uncertainty)

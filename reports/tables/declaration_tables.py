@@ -1,9 +1,7 @@
 """Tables of what a case declares: its scenes, its methods, its claims with their reasons."""
 
 from cases.declare.case import Case, CaseScene, ClaimOfCase
-from reports.tables.table import Table
-from reports.words.method_names import display_name
-from reports.words.numbers import small
+from reports.words import Table, display_name, small
 
 
 def scene_table(case: Case) -> Table:

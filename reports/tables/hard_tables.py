@@ -5,9 +5,7 @@ from collections.abc import Iterable, Iterator
 from cases.results.records.reliability import Ladder, Rung
 from cases.results.records.run import CaseResult
 from cases.results.status import Status
-from reports.tables.table import Table, tabulated
-from reports.words.method_names import display_name
-from reports.words.numbers import small
+from reports.words import Table, display_name, small, tabulated
 
 STATED = "stated error"
 

@@ -8,9 +8,8 @@ from cases.results.records.claim import Claim, Kind
 from cases.results.records.run import CaseResult
 from cases.results.records.scene_run import SceneRun
 from cases.results.status import Status
-from reports.tables.table import Table
-from reports.words.method_names import display_name
-from reports.words.numbers import duration, last_value, memory, small
+from reports.tables.case_tables import last_value
+from reports.words import Table, display_name, duration, memory, small
 
 NOTE = (
     "Errors and bars are relative. The error is that of the check against a closed form or the integral equation; the "

@@ -2,8 +2,7 @@
 
 from cases.declare.shared import EVERY, SHARED, Shared, Sharing
 from cases.results.records.run import RunResult
-from reports.tables.table import Table
-from reports.words.method_names import display_name
+from reports.words import Table, display_name
 
 
 def shared_things(run: RunResult) -> Table | None:

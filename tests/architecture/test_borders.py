@@ -40,7 +40,7 @@ def test_foreign_libraries_stay_behind_their_border():
         for name in imported_names(file)
         if name in BORDERS and not file.relative_to(ROOT).as_posix().startswith(BORDERS[name])
         # An answer imports matplotlib when it is asked for its picture.
-        if (file.name, name) != ("shown.py", "matplotlib")
+        if (file.name, name) != ("solution.py", "matplotlib")
     ]
     assert trespassers == []
 

@@ -13,7 +13,7 @@ scene = Scene(layer=layer, indenter=Cone(slope=0.1), loading=ContactRadii([1e-3]
 # What an elastic answer of MDR computes with is numpy and the compiled files of LAPACK and of special functions.
 LAPACK = "scipy.linalg._flapack"
 FEM = ("skfem", "fem_reference")
-FAR = ("matplotlib", "h5py", "typer", "rich", "pyfftw", "numpy.ma", "contact.files.scene_file", *FEM)
+FAR = ("matplotlib", "h5py", "typer", "rich", "pyfftw", "numpy.ma", *FEM)
 
 
 def loaded_after(code):
@@ -51,7 +51,7 @@ def test_scipy_loads_after_its_compiled_file(later):
 
 
 def test_lapack_is_scipys_where_its_file_is_not_found_alone():
-    told = "from contact.answer.compiled_files import lapack; import importlib.util as u; u.find_spec = lambda *_: None"
+    told = "from bem.compiled_files import lapack; import importlib.util as u; u.find_spec = lambda *_: None"
     assert "scipy.linalg" in loaded_after(f"{told}; assert lapack().dpotrf([[4.0]])[0][0, 0] == 2.0")
 
 

@@ -54,9 +54,9 @@ def solved(method, scene, settings="{}"):
     return json.loads(done.stdout)
 
 
-IN_TIME = ("mdr.history", "mdr.impact", "fem_reference.in_time")
-ADHESION = ("bem.adhesion", "mdr.adhesive", "mdr.detachment", "fem_reference.adhesion")
-FRICTION = ("mdr.friction", "fem_reference.elastic.stick", "fem_reference.elastic.friction")
+IN_TIME = ("mdr.history", "mdr.impact", "fem_reference.memory", "fem_reference.motions")
+ADHESION = ("mdr.adhesive", "mdr.detachment", "fem_reference.adhesion", "fem_reference.detachment")
+FRICTION = ("mdr.friction", "fem_reference.friction")
 EFFECT_ROOMS = (*IN_TIME, *ADHESION, *FRICTION)
 
 

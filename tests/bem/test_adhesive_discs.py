@@ -43,8 +43,12 @@ def detached(layer, indenter, control, points=96):
 
 
 @ALL_LAYERS
-@pytest.mark.parametrize("control", ["displacement", "force"])
-@pytest.mark.parametrize("indenter", [SPHERE, PUNCH, CONE, Cone(slope=0.1)], ids=lambda i: type(i).__name__)
+@pytest.mark.parametrize("control", ["displacement", pytest.param("force", marks=pytest.mark.slow)])
+@pytest.mark.parametrize(
+    "indenter",
+    [SPHERE, PUNCH, *(pytest.param(tip, marks=pytest.mark.slow) for tip in (CONE, Cone(slope=0.1)))],
+    ids=lambda i: type(i).__name__,
+)
 def test_stated_errors_of_pull_off_cover_the_difference_to_mdr(layer, indenter, control):
     exact = Mdr().solve(scene(layer, indenter, Detachment(control=control)))
     path = detached(layer, indenter, control)
@@ -193,11 +197,12 @@ def test_nothing_adheres_without_work_of_adhesion():
 
 @pytest.mark.slow
 @pytest.mark.parametrize("layer", [HALF_SPACE, LAYER, LAYER.replace(poissons_ratio=0.3, thickness=0.3e-3)])
-def test_pull_off_force_converges_to_a_part_in_a_thousand_at_512(layer):
+def test_pull_off_forces_are_those_of_mdr_to_1e_5(layer):
+    """Already on 128 cells; beyond, errors fall until those of the polynomials over the radius are left."""
     exact = Mdr().solve(scene(layer, SPHERE, Detachment(control="force"))).pull_off_force
-    errors = [abs(detached(layer, SPHERE, "force", points).pull_off_force / exact - 1.0) for points in (128, 256, 512)]
-    assert errors[2] < 3e-4
-    assert errors[2] < errors[0] / 4.0  # order above one
+    errors = [abs(detached(layer, SPHERE, "force", points).pull_off_force / exact - 1.0) for points in (128, 512)]
+    assert max(errors) < 1e-5
+    assert errors[1] < max(errors[0], 1e-11)
 
 
 @pytest.mark.parametrize("control", ["displacement", "force"])
@@ -230,7 +235,9 @@ def test_measured_profiles_on_layers_pull_off_within_their_stated_errors():
         assert abs(getattr(cells, name) / getattr(exact, name) - 1) <= cells.error_estimate[name][0], name
 
 
-@pytest.mark.parametrize(("kink", "work"), [(0.4, np.exp(-8.5)), (0.8, np.exp(-6.0))])
+@pytest.mark.parametrize(
+    ("kink", "work"), [(0.4, np.exp(-8.5)), pytest.param(0.8, np.exp(-6.0), marks=pytest.mark.slow)]
+)
 def test_pull_off_near_a_kink_of_a_measured_profile_is_sharp(kink, work):
     """Within 0.3 % of it, against MDR. Dividing by the half-space's answer, which has the kinks: 2e-3 and 2e-2 off."""
     indenter = Tabulated(radii=[0.0, 0.2, 0.4, 0.6, 0.8, 1.0], heights=[0.0, 0.002, 0.009, 0.021, 0.038, 0.062])

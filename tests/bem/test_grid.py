@@ -7,8 +7,9 @@ import pytest
 
 from bem import Bem
 from bem.grid.discs import disc_of, punch
-from bem.grid.influence import kernel_of, layer_influence, point_response
+from bem.grid.influence import layer_influence, point_response
 from bem.grid.operators import HALF_SPACE, grid_operator, pressed
+from bem.kernels.of_layer import surface_kernel
 from contact import (
     Adhesion,
     ContactRadii,
@@ -62,7 +63,7 @@ def test_a_sinusoidal_load_has_its_closed_form(material):
     p = np.cos(kx * x)[:, None] * np.cos(ky * x)
     k = np.hypot(kx, ky)
     answer = grid_operator(material, s, cells, "periodic").displacement(p) * s
-    exact = 2.0 * kernel_of(material).chi(np.array([k]))[0] / k * p
+    exact = 2.0 * surface_kernel(material).chi(np.array([k]))[0] / k * p
     np.testing.assert_allclose(answer, exact, atol=1e-8 * np.abs(exact).max(), rtol=0.0)
 
 
@@ -93,7 +94,7 @@ def test_a_cell_under_its_own_pressure_sinks_by_the_closed_form():
 
 @pytest.mark.parametrize("nu", [0.3, 0.5])
 def test_the_response_of_a_layer_decays_exponentially(nu):
-    response = point_response(kernel_of(layer(nu=nu)))
+    response = point_response(surface_kernel(layer(nu=nu)))
     rho = np.array([4.0, 8.0, 12.0])
     far = np.abs(response(rho) * rho + 1.0)
     assert np.all(far[1:] < far[:-1] * np.exp(-0.6 * 4.0))

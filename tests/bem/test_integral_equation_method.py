@@ -9,16 +9,19 @@ from contact import (
     Adhesion,
     Cone,
     ContactRadii,
+    ElasticBase,
     ExponentialDepth,
     FlatPunch,
     GradedLayer,
     IndentationDepths,
     InvalidInput,
     Layer,
+    LayerStack,
     Method,
     NormalForces,
     Paraboloid,
     Scene,
+    Sublayer,
     Tabulated,
     TruncatedCone,
     TruncatedParaboloid,
@@ -207,6 +210,19 @@ def test_contact_that_is_no_single_circle_is_refused(rises, radius, what):
     """One circle presses everywhere inside and touches nowhere outside."""
     scene = Scene(layer=LAYERS["half-space"], indenter=measured(rises), loading=ContactRadii([radius]))
     with pytest.raises(UnsupportedSceneError, match=what):
+        IntegralEquationMethod().solve(scene)
+
+
+def test_pulling_is_refused_where_the_contact_exceeds_its_flat_end_by_roundings():
+    """Seen to fail: the pressure was asked at r = a, 0/0 there hid the tension inside, and the contact was answered."""
+    film = Sublayer(thickness=0.5, youngs_modulus=10.0, poissons_ratio=0.3)
+    layer = LayerStack(sublayers=(film,), interfaces=(), support=ElasticBase(youngs_modulus=1.0, poissons_ratio=0.3))
+    scene = Scene(
+        layer=layer,
+        indenter=TruncatedCone(flat_radius=1.0, slope=1e-3),
+        loading=ContactRadii([1.0 + 4 * np.finfo(float).eps]),
+    )
+    with pytest.raises(UnsupportedSceneError, match=r"pulled at r = 0\.36"):
         IntegralEquationMethod().solve(scene)
 
 

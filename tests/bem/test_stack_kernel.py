@@ -76,6 +76,21 @@ def test_equal_layers_and_a_half_space_of_the_same_material_are_one_body(nu):
     np.testing.assert_allclose(filled.chi(q), 1.0, rtol=1e-14)
 
 
+def long_waves(stack):
+    """chi/k at k = 0 on a rigid base: uniaxial strain, and what groups of layers yield that slide sideways.
+
+    A group on a frictionless face yields (sum m_i h_i)^2/(sum E*_i h_i), m = nu/(1 - nu).
+    """
+    found = push = stiffness = 0.0
+    for one in stack.sheets:
+        nu, G, h = one.poissons_ratio, one.shear_modulus, one.thickness
+        found += h * (1 - 2 * nu) / (2 * G * (1 - nu))
+        push, stiffness = push + nu / (1 - nu) * h, stiffness + 2 * G / (1 - nu) * h
+        if one.slips_below:
+            found, push, stiffness = found + push**2 / stiffness, 0.0, 0.0
+    return stack.sheets[0].shear_modulus / (1 - stack.sheets[0].poissons_ratio) * found
+
+
 @pytest.mark.parametrize("seed", range(12))
 def test_the_limit_of_long_waves_is_the_closed_form(seed):
     draw = np.random.default_rng(seed)
@@ -83,14 +98,13 @@ def test_the_limit_of_long_waves_is_the_closed_form(seed):
     stack = kernel(sheets)
     k = 1e-7 / stack.longest
     found = float(stack.chi(np.array([k]))[0]) / k
-    assert found == pytest.approx(stack.zero_mode, rel=1e-9, abs=1e-9)
+    assert found == pytest.approx(long_waves(stack), rel=1e-9, abs=1e-9)
 
 
 def test_an_elastic_base_answers_long_waves_alone():
     film = kernel([(1.0, 5.0, 0.3, False)], (2.0, 0.1))
     expected = 5.0 / (1 - 0.3**2) / (2.0 / (1 - 0.1**2))
     np.testing.assert_allclose(film.chi(np.array([1e-12])), expected, rtol=1e-9)
-    assert np.isinf(film.zero_mode)
 
 
 def test_the_second_layer_fades_with_the_first_layers_thickness():

@@ -31,9 +31,9 @@ from cases.declare.foreign_methods import check_claim
 from cases.declare.methods import check_name
 from cases.results.files import from_json
 from cases.results.strict_json import json_text
-from contact import ContactPath, ContactRadii, Cost, InvalidInput, Scene, StageRecord
+from contact import ContactPath, ContactRadii, Cost, InvalidInput, Scene, Solution, StageRecord
 from contact.files.scene_file import load_scene, scene_from_mapping, scene_to_mapping
-from contact.files.storage import load_solution, read_tree, save_solution, write_tree
+from contact.files.storage import read_tree, write_tree
 from contact.records.errors import printable
 from tests.drawn_scenes import FAMILIES, random_scene
 
@@ -298,10 +298,10 @@ def _stored(draw: Draw) -> ContactPath:
 def _hdf5_trial(draw: Draw) -> tuple[End, str]:
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "solution.h5"
-        save_solution(file, _stored(draw))
+        _stored(draw).save(file)
         before = read_tree(file)
         file.write_bytes(damaged_bytes(draw, file.read_bytes()))
-        load_solution(file)
+        Solution.load(file)
         same = _equal(before, read_tree(file))
         return ("accepted", "") if same else ("altered", "other numbers were read than were stored")
 

@@ -126,7 +126,7 @@ def test_a_killed_scheduler_is_one_line_and_a_run_that_can_go_on(scheduler, tmp_
 def test_the_command_ends_as_interrupted_without_a_traceback(scheduler, tmp_path, monkeypatch, capfd):
     address, process = scheduler
     case = fake_case()
-    monkeypatch.setattr("reports.commands.run.load_cases", lambda: {case.name: case})
+    monkeypatch.setattr("reports.commands.runs.load_cases", lambda: {case.name: case})
     put = TaskStore.put
 
     def put_and_kill(*arguments):

@@ -113,7 +113,7 @@ def test_every_method_alone_runs_every_suite(method, suite, tmp_path, monkeypatc
         planned.extend(cases)
         raise InvalidInput("planned")
 
-    monkeypatch.setattr("reports.commands.run._carried_out", carried_out)
+    monkeypatch.setattr("reports.commands.runs._carried_out", carried_out)
     assert run(["run", "--suite", suite, "--method", method, "--out", str(tmp_path)]) == 4
     assert len(planned) > 8
     assert all({use.label for use in case.methods} == {method} for case in planned)

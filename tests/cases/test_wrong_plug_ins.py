@@ -56,7 +56,7 @@ def run_with(monkeypatch, tmp_path):
         entry = EntryPoint(name="mine", value=f"{__name__}:{kind.__name__}", group=methods.ENTRY_POINT_GROUP)
         monkeypatch.setattr(methods, "entry_points", lambda group: [entry])
         # Pages are not what is tested here.
-        monkeypatch.setattr("reports.commands.run.write_pages", lambda *_: None)
+        monkeypatch.setattr("reports.commands.runs.write_pages", lambda *_: None)
         out = ("--no-timing", "--executor", "serial", "--quiet", "--out", str(tmp_path))
         return run(["run", *arguments, *out]), read_run(tmp_path)
 

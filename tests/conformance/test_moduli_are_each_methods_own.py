@@ -25,7 +25,7 @@ def test_no_method_asks_the_layer_for_a_modulus(method, monkeypatch):
     ("place", "method"),
     [
         ("bem.kernels.moduli:contact_modulus", "mdr"),
-        ("fem_reference.discrete_layer.material:shear_modulus", "fem"),
+        ("fem_reference.materials:shear_modulus", "fem"),
     ],
 )
 def test_a_modulus_one_per_cent_wrong_parts_the_methods(place, method, monkeypatch):

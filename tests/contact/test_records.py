@@ -76,5 +76,8 @@ def test_help_and_editors_show_the_fields_of_a_constructor():
     assert before == inspect.signature(_Plate)
     assert str(before).replace("'", "") == "(*, width: float, height: float = 2.0)"
     layer = str(inspect.signature(Layer)).replace("'", "")
-    assert layer == "(*, thickness: float, youngs_modulus: float, poissons_ratio: float, support: Support = bonded)"
+    assert (
+        layer
+        == "(*, thickness: float, youngs_modulus: Modulus, poissons_ratio: PoissonsRatio, support: Support = bonded)"
+    )
     assert str(inspect.signature(ContactRadii)).replace("'", "") == "(values: Vector)"

@@ -129,7 +129,7 @@ def without(monkeypatch, missing):
             raise ModuleNotFoundError(f"No module named {missing!r}", name=missing)
         return import_module(name)
 
-    monkeypatch.setattr("contact.answer.shown.import_module", refuse)
+    monkeypatch.setattr("contact.answer.solution.import_module", refuse)
 
 
 @pytest.mark.parametrize(

@@ -23,9 +23,10 @@ from contact import (
     Layer,
     NotConvergedError,
     Scene,
+    Solution,
     StageLog,
 )
-from contact.files.storage import load_solution, read_tree, save_solution, write_tree
+from contact.files.storage import read_tree, write_tree
 
 LAYER = Layer(thickness=1e-3, youngs_modulus=1e6, poissons_ratio=0.5)
 SCENE = Scene(layer=LAYER, indenter=Cone(slope=0.1), loading=ContactRadii([1e-3, 2e-3, 3e-3]))
@@ -97,8 +98,8 @@ def solutions():
 @pytest.mark.parametrize("index", range(4))
 def test_storage_loses_nothing(tmp_path, index):
     solution = solutions()[index]
-    save_solution(tmp_path / "a.h5", solution)
-    again = load_solution(tmp_path / "a.h5")
+    solution.save(tmp_path / "a.h5")
+    again = Solution.load(tmp_path / "a.h5")
     assert type(again) is type(solution)
     for name in (*solution.ARRAYS, *solution.SCALARS):
         assert np.array_equal(getattr(again, name), getattr(solution, name)), name
@@ -126,19 +127,19 @@ def older(file, drop=()):
 
 def test_older_files_are_read_or_refused_in_one_sentence(tmp_path):
     for solution in solutions():
-        save_solution(tmp_path / "a.h5", solution)
+        solution.save(tmp_path / "a.h5")
         older(tmp_path / "a.h5")
-        assert type(load_solution(tmp_path / "a.h5")) is type(solution)
-    save_solution(tmp_path / "b.h5", solutions()[1])
+        assert type(Solution.load(tmp_path / "a.h5")) is type(solution)
+    solutions()[1].save(tmp_path / "b.h5")
     older(tmp_path / "b.h5", drop=("force_at_loss",))
     with pytest.raises(InvalidInput, match=r"a stored DetachmentPath without force_at_loss .*; solve its scene again"):
-        load_solution(tmp_path / "b.h5")
+        Solution.load(tmp_path / "b.h5")
 
 
 def test_stored_fields_answer_exactly_where_stored_and_nowhere_else(tmp_path):
     solution, radius = path(), np.linspace(0.0, 1e-3, 5)
-    save_solution(tmp_path / "a.h5", solution, radius)
-    again = load_solution(tmp_path / "a.h5")
+    solution.save(tmp_path / "a.h5", radius)
+    again = Solution.load(tmp_path / "a.h5")
     assert np.array_equal(again.pressure(radius[[3, 1]], step=2), solution.pressure(radius[[3, 1]], step=2))
     assert np.array_equal(again.surface_displacement(radius, step=-1), solution.surface_displacement(radius, step=2))
     with pytest.raises(InvalidInput, match="not among the 5 stored radii; solve the scene again"):
@@ -203,19 +204,19 @@ def test_restitution_contact_time_and_energy_residual():
 @pytest.mark.parametrize("damage", ["truncated", "text", "empty", "other"])
 def test_damaged_files_are_refused(tmp_path, damage):
     file = tmp_path / "a.h5"
-    save_solution(file, path())
+    path().save(file)
     data = file.read_bytes()
     if damage == "other":
         write_tree(file, {"a": np.ones(3)})
     else:
         file.write_bytes({"truncated": data[: len(data) // 2], "text": b"hello", "empty": b""}[damage])
     with pytest.raises(InvalidInput, match=r"does not match its digest|not written by this program|this version reads"):
-        load_solution(file)
+        Solution.load(file)
 
 
 def test_a_missing_file_or_folder_is_refused_and_nothing_half_written(tmp_path):
     with pytest.raises(InvalidInput, match="No such file"):
-        load_solution(tmp_path / "none.h5")
+        Solution.load(tmp_path / "none.h5")
     with pytest.raises(InvalidInput, match="check that the folder exists"):
         write_tree(tmp_path / "none" / "a.h5", {})
     write_tree(tmp_path / "a.h5", {"x": 1.0})

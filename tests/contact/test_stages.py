@@ -17,14 +17,14 @@ def test_nested_stages_are_timed_apart():
     with log.stage("outer"):
         time.sleep(0.002)
         with log.stage("inner"):
-            time.sleep(0.02)
+            time.sleep(0.2)
             log.hold(100, 20)
         with log.stage("inner"):
             pass
     outer, inner = log.records
     assert (outer.name, outer.calls, inner.name, inner.calls) == ("outer", 1, "inner", 2)
     assert inner.bytes == 120
-    assert inner.wall_seconds >= 0.02
+    assert inner.wall_seconds >= 0.2
     assert outer.wall_seconds < inner.wall_seconds
     assert outer.wall_seconds + inner.wall_seconds <= log.cost(unknowns=1).wall_seconds
 

@@ -24,14 +24,14 @@ sys.path.insert(0, {root!r})
 from cases.declare import methods
 methods.BUILT_IN["fake"] = methods.TableEntry(module="tests.cases.fake_method", attribute="FakeHertz")
 from cases.measurements import suites
-from reports.commands import gate, run
+from reports.commands import baselines, runs
 from reports.figures import figure_files
 # Other tests look at pictures and at the studies of the suite, which take most of the time.
 figure_files.write_figure = lambda figure, directory: "<svg></svg>"
 suites.QUICK = ()
 from tests.cases.fake_case import SLOW, fake_case, spoiled
 case = fake_case(slow=spoiled(SLOW, plant={plant!r}))
-run.load_cases = gate.load_cases = lambda: {{case.name: case}}
+runs.load_cases = baselines.load_cases = lambda: {{case.name: case}}
 from reports.command_line import main
 # Processes that draw import this file once more, as they do the installed command.
 if __name__ == "__main__":

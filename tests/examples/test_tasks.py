@@ -116,16 +116,16 @@ def test_fits_and_sweeps_are_printed_and_what_is_wrong_is_one_line(capsys):
     assert "5.016(24)" in out
     assert "+373 %" in out
     assert np.genfromtxt("fit.csv", delimiter=",", names=True).size == 120
-    assert run(["sweep", "force_steps.toml", "--over", "youngs_modulus=1kPa..1MPa:2:log"]) == 0
+    assert run(["solve", "force_steps.toml", "--over", "youngs_modulus=1kPa..1MPa:2:log"]) == 0
     assert "youngs_modulus [Pa]" in capsys.readouterr().out
     for arguments, message in (
         (["fit", "curve.csv", "sphere_on_a_gel.toml", "--with", "colour"], "fit youngs_modulus, and any of"),
         (["fit", "none.csv", "sphere_on_a_gel.toml"], "cannot be read"),
-        (["fit", "curve.csv", "sphere_on_a_gel.toml", "--write", "a.png"], "use .csv or .svg"),
-        (["sweep", "force_steps.toml", "--over", "thickness"], 'write "thickness=1um..10um:20"'),
-        (["sweep", "force_steps.toml", "--over", "colour=1..2:3"], "over 'colour' is no number of the scene"),
-        (["sweep", "force_steps.toml", "--over", "values=1..2:3"], "it is a list of numbers"),
-        (["sweep", "force_steps.toml", "--over", "poissons_ratio=0.6..0.7:2"], "no value was answered"),
+        (["fit", "curve.csv", "sphere_on_a_gel.toml", "--write", "a.xls"], "use one of .csv"),
+        (["solve", "force_steps.toml", "--over", "thickness"], 'write "thickness=1um..10um:20"'),
+        (["solve", "force_steps.toml", "--over", "colour=1..2:3"], "over 'colour' is no number of the scene"),
+        (["solve", "force_steps.toml", "--over", "values=1..2:3"], "it is a list of numbers"),
+        (["solve", "force_steps.toml", "--over", "poissons_ratio=0.6..0.7:2"], "no value was answered"),
     ):
         assert run(arguments) == 4
         assert message in capsys.readouterr().err

@@ -15,10 +15,10 @@ import numpy as np
 from scipy.optimize import brentq
 
 from contact import FlatPunch, InvalidInput, Layer, StageLog
-from fem_reference.discrete_layer.indenter import ScaledIndenter
-from fem_reference.discrete_layer.settings import Discretisation, contact_mesh
-from fem_reference.elastic.active_set import Complementary, solve_complementarity
-from fem_reference.elastic.surface_compliance import SurfaceCompliance, condense
+from fem_reference.contact_set import Complementary, solve_complementarity
+from fem_reference.profiles import ScaledIndenter
+from fem_reference.settings import Discretisation, contact_section
+from fem_reference.surface import Surface, condense
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -42,15 +42,16 @@ class CohesivePunch:
     def __init__(self, layer: Layer, punch_radius: float, settings: Discretisation) -> None:
         indenter = ScaledIndenter(FlatPunch(radius=punch_radius), punch_radius)
         self._log = StageLog()
-        self.strip: SurfaceCompliance = condense(layer, contact_mesh(layer, indenter, settings), "superlu", self._log)
+        section = contact_section(layer, indenter, settings)
+        self.strip: Surface = condense(*section, "superlu", self._log)
 
     def state(self, depth: float, strength: float) -> tuple[Complementary, float]:
         """Shifted pressures q at depth / a, and the opening at the rim."""
         tension = strength * np.ones(len(self.strip.radii))
-        free = self.strip.matrix @ tension
-        state = solve_complementarity(self.strip.matrix, depth * self.strip.resultants + free)
-        rim = self.strip.vertex_displacements[-1] @ (state.pressure - tension)
-        return state, float(rim - depth)
+        free = self.strip.pressed @ tension
+        state = solve_complementarity(self.strip.pressed, depth * self.strip.resultants + free)
+        surface = self.strip.top_displacements @ (state.pressure - tension)
+        return state, float(self.strip.top.evaluate(surface, np.ones(1))[0] - depth)
 
     def pull_off(self, work: float, strength: float) -> CohesivePullOff:
         """Depth and force at which the rim opens by ``work / strength``; work is dgamma / (E* a).

@@ -17,11 +17,9 @@ import numpy as np
 from contact import FlatPunch, IndentationDepths, Layer, Scene, StageLog
 from contact.stated import SAFETY
 from fem_reference import Fem
-from fem_reference.adhesion.branch import solve_branch
-from fem_reference.adhesion.detachment import slope_root
-from fem_reference.adhesion.equilibria import branch_samples
-from fem_reference.discrete_layer.settings import Discretisation
-from fem_reference.elastic.prescribed_radius import PrescribedContact, solve_contact
+from fem_reference.adhesion import solve_branch
+from fem_reference.prescribed_contact import PrescribedContact, solve_contact
+from fem_reference.settings import Discretisation
 
 # a/h at the ends of the branch's pieces: below the first the layer is a half-space, beyond the last a row of
 # independent springs.
@@ -58,10 +56,10 @@ def reversals(layer: Layer, solve: Callable[[float], PrescribedContact]) -> tupl
     """
     h = layer.thickness
     branch = solve_branch([ratio * h for ratio in RATIOS], (), h / (2 * np.pi), solve, NODES)
-    radius = branch_samples(branch)
+    radius = branch.samples
     slope = branch.slope(branch.elongation, radius)
     turns = np.flatnonzero(np.sign(slope[1:]) != np.sign(slope[:-1]))
-    places = [slope_root(branch, branch.elongation, radius[i], radius[i + 1]) for i in turns]
+    places = [branch.slope_root(branch.elongation, radius[i], radius[i + 1]) for i in turns]
     return tuple(
         Reversal(
             kind="maximum" if slope[i] > 0 else "minimum",

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from contact import NotConvergedError
-from fem_reference.adaptive import ATTEMPTS, solve_to_accuracy
+from fem_reference.stated import ATTEMPTS, solve_to_accuracy
 
 
 def stating(error):

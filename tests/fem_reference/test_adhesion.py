@@ -17,7 +17,7 @@ from contact import (
     TruncatedCone,
 )
 from fem_reference import Fem
-from fem_reference.discrete_layer.settings import Discretisation
+from fem_reference.settings import Discretisation
 from tests.fem_reference.cohesive_zone import CohesivePunch
 from tests.fem_reference.integral_equation import solve_contact, truncated_cone
 

@@ -6,14 +6,16 @@ import numpy as np
 import pytest
 from skfem import Basis, ElementVector, FacetBasis
 
-from fem_reference.discrete_layer import assembly, weak_forms
-from fem_reference.discrete_layer.assembly import Space, node_positions, scatter
-from fem_reference.discrete_layer.elements import PAIRS
-from fem_reference.discrete_layer.grading import Grading
-from fem_reference.discrete_layer.mesh import layer_mesh
-from fem_reference.discrete_layer.problem import outer_edge_matrix
+from fem_reference import assembly, weak_forms
+from fem_reference.assembly import PAIRS, Space, scatter
+from fem_reference.layer import DiscreteLayer
+from fem_reference.materials import uniform
+from fem_reference.mesh import section_mesh
 
-MESH = layer_mesh(1.0, 3.0, Grading(points=((1.0, 0.05),), growth=0.5, max_cell=0.5)).mesh
+SECTION = section_mesh(uniform(0.3), 3.0, ((1.0, 0.05),), 0.5)
+MESH = SECTION.mesh
+NU = 0.3
+MU, BULK = (1 - NU) / 2, (1 - NU) * (1 + NU) / (3 * (1 - 2 * NU))
 
 
 @pytest.fixture(params=PAIRS.values(), ids=PAIRS)
@@ -25,55 +27,63 @@ def relative_difference(fast, slow):
     return abs(fast - slow).max() / abs(slow).max()
 
 
-def vector_basis(pair):
-    return Basis(MESH, ElementVector(pair.displacement))
+def matrix_of(pair, *, bonded=True):
+    return DiscreteLayer(SECTION, pair, uniform(NU, bonded=bonded)).matrix
 
 
-def test_shear_and_volume(pair):
-    space, basis = Space(MESH, pair), vector_basis(pair)
-    n = space.displacement_count
-    shear = scatter(assembly.shear_elements(space, 0.3), space.element_displacements, n)
-    volume = scatter(assembly.volume_elements(space, 2.0), space.element_displacements, n)
-    assert relative_difference(shear, weak_forms.shear.assemble(basis, mu=0.3)) < 1e-13
-    assert relative_difference(volume, weak_forms.volume.assemble(basis, bulk=2.0)) < 1e-13
-
-
-def test_constraint_and_pressure_mass(pair):
+def weak_matrices(pair):
+    """The forms of displacements, of the constraint, and of the pressures."""
+    basis = Basis(MESH, ElementVector(pair.displacement))
+    shear = weak_forms.shear.assemble(basis, mu=MU)
     if not pair.is_mixed:
-        pytest.skip("a displacement formulation has no pressure")
-    space, basis = Space(MESH, pair), vector_basis(pair)
-    moduli = assembly.Moduli(shear=0.3, compressibility=0.7)
-    n = space.displacement_count
-    matrix = scatter(assembly.stiffness_elements(space, moduli), space.element_unknowns, space.size)
+        return shear + weak_forms.volume.assemble(basis, bulk=BULK), None, None
     pressures = basis.with_element(pair.pressure)
-    assert relative_difference(matrix[n:, :n], weak_forms.constraint.assemble(basis, pressures)) < 1e-13
     mass = weak_forms.pressure_mass.assemble(pressures)
-    assert relative_difference(matrix[n:, n:], -0.7 * mass) < 1e-13
+    return shear, weak_forms.constraint.assemble(basis, pressures), -mass / BULK
+
+
+def test_element_matrices_sum_to_the_weak_forms(pair):
+    matrix = matrix_of(pair)
+    shear, constraint, compressibility = weak_matrices(pair)
+    n = shear.shape[0]
+    assert relative_difference(matrix[:n, :n], shear) < 1e-13
+    if pair.is_mixed:
+        assert relative_difference(matrix[n:, :n], constraint) < 1e-13
+        assert relative_difference(matrix[n:, n:], compressibility) < 1e-13
     assert abs(matrix - matrix.T).max() < 1e-14 * abs(matrix).max()
 
 
-def test_outer_edge(pair):
-    space = Space(MESH, pair)
+def test_membrane_beyond_the_outer_edge(pair):
     edge = FacetBasis(MESH, ElementVector(pair.displacement), facets="outer")
-    n = space.displacement_count
-    direct = weak_forms.outer_edge_spring.assemble(edge, mu=0.3)
-    assert relative_difference(outer_edge_matrix(space, 0.3)[:n, :n], direct) < 1e-14
+    n = Space(MESH, pair).displacement_count
+    direct = weak_forms.membrane.assemble(edge, mu=MU)
+    assert relative_difference((matrix_of(pair, bonded=False) - matrix_of(pair))[:n, :n], direct) < 1e-12
 
 
 def test_node_positions(pair):
     basis = Basis(MESH, pair.displacement)
-    assert np.abs(node_positions(Space(MESH, pair)) - basis.doflocs).max() < 1e-14
+    assert np.abs(Space(MESH, pair).positions - basis.doflocs).max() < 1e-14
 
 
-def test_measure_is_the_volume_of_revolution():
-    assert Space(MESH, PAIRS["P2"]).measure.sum() == pytest.approx(np.pi * 3**2, rel=1e-13, abs=0.0)
+def test_a_planted_error_in_the_hoop_strain_differs_from_the_weak_form(monkeypatch):
+    right = assembly.strains
+    monkeypatch.setattr(
+        assembly, "strains", lambda jacobian: right(jacobian) * np.array([1, 1, 1.001, 1])[:, None, None]
+    )
+    assert relative_difference(matrix_of(PAIRS["P2"]), weak_matrices(PAIRS["P2"])[0]) > 1e-5
 
 
-def test_a_planted_error_in_the_hoop_strain_is_seen(monkeypatch):
-    space = Space(MESH, PAIRS["P2"])
-    reference = weak_forms.shear.assemble(vector_basis(PAIRS["P2"]), mu=0.3)
-    wrong = space.strains.copy()
-    wrong[:, 2] *= 1.001
-    monkeypatch.setitem(space.__dict__, "strains", wrong)
-    planted = scatter(assembly.shear_elements(space, 0.3), space.element_displacements, space.displacement_count)
-    assert relative_difference(planted, reference) > 1e-5
+def test_the_derivative_by_the_radius_is_that_of_the_matrix():
+    """Central differences of ``u . K u`` over meshes whose vertices are moved."""
+    layer = DiscreteLayer(SECTION, PAIRS["P3P2"], uniform(NU))
+    rng, eta = np.random.default_rng(3), np.exp(-np.hypot(MESH.p[0] - 1, MESH.p[1]))
+    state = rng.normal(size=(layer.space.size, 2))
+
+    def energies(step):
+        corners = layer.corners.copy()
+        corners[:, :, 0] += step * eta[MESH.t].T
+        elements = assembly.element_matrices(layer.pair, corners, layer.moduli)
+        return state.T @ (scatter(elements, layer.space.element_unknowns, layer.space.size) @ state)
+
+    difference = (energies(1e-5) - energies(-1e-5)) / 2e-5
+    np.testing.assert_allclose(layer.derivative_by_radius(state, eta), difference, rtol=1e-6)

@@ -16,7 +16,7 @@ from contact import (
     TruncatedCone,
 )
 from fem_reference import Fem
-from fem_reference.elastic.prescribed_radius import quick_solution, solve_contact
+from fem_reference.prescribed_contact import quick_solution, solve_contact
 from mdr import Mdr
 from tests.drawn_scenes import scene_of
 

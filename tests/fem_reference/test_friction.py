@@ -20,17 +20,17 @@ from contact import (
     NormalForces,
     Paraboloid,
     Scene,
+    Solution,
     Sphere,
     TruncatedCone,
     UnsupportedSceneError,
 )
-from contact.files.storage import load_solution, save_solution
 from fem_reference import Fem
-from fem_reference.elastic.friction import growth, step, strips, walk
+from fem_reference.friction import growth, step
 from mdr import Mdr
 from mdr.friction.statement import friction_effect
 
-# 80, 40 and 20 cells.
+# 60 and 30 cells.
 COARSE = Fem(growth=1.0)
 PARABOLOID = Paraboloid(radius_of_curvature=10.0)
 
@@ -88,15 +88,15 @@ def slope_on_strips(nu, support, depth):
     """d ln F/d mu at mu = 0 by the fast method, and on strips of 40 and 80 cells, extrapolated in mu."""
     path = Mdr().solve(rubbed(None, layer(nu, support), IndentationDepths([depth])))
     effect, radius = friction_effect(path, 1.0), float(path.contact_radius[0])
-    maker = strips.StripMaker(
-        rubbed(1.0, layer(nu, support), ContactRadii([radius])), Fem().discretisation, "superlu", strips.StageLog()
+    maker = growth.StripMaker(
+        rubbed(1.0, layer(nu, support), ContactRadii([radius])), Fem().discretisation, "superlu", growth.StageLog()
     )
     found = []
     for cells in (40, 80):
         contact, logs = maker.contact(radius / 0.85, cells), []
         for mu in (0.0, 0.005, 0.01):
             rubbing = _with_coefficient(contact, mu)
-            strip = growth.Growing(rubbing, walk.grown(rubbing))
+            strip = growth.Growing(rubbing, step.grown(rubbing))
             logs.append(strip.local(np.log(strip.force), depth)[0])
         slopes = np.expm1(np.array(logs[1:]) - logs[0]) / [0.005, 0.01]
         found.append(float(2.0 * slopes[0] - slopes[1]))
@@ -177,7 +177,6 @@ def test_partial_slip_on_the_half_space_is_that_of_the_coupled_equations(nu, sha
     for name, (value, tolerance) in expected.items():
         assert getattr(path, name) == pytest.approx([value], rel=tolerance, abs=0.0), name
         assert np.all(np.abs(getattr(path, name) - value) <= path.uncertainty(name)), name
-    assert path.error_estimate["order_defect"][0] < 0.2
 
 
 @pytest.mark.slow
@@ -220,9 +219,9 @@ def test_a_history_of_force_is_that_of_its_depths():
 
 def followed_strip(cells):
     scene = rubbed(0.2, layer(0.5), ContactRadii([2.0]))
-    maker = strips.StripMaker(scene, Fem().discretisation, "superlu", strips.StageLog())
+    maker = growth.StripMaker(scene, Fem().discretisation, "superlu", growth.StageLog())
     contact = maker.contact(2.0, cells)
-    return contact, walk.followed(contact, [0.04, 0.02, 0.04, 0.01], by_depth=True)
+    return contact, step.followed(contact, [0.04, 0.02, 0.04, 0.01], by_depth=True)
 
 
 def test_work_is_stored_or_dissipated_with_second_order_in_the_cells():
@@ -239,9 +238,9 @@ def test_work_is_stored_or_dissipated_with_second_order_in_the_cells():
 
 def test_forces_converge_with_second_order_in_the_cells():
     scene = rubbed(0.3, layer(0.5), ContactRadii([2.0]))
-    maker = strips.StripMaker(scene, Fem().discretisation, "superlu", strips.StageLog())
+    maker = growth.StripMaker(scene, Fem().discretisation, "superlu", growth.StageLog())
     contacts = [maker.contact(2.0, cells) for cells in (20, 40, 80)]
-    grown = [growth.Growing(contact, walk.grown(contact)) for contact in contacts]
+    grown = [growth.Growing(contact, step.grown(contact)) for contact in contacts]
     logs = [strip.local(np.log(strip.force), 0.06)[0] for strip in grown]
     assert math.log2((logs[1] - logs[0]) / (logs[2] - logs[1])) == pytest.approx(2.0, rel=0.0, abs=0.5)
     assert abs(logs[2] - logs[1]) < 2e-3
@@ -253,11 +252,11 @@ def test_forces_under_stick_converge_to_those_of_mdr_with_second_order(support):
     scene = rubbed(math.inf, layer(0.5, support), ContactRadii([5.0]))
     exact = Mdr().solve(scene)
     depth, force = float(exact.indentation_depth[0]), float(exact.normal_force[0]) / scene.layer.contact_modulus
-    maker = strips.StripMaker(scene, Fem().discretisation, "superlu", strips.StageLog())
+    maker = growth.StripMaker(scene, Fem().discretisation, "superlu", growth.StageLog())
     errors = []
     for cells in (40, 80):
         contact = maker.contact(5.0 / 0.9, cells)
-        strip = growth.Growing(contact, walk.grown(contact))
+        strip = growth.Growing(contact, step.grown(contact))
         errors.append(strip.local(np.log(strip.force), depth)[0] - math.log(force))
     assert math.log2(errors[0] / errors[1]) == pytest.approx(2.0, rel=0.0, abs=0.1)
     assert (4.0 * errors[1] - errors[0]) / 3.0 == pytest.approx(0.0, rel=0.0, abs=2e-5)
@@ -269,8 +268,8 @@ def touching_then_pressed():
 
 
 def test_an_answer_with_friction_is_stored_and_read(tmp_path, touching_then_pressed):
-    save_solution(tmp_path / "path.h5", touching_then_pressed)
-    again = load_solution(tmp_path / "path.h5")
+    touching_then_pressed.save(tmp_path / "path.h5")
+    again = Solution.load(tmp_path / "path.h5")
     assert isinstance(again, FrictionPath)
     assert again.stick_radius[1] == touching_then_pressed.stick_radius[1] > 0.0
 

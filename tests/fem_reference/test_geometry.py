@@ -8,15 +8,19 @@ import numpy as np
 import pytest
 
 from contact import NotConvergedError
-from fem_reference.discrete_layer.grading import Grading
-from fem_reference.discrete_layer.mesh import layer_mesh, named_layer_mesh
+from fem_reference.materials import uniform
+from fem_reference.mesh import named_section, section_mesh
 
-GRADING = Grading(points=((0.5, 1e-3), (1.0, 1e-5)), growth=0.5, max_cell=0.5)
+POINTS = ((0.5, 1e-3), (1.0, 1e-5))
+
+
+def layer_mesh(thickness, outer, points, growth=0.5, strip=0.0):
+    return section_mesh(uniform(0.3, thickness), outer, points, growth, strip)
 
 
 @pytest.fixture(scope="module")
 def mesh():
-    return layer_mesh(1.0, 4.0, GRADING)
+    return layer_mesh(1.0, 4.0, POINTS)
 
 
 def test_boundaries_have_their_names_and_lengths(mesh):
@@ -27,7 +31,7 @@ def test_boundaries_have_their_names_and_lengths(mesh):
 
 def test_graded_points_are_vertices_with_the_wished_cells(mesh):
     p, t = mesh.mesh.p, mesh.mesh.t
-    for radius, cell in GRADING.points:
+    for radius, cell in POINTS:
         vertex = np.flatnonzero((p[0] == radius) & (p[1] == 0))
         assert len(vertex) == 1
         corners = p[:, t[:, (t == vertex[0]).any(axis=0)]]
@@ -42,21 +46,21 @@ def test_section_is_filled_once(mesh):
 
 
 def test_fingerprint_is_reproduced_and_tells_meshes_apart(mesh):
-    again = layer_mesh(1.0, 4.0, GRADING)
-    other = layer_mesh(1.0, 4.0, Grading(points=GRADING.points, growth=0.4, max_cell=0.5))
+    again = layer_mesh(1.0, 4.0, POINTS)
+    other = layer_mesh(1.0, 4.0, POINTS, 0.4)
     assert again.fingerprint == mesh.fingerprint != other.fingerprint
 
 
 def test_cells_grow_faster_near_graded_points():
     """Two thirds of the triangles that cells of one growth make (1,138); far away they are no larger."""
-    fine = layer_mesh(1.0, 4.0, Grading(points=((0.0, 1e-7), (1.0, 1e-8)), growth=0.5, max_cell=0.5)).mesh
+    fine = layer_mesh(1.0, 4.0, ((0.0, 1e-7), (1.0, 1e-8))).mesh
     assert fine.t.shape[1] < 800
     far = fine.p[:, fine.t][:, :, np.hypot(fine.p[0, fine.t] - 1, fine.p[1, fine.t]).min(axis=0) > 1]
     assert np.hypot(*(far - np.roll(far, 1, axis=1))).max() < 1.0
 
 
 def test_strip_has_cells_of_one_size():
-    strip = layer_mesh(1.0, 4.0, Grading(points=((2.0, 0.1),), strip=(2.0, 0.1), growth=0.5)).mesh
+    strip = layer_mesh(1.0, 4.0, ((2.0, 0.1),), strip=2.0).mesh
     r, z = strip.p
     top = np.sort(r[(z == 0) & (r <= 2)])
     assert np.diff(top) == pytest.approx(0.1, rel=0.1, abs=0.0)
@@ -64,13 +68,13 @@ def test_strip_has_cells_of_one_size():
 
 
 def test_a_section_of_a_hundred_million_radii_is_meshed():
-    mesh = layer_mesh(1e8, 1e9, Grading(points=((1.0, 1e-7),), growth=0.5, max_cell=5e7)).mesh
+    mesh = section_mesh(uniform(0.3, 1e8, has_base=True), 1e8, ((1.0, 1e-7),), 0.5).mesh
     assert mesh.t.shape[1] < 3000
 
 
 @pytest.mark.parametrize(("gap", "cell"), [(0.5, 1e-10), (1e-6, 1e-11)])
 def test_cells_far_below_1e_8_of_the_radius_are_as_round_as_others(gap, cell):
-    mesh = layer_mesh(1.0, 4.0, Grading(points=((1 - gap, cell), (1.0, cell)), growth=0.5, max_cell=0.5)).mesh
+    mesh = layer_mesh(1.0, 4.0, ((1 - gap, cell), (1.0, cell))).mesh
     corners = mesh.p[:, mesh.t] - np.array([[1.0], [0.0]])[:, None]
     sides = corners - np.roll(corners, 1, axis=1)
     area = np.abs(sides[0, 0] * sides[1, 1] - sides[0, 1] * sides[1, 0]) / 2
@@ -82,14 +86,14 @@ def test_cells_far_below_1e_8_of_the_radius_are_as_round_as_others(gap, cell):
 
 def test_lines_of_1e14_cells_take_no_minutes():
     start = time.process_time()
-    layer_mesh(80.0, 500.0, Grading(points=((1 - 7e-7, 7e-12), (1.0, 7e-12)), growth=0.7, max_cell=50.0))
+    layer_mesh(80.0, 500.0, ((1 - 7e-7, 7e-12), (1.0, 7e-12)), 0.7)
     assert time.process_time() - start < 5  # 0.3 s; more than 15 s for a line in one piece
 
 
 def test_gmsh_does_not_let_a_broken_pipe_end_the_process():
     code = (
         "import os\n"
-        "from fem_reference.discrete_layer.mesh import _gmsh\n"
+        "from fem_reference.mesh import _gmsh\n"
         "_gmsh()\n"
         "reader, writer = os.pipe()\n"
         "os.close(reader)\n"
@@ -105,4 +109,4 @@ def test_gmsh_does_not_let_a_broken_pipe_end_the_process():
 def test_a_triangle_without_area_is_refused_by_name():
     points = np.array([[0.0, 1.0, 2.0, 1.0], [0.0, 0.0, 0.0, 1.0]])
     with pytest.raises(NotConvergedError, match="no area"):
-        named_layer_mesh(points, np.array([[0, 0], [1, 1], [3, 2]]))
+        named_section(points, np.array([[0, 0], [1, 1], [3, 2]]), np.zeros(2, dtype=int), uniform(0.3))

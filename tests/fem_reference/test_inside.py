@@ -200,7 +200,7 @@ def test_files_carry_all_fields_to_the_library_of_paraview(path, tmp_path, endin
 
 
 def test_settings_name_the_mesh(path):
-    assert path.settings["mesh"] == path.fields.states[0].contact.layer_mesh.fingerprint
+    assert path.settings["mesh"] == path.fields.states[0].contact.layer.section.fingerprint
 
 
 def test_refusals_by_name(path, tmp_path):
@@ -216,9 +216,9 @@ def test_refusals_by_name(path, tmp_path):
         path.inside().fields.write(tmp_path / "section.png")
     punch = Scene(layer=LAYER, indenter=FlatPunch(radius=A), loading=IndentationDepths([1e-6]))
     inside = Fem(order=2, growth=1.0).solve(punch).inside()
-    with pytest.raises(InvalidInput, match="stresses are infinite at this sharp rim"):
+    with pytest.raises(InvalidInput, match="stresses are infinite at this sharp edge"):
         inside.at(A, 0.0)
-    with pytest.raises(InvalidInput, match="it is infinite at the rim"):
+    with pytest.raises(InvalidInput, match="it is infinite at the sharp edge"):
         inside.largest("von_mises")
 
 

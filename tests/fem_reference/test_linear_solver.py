@@ -14,47 +14,30 @@ from contact import (
     UnsupportedSceneError,
 )
 from fem_reference import Fem
-from fem_reference.discrete_layer.assembly import Space, stiffness_elements
-from fem_reference.discrete_layer.elements import PAIRS, taylor_hood
-from fem_reference.discrete_layer.grading import Grading
-from fem_reference.discrete_layer.material import moduli
-from fem_reference.discrete_layer.mesh import layer_mesh
-from fem_reference.discrete_layer.problem import LayerProblem
-from fem_reference.discrete_layer.solving import linear_solver
-from fem_reference.discrete_layer.solving.linear_solver import CheckedSolver
-from fem_reference.discrete_layer.solving.ordering import minimum_degree, nodes
+from fem_reference import solver as linear_solver
+from fem_reference.assembly import PAIRS, Space, taylor_hood
+from fem_reference.layer import DiscreteLayer
+from fem_reference.materials import uniform
+from fem_reference.mesh import section_mesh
+from fem_reference.solver import CheckedSolver, minimum_degree
 
-LAYER_MESH = layer_mesh(1.0, 6.0, Grading(points=((1.0, 1e-5),), growth=0.5, max_cell=0.5))
+SECTION = section_mesh(uniform(0.5), 6.0, ((1.0, 1e-5),), 0.5)
+
+
+def discrete(pair, nu, backend="superlu", *, bonded=True):
+    return DiscreteLayer(SECTION, pair, uniform(nu, bonded=bonded), backend=backend)
 
 
 def restricted(degree, nu, backend="superlu"):
     """The factorised layer, pressed on a disc."""
-    problem = LayerProblem(LAYER_MESH, taylor_hood(degree), nu, "bonded", backend)
+    problem = discrete(taylor_hood(degree), nu, backend)
     return problem.solver(np.concatenate([problem.supported_unknowns, 2 * problem.top_nodes(1.0) + 1]))
 
 
 @pytest.mark.parametrize("degree", [2, 3, 4])
-def test_order_is_a_permutation_with_displacements_first_in_every_node(degree):
-    space = Space(LAYER_MESH.mesh, taylor_hood(degree))
-    order = minimum_degree(space)
-    assert np.array_equal(np.sort(order), np.arange(space.size))
-    node = nodes(space)[order]
-    is_pressure = order >= space.displacement_count
-    same = node[1:] == node[:-1]
-    # Every node is one run of the order, and no displacement follows a pressure in it.
-    assert np.count_nonzero(~same) + 1 == len(np.unique(node))
-    assert not np.any(is_pressure[:-1] & ~is_pressure[1:] & same)
-
-
-@pytest.mark.parametrize("degree", [2, 3, 4])
-def test_nodes_gather_unknowns_of_the_same_triangles(degree):
-    space = Space(LAYER_MESH.mesh, taylor_hood(degree))
-    triangles = [frozenset() for _ in range(space.size)]
-    for triangle, unknowns in enumerate(space.element_unknowns):
-        for unknown in unknowns:
-            triangles[unknown] |= {triangle}
-    pairs = set(zip(nodes(space).tolist(), triangles, strict=True))
-    assert len(pairs) == len({node for node, _ in pairs}) == len({held for _, held in pairs})
+def test_order_is_a_permutation(degree):
+    space = Space(SECTION.mesh, taylor_hood(degree))
+    assert np.array_equal(np.sort(minimum_degree(space)), np.arange(space.size))
 
 
 @pytest.mark.parametrize("nu", [0.3, 0.5])
@@ -69,7 +52,7 @@ def test_fill_is_small_at_every_poissons_ratio(nu):
 def test_minimum_degree_needs_no_pivoting_and_agrees_with_partial_pivoting(degree, nu):
     solutions = []
     for backend in ("superlu", "superlu-pivoting"):
-        problem = LayerProblem(LAYER_MESH, taylor_hood(degree), nu, "bonded", backend)
+        problem = discrete(taylor_hood(degree), nu, backend)
         pressed = 2 * problem.top_nodes(1.0) + 1
         solver = problem.solver(np.concatenate([problem.supported_unknowns, pressed]))
         values = np.zeros((len(solver.held), 1))
@@ -85,7 +68,7 @@ def test_mumps_agrees_with_superlu(degree, nu):
     pytest.importorskip("mumps", reason="the optional package python-mumps is not installed")
     solutions = []
     for backend in ("superlu", "mumps"):
-        problem = LayerProblem(LAYER_MESH, taylor_hood(degree), nu, "bonded", backend)
+        problem = discrete(taylor_hood(degree), nu, backend)
         pressed = 2 * problem.top_nodes(1.0) + 1
         solver = problem.solver(np.concatenate([problem.supported_unknowns, pressed]))
         values = np.zeros((len(solver.held), 2))
@@ -139,7 +122,7 @@ def test_unknown_or_missing_backends_are_named(monkeypatch):
 
 def test_displacement_formulation_refuses_incompressibility():
     with pytest.raises(InvalidInput, match="mixed"):
-        stiffness_elements(Space(LAYER_MESH.mesh, PAIRS["P2"]), moduli(0.5))
+        discrete(PAIRS["P2"], 0.5).matrix  # noqa: B018
 
 
 def out_of_memory(*_arguments):
@@ -172,7 +155,7 @@ def test_no_memory_error_leaves_the_method(monkeypatch):
 @pytest.mark.parametrize("name", ["P2P1", "P3P2", "P4P3"])
 def test_condensed_triangles_solve_the_whole_system(name, nu):
     """Random loads, inside triangles as well, and random prescribed values: every equation of the full matrix holds."""
-    problem = LayerProblem(LAYER_MESH, PAIRS[name], nu, "unbonded")
+    problem = discrete(PAIRS[name], nu, bonded=False)
     held, rng = problem.supported_unknowns, np.random.default_rng(1)
     solver, loads = problem.solver(held), rng.normal(size=(problem.space.size, 2))
     values = rng.normal(size=(len(held), 2))
@@ -187,6 +170,6 @@ def test_condensed_triangles_solve_the_whole_system(name, nu):
 
 
 def test_linear_elements_have_nodes_at_vertices_only():
-    problem = LayerProblem(LAYER_MESH, PAIRS["P1P1"], 0.3, "bonded")
-    ends = np.unique(LAYER_MESH.mesh.facets[:, LAYER_MESH.mesh.boundaries["base"]])
+    problem = discrete(PAIRS["P1P1"], 0.3)
+    ends = np.unique(SECTION.mesh.facets[:, SECTION.mesh.boundaries["base"]])
     assert len(problem.nodes_on("base")) == len(ends)

@@ -16,9 +16,9 @@ from contact import (
     TruncatedParaboloid,
 )
 from fem_reference import Fem
-from fem_reference.discrete_layer.settings import narrowest_radius
-from fem_reference.elastic.at_load import state_at_load
-from fem_reference.elastic.prescribed_radius import solve_contact
+from fem_reference.equilibria import state_at_load
+from fem_reference.prescribed_contact import solve_contact
+from fem_reference.settings import narrowest_radius
 from mdr import Mdr
 from tests.drawn_scenes import random_scenes
 

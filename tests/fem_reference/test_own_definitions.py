@@ -29,13 +29,12 @@ from contact import (
     TruncatedParaboloid,
     UnsupportedSceneError,
 )
-from contact.scene.depth_functions import DEPTH_FUNCTIONS
 from contact.scene.effects import EFFECTS, Viscoelasticity
+from contact.scene.graded_layer import DEPTH_FUNCTIONS
 from contact.scene.profiles import PROFILES
 from fem_reference import Fem
-from fem_reference.discrete_layer.indenter import shape
-from fem_reference.discrete_layer.several_layers.gradings import at_depths
-from fem_reference.in_time.relaxation import relaxation_of
+from fem_reference.materials import at_depths, relaxation_of
+from fem_reference.profiles import shape
 
 RADII = np.linspace(0.0, 3.0, 241)
 RANDOM = np.random.default_rng(20261122)

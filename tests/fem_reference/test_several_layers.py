@@ -27,13 +27,12 @@ from contact import (
     UnsupportedSceneError,
 )
 from fem_reference import Fem
-from fem_reference.discrete_layer.elements import taylor_hood
-from fem_reference.discrete_layer.indenter import ScaledIndenter
-from fem_reference.discrete_layer.problem import problem_of
-from fem_reference.discrete_layer.settings import Discretisation, contact_mesh
-from fem_reference.discrete_layer.several_layers.parts import graded_lines, parts_of
-from fem_reference.elastic.patch_test import patch_defect
-from fem_reference.elastic.prescribed_radius import solve_prescribed_contact
+from fem_reference.assembly import taylor_hood
+from fem_reference.layer import DiscreteLayer
+from fem_reference.materials import graded_lines, parts_of
+from fem_reference.prescribed_contact import solve_prescribed_contact
+from fem_reference.profiles import ScaledIndenter
+from fem_reference.settings import Discretisation, contact_section
 from tests.stacked_scenes import random_stack
 
 SETTINGS = Discretisation(growth=0.8, edge_cell=1e-4)
@@ -58,12 +57,12 @@ SHEET = stack((0.1, 1e4, 0.3), (1.0, 1.0, 0.5))
 
 @pytest.mark.parametrize("layer", [SLIPPING, SHEET, stack((0.01, 1.0, 0.5), (0.01, 2.0, 0.5), (3.0, 1.0, 0.3))])
 def test_parts_fill_the_section_once_and_meet_at_the_same_places(layer):
-    mesh = contact_mesh(layer, INDENTER, SETTINGS)
+    parts, mesh = contact_section(layer, INDENTER, SETTINGS)
     corners = mesh.mesh.p[:, mesh.mesh.t]
     (r1, z1), (r2, z2) = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
     areas = np.bincount(mesh.part, np.abs(r1 * z2 - r2 * z1) / 2)
-    np.testing.assert_allclose(areas, mesh.body.thicknesses * mesh.outer_radius, rtol=1e-12)
-    for face, depth in zip(mesh.faces, mesh.body.depths[1:], strict=False):
+    np.testing.assert_allclose(areas, parts.thicknesses * mesh.outer_radius, rtol=1e-12)
+    for face, depth in zip(mesh.faces, parts.depths[1:], strict=False):
         above, below = (mesh.mesh.p[:, mesh.mesh.facets[:, side]] for side in (face.above, face.below))
         assert np.all(above[1] == depth)
         np.testing.assert_array_equal(np.unique(above[0]), np.unique(below[0]))
@@ -72,7 +71,8 @@ def test_parts_fill_the_section_once_and_meet_at_the_same_places(layer):
 
 def test_a_thin_part_costs_few_triangles():
     count = {
-        h: contact_mesh(stack((h, 1.0, 0.3), (1.0, 2.0, 0.3)), INDENTER, SETTINGS).mesh.t.shape[1] for h in (0.1, 1e-3)
+        h: contact_section(stack((h, 1.0, 0.3), (1.0, 2.0, 0.3)), INDENTER, SETTINGS)[1].mesh.t.shape[1]
+        for h in (0.1, 1e-3)
     }
     assert count[1e-3] < 2 * count[0.1]
 
@@ -93,9 +93,11 @@ def test_moduli_at_points_are_those_of_the_depth():
         poissons_ratio=TabulatedDepth(depths=[0.0, 2.0], values=[0.3, 0.5]),
         support=ElasticBase(youngs_modulus=5.0, poissons_ratio=0.1),
     )
-    problem = problem_of(layer, contact_mesh(layer, INDENTER, SETTINGS), taylor_hood(2))
-    part, depth = problem.layer_mesh.part, problem.constants.quadrature
-    moduli = problem.constants.on(np.arange(len(part)))
+    parts, section = contact_section(layer, INDENTER, SETTINGS)
+    part = section.part
+    corners = section.mesh.p[1, section.mesh.t]
+    depth = corners.T @ np.array([[1 / 3, 0.1], [1 / 3, 0.2], [1 / 3, 0.7]])
+    moduli = parts.at(part, depth)
     inside = depth < 2.0
     assert np.all((part < part.max())[:, None] == inside)
     unit = 3.0 / (1 - 0.3**2)
@@ -106,22 +108,21 @@ def test_moduli_at_points_are_those_of_the_depth():
 
 
 def test_a_constant_strain_passes_through_joined_faces_and_not_through_a_cut():
-    mesh = contact_mesh(SLIPPING, INDENTER, SETTINGS)
-    problem = problem_of(SLIPPING, mesh, taylor_hood(2))
-    assert patch_defect(problem) < 1e-13
-    cut = problem_of(SLIPPING, replace(mesh, faces=mesh.faces[:1]), taylor_hood(2))
-    assert patch_defect(cut) > 0.1
+    parts, section = contact_section(SLIPPING, INDENTER, SETTINGS)
+    assert DiscreteLayer(section, taylor_hood(2), parts).patch_defect < 1e-13
+    cut = replace(section, faces=section.faces[:1])
+    assert DiscreteLayer(cut, taylor_hood(2), parts).patch_defect > 0.1
 
 
 def test_bonded_faces_share_displacements_and_sliding_ones_the_normal_one():
-    mesh = contact_mesh(SLIPPING, INDENTER, SETTINGS)
-    problem = problem_of(SLIPPING, mesh, taylor_hood(3))
+    parts, mesh = contact_section(SLIPPING, INDENTER, SETTINGS)
+    problem = DiscreteLayer(mesh, taylor_hood(3), parts)
     answer = solve_prescribed_contact(problem, INDENTER, StageLog())
     corners = mesh.mesh.t
     space = problem.space
     values = answer.solutions[:, 0][space.element_displacements].reshape(corners.shape[1], -1, 2)[:, :3]
     jumps = []
-    for face, depth in enumerate(mesh.body.depths[1:-1]):
+    for face, depth in enumerate(parts.depths[1:-1]):
         sides = []
         for side in (face, face + 1):
             chosen = (mesh.part == side)[:, None] & (mesh.mesh.p[1, corners.T] == depth)
@@ -190,7 +191,7 @@ def test_no_triangle_turns_over_between_faces_that_bend_and_the_end_of_a_base():
         if number < 24 or not isinstance(layer.support, ElasticBase):
             continue
         cone = ScaledIndenter(TruncatedCone(flat_radius=flat * radius, slope=0.1), radius)
-        mesh = contact_mesh(layer, cone, Discretisation(growth=0.8, edge_cell=1e-2)).mesh
+        mesh = contact_section(layer, cone, Discretisation(growth=0.8, edge_cell=1e-2))[1].mesh
         (r0, r1, r2), (z0, z1, z2) = mesh.p[:, mesh.t]
         area = (r1 - r0) * (z2 - z0) - (r2 - r0) * (z1 - z0)
         assert np.abs(area).sum() == pytest.approx(2 * np.prod(mesh.p.max(axis=1)), rel=1e-9, abs=0.0)

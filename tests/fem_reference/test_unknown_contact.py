@@ -18,8 +18,8 @@ from contact import (
     UnsupportedSceneError,
 )
 from fem_reference import Fem
-from fem_reference.elastic.active_set import edge_radius
-from fem_reference.elastic.at_load import radius_of_load
+from fem_reference.contact_set import edge_radius
+from fem_reference.equilibria import radius_of_load
 from mdr import Mdr
 from tests.fem_reference.integral_equation import solve_contact, truncated_cone
 

@@ -22,12 +22,11 @@ from contact import (
     StandardSolid,
 )
 from fem_reference import Fem
-from fem_reference.adaptive import solve_to_accuracy
-from fem_reference.in_time.impact import peak
-from fem_reference.in_time.motions import MAX_STEPS, CondensedLayer, FallingBody, simulate_impact
-from fem_reference.in_time.relaxation import ShearRelaxation
-from fem_reference.in_time.setup import HistorySetup
-from fem_reference.in_time.top import Top, proportional_modes
+from fem_reference.impacts import peak
+from fem_reference.materials import ShearRelaxation
+from fem_reference.memory import Top, proportional_modes
+from fem_reference.motions import MAX_STEPS, CondensedLayer, FallingBody, HistorySetup, simulate_impact
+from fem_reference.stated import solve_to_accuracy
 
 QUICK = Fem(growth=1.0, edge_cell=1e-6, truncation=1e-7)
 G1 = 7.5e6
@@ -210,7 +209,7 @@ def test_elastic_impact_loses_nothing():
 
 
 def test_a_body_that_never_comes_off_is_refused(monkeypatch):
-    from fem_reference.in_time import motions
+    from fem_reference import motions
 
     monkeypatch.setattr(motions, "MAX_STEPS", 100)
     fluid = PronySeries(long_term_shear_modulus=0.0, shear_moduli=[1.0], relaxation_times=[1e-3])

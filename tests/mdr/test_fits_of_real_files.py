@@ -21,8 +21,9 @@ from contact import (
 )
 from mdr import Mdr
 from mdr.curves import ForceCurve, Limit, fit_curve, fit_map
-from mdr.curves.models import Model
-from mdr.curves.reading import load_curves
+from mdr.curves.adhesion import table_of
+from mdr.curves.force_curve import curve_to
+from mdr.curves.reading import Cantilever, load_curves, read_map
 from reports.command_line import run
 
 TIP = Paraboloid(radius_of_curvature=5e-6)
@@ -168,8 +169,8 @@ def test_adhesion_is_found_from_any_guess_or_refused(work, modulus, deepest):
         layer=layer, indenter=tip, loading=IndentationDepths([deepest]), effects=(Adhesion(work_of_adhesion=work),)
     )
     depth = np.linspace(-3 * (work**2 * 5e-6 / modulus**2) ** (1 / 3) - 1e-7, deepest, 200)
-    model = Model(true, depth, ("youngs_modulus",), 6 * max(deepest, np.ptp(depth)))
-    force = model.force({"youngs_modulus": modulus})
+    table = table_of(curve_to(true, 6 * max(deepest, np.ptp(depth))).scene)
+    force = modulus * np.interp(depth, *table.branch(np.sqrt(work / modulus)), left=0.0)
     guess = true.replace(layer=layer.replace(youngs_modulus=1e3), effects=(Adhesion(work_of_adhesion=3 * work),))
     names = ("youngs_modulus", "contact_point", "baseline", "work_of_adhesion")
     try:
@@ -180,6 +181,53 @@ def test_adhesion_is_found_from_any_guess_or_refused(work, modulus, deepest):
         return
     assert found.youngs_modulus == pytest.approx(modulus, rel=1e-2, abs=0.0)
     assert found.values["work_of_adhesion"] == pytest.approx(work, rel=2e-2, abs=0.0)
+
+
+def johnson_kendall_roberts(modulus, work, radius, depth):
+    """Force [N] of withdrawal of a paraboloid from an incompressible half-space, from pull-off on."""
+    reduced = modulus / 0.75
+    a = np.geomspace(1e-3, 2, 20000) * np.sqrt(radius * (depth.max() + 5 * (work**2 * radius / reduced**2) ** (1 / 3)))
+    depths = a**2 / radius - np.sqrt(2 * np.pi * a * work / reduced)
+    forces = 4 / 3 * reduced * a**3 / radius - np.sqrt(8 * np.pi * work * reduced * a**3)
+    stable = slice(int(np.argmin(depths)), None)
+    return np.interp(depth, depths[stable], forces[stable], left=0.0)
+
+
+@pytest.mark.parametrize("deep", [0.1, 0.5, 2.0, 20.0, 500.0])
+@pytest.mark.parametrize("scatter", [0.0, 1e-2])
+def test_curves_of_withdrawal_give_modulus_and_work_however_strong_the_adhesion(deep, scatter):
+    """The depth is in units of the adhesive length (w^2 R/E*^2)^(1/3)."""
+    modulus, work, radius = 2e3, 1e-4, 5e-6
+    scale = (work**2 * radius / (modulus / 0.75) ** 2) ** (1 / 3)
+    depth = np.linspace(-3 * scale - 0.5 * deep * scale, deep * scale, 300)[::-1]
+    force = with_noise(johnson_kendall_roberts(modulus, work, radius, depth) + 2e-10, scatter)
+    guess = HALF_SPACE.replace(effects=(Adhesion(work_of_adhesion=5 * work),))
+    names = ("youngs_modulus", "contact_point", "baseline", "work_of_adhesion")
+    found = fit_curve(guess, depth + 1e-7, force, parameters=names)
+    half = 2 * found.quantile * found.standard_error["youngs_modulus"] + 1e-3 * modulus
+    assert abs(found.youngs_modulus - modulus) < half
+    low, high = found.interval("work_of_adhesion")
+    assert low - work / 100 < work < high + work / 100 or abs(found.values["work_of_adhesion"] - work) < 2 * (
+        high - low
+    )
+    if scatter == 0.0:
+        assert found.youngs_modulus == pytest.approx(modulus, rel=1e-3, abs=0.0)
+        assert any("Tabor parameter" in note for note in found.notes)
+
+
+def test_a_few_points_in_contact_are_no_curve():
+    depth = np.linspace(-1e-4, 5e-7, 200)
+    with pytest.raises(InvalidInput, match=r"points in contact, from .* m on: .* measure more points in contact"):
+        fit_curve(HALF_SPACE, depth, hertz(depth))
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("part", [0.999, 0.01])
+def test_sharp_tips_and_stiff_layers_overflow_nowhere(part):
+    scene = HALF_SPACE.replace(layer=Layer(thickness=2e-6, youngs_modulus=1e3, poissons_ratio=0.5))
+    depth = np.linspace(0.5e-6 * (1 - 1 / part), 0.5e-6, 1000)
+    force = with_noise(ForceCurve(scene)(depth, 1e6), 1e-3)
+    assert fit_curve(scene, depth, force).youngs_modulus == pytest.approx(1e6, rel=0.03, abs=0.0)
 
 
 def test_where_nothing_adheres_the_work_is_within_its_interval_of_zero():
@@ -215,6 +263,29 @@ FILES = {
     "time too": ["time [s],depth [nm],force [nN]", *(f"0.1,{line}" for line in rows())],
     "falls": ["depth [nm],force [nN]", *rows(depth=-DEPTH)],
     "pulled too": ["depth [nm],force [nN]", *rows(), *rows(depth=DEPTH[::-1], force=0.8 * FORCE[::-1])],
+    "indenter": ["Displacement (nm)\tLoad (\u00b5N)", *rows("\t", force=FORCE / 1e3)],
+    "capitals": ["DEPTH_NM,FORCE_NN", *rows()],
+    "short heads": ["h (nm),P (nN)", *rows()],
+    "machine": ["Extension [nm],Load [nN]", *rows()],
+    "loading beside withdrawal": [
+        "Extend depth [nm],Extend force [nN],Retract depth [nm],Retract force [nN]",
+        *(f"{line},{line}" for line in rows()),
+    ],
+    "jpk": [
+        "# springConstant: 0.05",
+        "# segment: extend",
+        "# columns: vDeflection height verticalTipPosition",
+        "# units: nN nm nm",
+        *(f"{f:.5f} 0.0 {-d:.4f}" for d, f in zip(DEPTH, FORCE, strict=True)),
+        "# segment: retract",
+        *(f"{0.8 * f:.5f} 0.0 {-d:.4f}" for d, f in zip(DEPTH[::-1], FORCE[::-1], strict=True)),
+    ],
+    "jpk without tip position": [
+        "# springConstant: 0.05",
+        "# columns: height vDeflection",
+        "# units: nm nN",
+        *(f"{-(d + f / 0.05):.4f} {f:.5f}" for d, f in zip(DEPTH, FORCE, strict=True)),
+    ],
     "pulled first": ["depth [nm],force [nN]", *rows(depth=DEPTH[::-1], force=0.8 * FORCE[::-1]), *rows()],
 }
 
@@ -279,6 +350,48 @@ def test_ambiguous_tables_are_refused_with_their_line(tmp_path, lines, message):
     file.write_text("\n".join(lines))
     with pytest.raises(InvalidInput, match=message):
         load_curves(file)
+
+
+def test_ramps_of_bruker_are_read_by_their_direction(tmp_path):
+    file = tmp_path / "curve.txt"
+    lines = [f"{-d - f / 0.05:.4f}\t0\t{f:.5f}\t0" for d, f in zip(DEPTH, FORCE, strict=True)]
+    file.write_text("\n".join(["Calc_Ramp_Ex_nm\tCalc_Ramp_Rt_nm\tDefl_nN_Ex\tDefl_nN_Rt", *lines]))
+    (curve,) = load_curves(file, cantilever=Cantilever(0.05))
+    assert fit_curve(HALF_SPACE, curve.depth, curve.force).youngs_modulus == pytest.approx(5e3, rel=1e-3, abs=0.0)
+
+
+def test_curves_that_a_column_numbers_are_a_map_with_places(tmp_path):
+    file = tmp_path / "map.csv"
+    lines = [f"{n},{n}.5,0,{line}" for n in (3, 4) for line in rows()]
+    file.write_text("\n".join(["curve,x [um],y [um],depth [nm],force [nN]", *lines]))
+    curves = read_map(file)
+    assert [curve.position for curve in curves] == [(3.5e-6, 0.0), (4.5e-6, 0.0)]
+    assert [curve.depth.size for curve in curves] == [100, 100]
+
+
+def test_a_map_is_written_with_intervals_places_and_a_picture(tmp_path, scene_file, capsys):
+    file, table = tmp_path / "map.csv", tmp_path / "out.csv"
+    lines = [f"{n},{n}.5,0,{line}" for n in (3, 4) for line in rows()] + [f"5,5.5,0,{d},0.0" for d in DEPTH]
+    file.write_text("\n".join(["curve,x [um],y [um],depth [nm],force [nN]", *lines]))
+    assert run(["fit", str(file), scene_file, "--map", "-w", str(table), "-w", str(tmp_path / "map.svg")]) == 0
+    out = capsys.readouterr().out
+    assert "2 of 3 fitted" in out
+    assert "not fitted: the first: no contact in the curve" in out
+    found = np.genfromtxt(table, delimiter=",", names=True, deletechars="", usecols=range(17))
+    assert found["contact_point_low_[m]"][0] < 0.0 < found["contact_point_high_[m]"][0]
+    assert found["x_[m]"].tolist() == [3.5e-6, 4.5e-6, 5.5e-6]
+    assert "Histogram" in (tmp_path / "map.svg").read_text()
+
+
+def test_a_history_is_read_whole_and_needs_times(tmp_path):
+    file = tmp_path / "curve.csv"
+    lines = [f"{0.1 * i:.1f},{line}" for i, line in enumerate([*rows(), *rows()[::-1]])]
+    file.write_text("\n".join(["time [s],depth [nm],force [nN]", *lines]))
+    (curve,) = load_curves(file, direction="history")
+    assert curve.time.size == curve.depth.size == 200
+    file.write_text("\n".join(FILES["pulled too"]))
+    with pytest.raises(InvalidInput, match="needs a column of time"):
+        load_curves(file, direction="history")
 
 
 def test_withdrawal_is_read_for_scenes_with_adhesion(tmp_path):

@@ -120,7 +120,10 @@ def test_force_grows_with_the_stiffness_of_stick():
     assert slope == pytest.approx(path.contact_stiffness[1:2], rel=1e-7, abs=0)
 
 
-@pytest.mark.parametrize(("nu", "ratio"), [(0.0, 0.7), (0.3, 4.4), (0.5, 4.4), (0.5, 9.0)])
+@pytest.mark.parametrize(
+    ("nu", "ratio"),
+    [(0.0, 0.7), (0.3, 4.4), *(pytest.param(0.5, ratio, marks=pytest.mark.slow) for ratio in (4.4, 9.0))],
+)
 def test_stated_errors_cover_a_finer_solution(nu, ratio):
     path = stuck(nu, PARABOLOID, ContactRadii([ratio / 3.0, ratio]))
     finer = Mdr(flat_punch=IntegralEquation(nodes=40)).solve(path.scene)
@@ -130,7 +133,7 @@ def test_stated_errors_cover_a_finer_solution(nu, ratio):
         assert np.all(path.error_estimate[name] <= 1e-8)
 
 
-@pytest.mark.parametrize("nodes", [6, 8, 10, 12, 14, 16])
+@pytest.mark.parametrize("nodes", [8, 14, *(pytest.param(n, marks=pytest.mark.slow) for n in (6, 10, 12, 16))])
 @pytest.mark.parametrize("nu", [0.0, 0.3, 0.5])
 @pytest.mark.parametrize("indenter", [PARABOLOID, Cone(slope=0.1)], ids=lambda i: type(i).__name__)
 def test_stated_errors_cover_on_few_unknowns(indenter, nu, nodes):

@@ -249,9 +249,9 @@ def test_refusals_by_name():
         path.inside().at(0.0, 1.5)
     with pytest.raises(InvalidInput, match="radius = -1: radii must be finite and not negative"):
         path.inside().at([-1.0], [0.5])
-    with pytest.raises(InvalidInput, match=r"radius = 0.3 m, depth = 0: stresses are infinite at this sharp rim"):
+    with pytest.raises(InvalidInput, match=r"radius = 0.3 m, depth = 0: stresses are infinite at this sharp edge"):
         path.inside().at(0.3, 0.0)
-    with pytest.raises(InvalidInput, match=r"it is infinite at the rim r = 0.3 m"):
+    with pytest.raises(InvalidInput, match=r"it is infinite at the sharp edge r = 0.3 m"):
         path.inside().largest("von_mises")
     with pytest.raises(InvalidInput, match="ask for 'von_mises' or 'interface_shear'"):
         path.inside().largest("shear")

@@ -77,9 +77,18 @@ def test_stacks_of_more_and_more_sublayers_come_to_the_same_waves(nu, support):
     assert orders == pytest.approx([2.0, 2.0], rel=0, abs=0.1)
 
 
-@pytest.mark.parametrize("support", SUPPORTS, ids=["bonded", "unbonded", "elastic"])
-@pytest.mark.parametrize("indenter", [ROUND, FlatPunch(radius=0.7)], ids=lambda one: type(one).__name__)
-def test_surface_base_and_force(indenter, support):
+@pytest.mark.parametrize(
+    ("support", "indenter"),
+    [
+        ("bonded", ROUND),
+        pytest.param("unbonded", ROUND, marks=pytest.mark.slow),
+        pytest.param(FOUNDATION, ROUND, marks=pytest.mark.slow),
+        pytest.param("bonded", FlatPunch(radius=0.7), marks=pytest.mark.slow),
+        ("unbonded", FlatPunch(radius=0.7)),
+        pytest.param(FOUNDATION, FlatPunch(radius=0.7), marks=pytest.mark.slow),
+    ],
+)
+def test_surface_base_and_force(support, indenter):
     path = pressed(graded(0.3, support), indenter)
     inside, a = path.inside(), float(path.contact_radius[0])
     mean, r = float(path.normal_force[0]) / (math.pi * a**2), a * np.array([0.05, 0.5, 0.9])
@@ -113,7 +122,10 @@ LAYERS = {
 }
 
 
-@pytest.mark.parametrize("name", [*list(LAYERS)[:3], pytest.param("nu over depth", marks=pytest.mark.slow)])
+@pytest.mark.parametrize(
+    "name",
+    ["softer", *(pytest.param(n, marks=pytest.mark.slow) for n in ("exponential", "incompressible", "nu over depth"))],
+)
 @pytest.mark.parametrize(
     "indenter",
     [ROUND, pytest.param(TruncatedCone(flat_radius=0.3, slope=0.1), marks=pytest.mark.slow)],

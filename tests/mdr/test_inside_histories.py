@@ -160,7 +160,7 @@ def test_a_bare_dashpot():
         apart, stated = conformity(path, step, inside)
         assert apart <= stated < 1e-3
         assert force_at(path, step, inside) < 1e-7
-    with pytest.raises(InvalidInput, match="stresses are infinite at this sharp rim"):
+    with pytest.raises(InvalidInput, match="stresses are infinite at this sharp edge"):
         path.inside(1).at(path.contact_radius[1], 0.0)
 
 

@@ -54,7 +54,7 @@ ODD = {
     "masked": (np.ma.masked_less([0.1, -1.0], 0.0), 0.1, "radius: masked entries have no value"),
     "shapes": ([0.1, 0.2], [0.1, 0.2, 0.3], r"radius of shape \(2,\), depth of shape \(3,\): give both one shape"),
     "just too deep": (0.1, 1.0000001, r"depth = 1\.0000001: points must lie in the layer, between 0 and 1 m"),
-    "beside a kink": (0.3 + 1e-12, 1e-12, "stresses are infinite at this sharp rim; ask beside it, at least 1e-11 m"),
+    "beside a kink": (0.3 + 1e-12, 1e-12, "stresses are infinite at this sharp edge; ask beside it, at least 1e-11 m"),
     "far away": (1e6, 0.5, "nothing is left to resolve beyond 2000 m; ask nearer"),
 }
 

@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 from contact import IndentationDepths, InvalidInput, Layer, Paraboloid, Scene
+from examples.pyjibe_layer import layer_model
 from mdr.curves import ForceCurve, fit_curve, read_curve, read_map
-from mdr.curves.nanite_models import layer_model
+from mdr.curves.reading import Cantilever
 from reports.command_line import run
 
 ROOT = Path(__file__).parents[2]
@@ -46,6 +47,26 @@ def test_a_curve_of_a_microscope_gives_its_modulus_back(tmp_path, ending):
     # The bending of the cantilever carries the noise into the depth, which least squares take for exact.
     assert found.youngs_modulus == pytest.approx(5e3, rel=1e-3, abs=0.0)
     assert high - low < 100.0
+
+
+def test_tables_of_afm_workshop_and_nt_mdt_need_the_cantilever(tmp_path):
+    pytest.importorskip("afmformats")
+    depth = np.linspace(-2e-6, 1.5e-6, 300)
+    force = ForceCurve(SCENE)(depth)
+    way, volts = depth + force / CANTILEVER, force / CANTILEVER / 50e-9
+    workshop, nova = tmp_path / "curve.csv", tmp_path / "nova.txt"
+    heads = ["Force-Distance Curve", "Mode: Single", "Point: 1", "X, um: 2.5", "Y, um: 3.5"]
+    heads += ["Extend Z-Sense(nm),Extend T-B(V),Retract Z-Sense(nm),Retract T-B(V)"]
+    rows = [f"{1e9 * z:.5f},{v:.7f},{1e9 * z:.5f},{v:.7f}" for z, v in zip(way, volts, strict=True)]
+    workshop.write_text("\n".join([*heads, *rows]))
+    nova.write_text("\n".join(f"{-1e9 * z:.5f}\t{1e9 * v:.4f}\t{1e9 * v:.4f}" for z, v in zip(way, volts, strict=True)))
+    for file in (workshop, nova):
+        with pytest.raises(InvalidInput, match=r"--spring-constant|--units"):
+            read_curve(file)
+        found = fit_curve(SCENE, *read_curve(file, cantilever=Cantilever(CANTILEVER, 50e-9)))
+        assert found.youngs_modulus == pytest.approx(5e3, rel=1e-3, abs=0.0)
+    (curve,) = read_map(workshop, cantilever=Cantilever(CANTILEVER, 50e-9))
+    assert curve.position == pytest.approx((2.5e-6, 3.5e-6), rel=1e-12, abs=0.0)
 
 
 def test_the_command_reads_it_too(tmp_path, capsys):
@@ -112,7 +133,8 @@ IN_NANITE = """
 import sys, warnings
 warnings.simplefilter("ignore")
 import nanite
-from mdr.curves.nanite_models import register
+from mdr.curves.reading import Cantilever
+from examples.pyjibe_layer import register
 register()
 curve = nanite.load_group(sys.argv[1])[0]
 curve.apply_preprocessing(["compute_tip_position", "correct_force_offset", "correct_tip_offset"])

@@ -62,9 +62,8 @@ def test_a_layer_cut_into_sublayers_has_its_kernel(nu, support):
     cut = stack((1.0, 1.0, nu), (0.7, 1.0, nu), (1.3, 1.0, nu), support=support)
     k = np.geomspace(1e-2, 20.0, 30)
     found, whole = stack_kernel(cut).beyond_half_space(k), StackKernel.single(support, nu).beyond_half_space(3.0 * k)
-    for name in ("uu", "uw", "ww"):
-        exact = getattr(whole, name)
-        assert getattr(found, name) == pytest.approx(exact, rel=1e-13, abs=1e-14)
+    for entry, exact in zip(found, whole, strict=True):
+        assert entry == pytest.approx(exact, rel=1e-13, abs=1e-14)
 
 
 def test_a_base_of_the_same_material_is_a_half_space():

@@ -224,9 +224,9 @@ NUMBERS = {
     "mass": (f"{LOADING}:Impact.mass", ("punch impact",)),
     "velocity": (f"{LOADING}:Impact.velocity", ("punch impact", "sphere impact")),
     "viscosity": ("contact.scene.effects:KelvinVoigt.viscosity", ("punch impact",)),
-    "modulus of sublayers": ("contact.scene.layer_stack:Sublayer.youngs_modulus", ("stack",)),
-    "Poisson's ratio of sublayers": ("contact.scene.layer_stack:Sublayer.poissons_ratio", ("stack",)),
-    "thickness of sublayers": ("contact.scene.layer_stack:Sublayer.thickness", ("stack",)),
+    "modulus of sublayers": ("contact.scene.layer:Sublayer.youngs_modulus", ("stack",)),
+    "Poisson's ratio of sublayers": ("contact.scene.layer:Sublayer.poissons_ratio", ("stack",)),
+    "thickness of sublayers": ("contact.scene.layer:Sublayer.thickness", ("stack",)),
     "history of the depth": (f"{LOADING}:DepthHistory.depth", ("held",)),
     "work of adhesion": ("contact.scene.effects:Adhesion.work_of_adhesion", ("pull-off",)),
 }
@@ -256,7 +256,7 @@ FAULTS = (
     SharedFault(
         "moduli over depth",
         "E(z)",
-        wrong_method("contact.scene.depth_functions:ExponentialDepth", "at"),
+        wrong_method("contact.scene.graded_layer:ExponentialDepth", "at"),
         ("graded",),
     ),
     SharedFault(
@@ -322,7 +322,7 @@ FAULTS = (
         SharedFault(
             "restitution and duration of an impact",
             what,
-            wrong_property("contact.answer.solution:ImpactHistory", name),
+            wrong_property("contact.answer.paths:ImpactHistory", name),
             ("punch impact", "sphere impact"),
         )
         for what, name in (("restitution", "coefficient_of_restitution"), ("duration", "contact_time"))
@@ -346,7 +346,7 @@ FAULTS = (
         SharedFault(
             "numbers of the scene",
             f"modulus at the {end}",
-            too_large_once(of=f"contact.scene.depth_functions:ExponentialDepth.{end}"),
+            too_large_once(of=f"contact.scene.graded_layer:ExponentialDepth.{end}"),
             ("graded",),
         )
         for end in ("surface", "base")
@@ -363,7 +363,7 @@ FAULTS = (
 OWN = SharedFault(
     "nothing: modulus of finite elements",
     "G of finite elements",
-    swap("fem_reference.discrete_layer.material:shear_modulus", times),
+    swap("fem_reference.materials:shear_modulus", times),
     ELASTIC,
 )
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bem.adhesion.equilibrium_branch import EquilibriumBranch
+from bem.branch import Branch
 from contact import Adhesion, Detachment, Layer, Paraboloid, Scene
 from mdr import Mdr
 from mdr.adhesive_branch import Adhesive
@@ -41,8 +41,8 @@ def test_a_lost_two_pi_in_the_elongation(monkeypatch):
 
 
 def test_stability_turned_upside_down(monkeypatch):
-    right = EquilibriumBranch.slopes
-    monkeypatch.setattr(EquilibriumBranch, "slopes", lambda branch, y: -right(branch, y))
+    right = Branch.stable
+    monkeypatch.setattr(Branch, "stable", lambda branch, control, y: ~right(branch, control, y))
     with pytest.raises(AssertionError):
         adhesion.test_equilibrium_and_stability_are_those_of_the_energy(adhesion.HALF_SPACE, adhesion.PROFILES[0])
 

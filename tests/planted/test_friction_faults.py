@@ -14,7 +14,7 @@ from cases.results.status import Status
 from cases.run.solve_task import solve
 from contact import NotConvergedError, UnsupportedSceneError
 from fem_reference import Fem
-from fem_reference.elastic.friction import step, walk
+from fem_reference.friction import step
 from mdr import inside
 from mdr.friction.growth import punches_of
 from mdr.friction.statement import _slip
@@ -27,7 +27,7 @@ CAUGHT = (AssertionError, NotConvergedError, UnsupportedSceneError)
 
 def test_friction_along_the_slip(monkeypatch):
     """Points slide with the traction and not against it: that feeds energy in."""
-    swap("fem_reference.elastic.friction.step:_sliding", lambda right: lambda *args: -right(*args))(monkeypatch)
+    swap("fem_reference.friction.step:_sliding", lambda right: lambda *args: -right(*args))(monkeypatch)
     with pytest.raises(CAUGHT):
         friction.test_coulombs_law_holds_and_slip_goes_against_the_traction()
 
@@ -51,7 +51,7 @@ def test_pressure_that_pushes_the_surface_the_other_way(monkeypatch):
     def turned(surface, *others):
         return right(dataclasses.replace(surface, coupled=-surface.coupled), *others)
 
-    monkeypatch.setattr("fem_reference.elastic.friction.strips.RubbedContact", turned)
+    monkeypatch.setattr("fem_reference.friction.growth.RubbedContact", turned)
     with pytest.raises(CAUGHT):
         friction.test_full_stick_is_that_of_mdr(0.0, "bonded", 1.0, friction.PARABOLOID)
 
@@ -72,13 +72,13 @@ def test_heat_given_back(monkeypatch):
 
 def test_new_points_forget_that_they_slid_on_the_way(monkeypatch):
     """The displacement of points ahead of the contact is not remembered when they touch."""
-    right = walk.advance
+    right = step.advance
 
     def wrong(contact, before, active, control):
         ahead = np.arange(len(before.radial)) >= before.active
         return right(contact, dataclasses.replace(before, radial=np.where(ahead, 0.0, before.radial)), active, control)
 
-    monkeypatch.setattr(walk, "advance", wrong)
+    monkeypatch.setattr(step, "advance", wrong)
     with pytest.raises(CAUGHT):
         friction.test_full_stick_is_that_of_mdr(0.0, "bonded", 1.0, friction.PARABOLOID)
 
@@ -100,8 +100,7 @@ def test_the_layer_pulls_inward_where_it_pushes_outward(monkeypatch):
 
 def test_tractions_with_a_kink_inside_cells_of_the_mesh(monkeypatch):
     """Two cells of the tractions on each cell of the mesh: every second point then moves by another law."""
-    for module in ("surface", "strips"):
-        monkeypatch.setattr(f"fem_reference.elastic.friction.{module}.STRIDE", 2)
+    monkeypatch.setattr("fem_reference.friction.growth.RUBBED_STRIDE", 2)
     with pytest.raises(CAUGHT):
         friction.test_forces_under_stick_converge_to_those_of_mdr_with_second_order("bonded")
 
@@ -112,7 +111,7 @@ def test_lower_layers_that_pull_where_they_push(monkeypatch):
 
     def wrong(kernel, wavenumber):
         found, alone = right(kernel, wavenumber), right(stack.StackKernel.single("bonded", 0.5), wavenumber)
-        return found._replace(uw=2.0 * alone.uw - found.uw)
+        return found[0], 2.0 * alone[1] - found[1], found[2]
 
     monkeypatch.setattr(stack.StackKernel, "beyond_half_space", wrong)
     punches_of.cache_clear()

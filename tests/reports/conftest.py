@@ -16,14 +16,13 @@ def _drawn_once(monkeypatch):
 @pytest.fixture
 def library(monkeypatch):
     """A library of one fabricated case in place of the real one."""
-    from reports.commands import registry, run
+    from reports.commands import runs
     from tests.cases.fake_case import fake_case
 
     case = fake_case()
 
     def set_library(*cases):
-        for module in (registry, run):
-            monkeypatch.setattr(module, "load_cases", lambda: {case.name: case for case in cases})
+        monkeypatch.setattr(runs, "load_cases", lambda: {case.name: case for case in cases})
 
     set_library(case)
     return set_library

@@ -10,8 +10,7 @@ from cases.declare import methods
 from cases.gate import spread
 from cases.run import executors, stamp
 from reports.command_line import run
-from reports.commands import accept as accept_command
-from reports.commands import gate as gate_command
+from reports.commands import baselines
 from tests.cases.fake_case import fake_case
 
 
@@ -25,7 +24,7 @@ def users(tmp_path, library, monkeypatch):
     """A repository of a user with a plug-in; this package lies in an environment that it ignores."""
     case = fake_case()
     library(case)
-    for module in (accept_command, gate_command):
+    for module in (baselines,):
         monkeypatch.setattr(module, "load_cases", lambda: {case.name: case})
     entry = EntryPoint(name="mine", value="tests.cases.fake_method:FakeHertz", group=methods.ENTRY_POINT_GROUP)
     monkeypatch.setattr(methods, "entry_points", lambda group: [entry])

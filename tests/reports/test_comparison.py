@@ -7,7 +7,7 @@ import pytest
 from cases.results.compare_runs import compare
 from cases.results.files import write_run
 from cases.results.status import Status
-from reports.commands.report import compare_runs, rebuild
+from reports.commands.runs import compare_runs, rebuild
 from reports.pages.comparison import headline
 from tests.cases.example_run import example_run, passing_case
 from tests.reports.test_pages import not_a_number, words_of

@@ -5,7 +5,7 @@ import dataclasses
 from reports.charts.work_precision import draw
 from reports.tables.case_tables import cheapest, digit_prices
 from reports.tables.cost_tables import settings, shortest_times, speed_ups
-from reports.words.numbers import duration
+from reports.words import duration
 from tests.cases.example_run import example_run, work_precision
 
 WORK = work_precision()

@@ -96,14 +96,14 @@ def test_a_comparison_with_nothing_is_refused(capsys):
 
 
 def test_cost_times_only_the_methods_named(library, capsys, monkeypatch):
-    from reports.commands import cost as cost_command
+    from reports.commands import runs
 
     case = fake_case(work=True)
-    monkeypatch.setattr(cost_command, "load_cases", lambda: {case.name: case})
-    assert run(["cost", "--suite", "ci", "--out", "out", "--quiet", "--method", "mine"]) == 0
+    monkeypatch.setattr(runs, "load_cases", lambda: {case.name: case})
+    assert run(["run", "--only", "cost", "--suite", "ci", "--out", "out", "--quiet", "--method", "mine"]) == 0
     (record,) = read_run(Path("out")).cases[0].work_precision
     assert [(point.method, point.label, point.status) for point in record.points] == [
         ("mine", "as it comes", Status.PASS)
     ]
-    assert run(["cost", "--suite", "ci", "--out", "out", "--quiet", "--method", "bem"]) == 4
+    assert run(["run", "--only", "cost", "--suite", "ci", "--out", "out", "--quiet", "--method", "bem"]) == 4
     assert "nothing times bem" in capsys.readouterr().err

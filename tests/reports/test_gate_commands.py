@@ -14,7 +14,7 @@ from cases.run import executors, runner
 from cases.run.runner import RunOptions
 from cases.run.stamp import revision
 from reports.command_line import run
-from reports.commands import accept as accept_command
+from reports.commands import baselines
 from tests.cases.fake_case import FAST, SLOW, fake_case, spoiled
 from tests.cases.fake_method import FakeHertz
 
@@ -24,16 +24,15 @@ CLEAN = WriteConditions(revision=revision(), changed=(), in_ci=False, date="2026
 @pytest.fixture
 def here(tmp_path, library, monkeypatch):
     """A folder of a run, a library, and a clean working tree."""
-    from reports.commands import gate as gate_command
 
     def set_library(case):
         library(case)
-        for module in (accept_command, gate_command):
+        for module in (baselines,):
             monkeypatch.setattr(module, "load_cases", lambda: {case.name: case})
 
     set_library(fake_case())
     monkeypatch.setattr(spread, "process_pool", executors.serial)
-    monkeypatch.setattr(accept_command, "write_conditions", lambda *_: CLEAN)
+    monkeypatch.setattr(baselines, "write_conditions", lambda *_: CLEAN)
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("COLUMNS", "200")  # whatever the terminal: a table is not folded
     return set_library
@@ -141,8 +140,8 @@ def test_loosening_needs_its_flag_and_is_kept_with_its_reason(here, tmp_path, ca
 @pytest.mark.usefixtures("here")
 def test_accepting_in_the_wrong_place_is_refused_before_anything_is_repeated(change, words, monkeypatch, capsys):
     run_cases()
-    monkeypatch.setattr(accept_command, "write_conditions", lambda *_: dataclasses.replace(CLEAN, **change))
-    monkeypatch.setattr(accept_command, "measured_spreads", None)
+    monkeypatch.setattr(baselines, "write_conditions", lambda *_: dataclasses.replace(CLEAN, **change))
+    monkeypatch.setattr(baselines, "measured_spreads", None)
     assert accept_case("--write") == 4
     assert words in capsys.readouterr().err
 

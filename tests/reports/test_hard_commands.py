@@ -22,25 +22,21 @@ def scene(tmp_path):
 
 
 def test_advice_names_what_matters(scene, capsys):
-    assert run(["advise", scene, "--accuracy", "1e-2"]) == 0
+    assert run(["solve", scene, "--advise", "--accuracy", "1e-2"]) == 0
     assert "needed at 0.01: finite thickness" in capsys.readouterr().out
 
 
-def test_a_climbed_ladder_tells_its_digits(capsys):
-    assert run(["ladders", "vanishing flat end"]) == 0
+def test_a_climbed_ladder_tells_its_digits_and_writes_its_table(tmp_path, capsys):
+    assert run(["run", "--only", "stability", "vanishing flat end", "--out", str(tmp_path)]) == 0
     assert "vanishing flat end, mdr: climbed to the end, at least 1" in capsys.readouterr().out
-
-
-def test_an_unknown_ladder_names_those_there_are(capsys):
-    assert run(["ladders", "nonsense"]) == 4
-    assert "nearly incompressible" in capsys.readouterr().err.replace("\n", " ")
-
-
-def test_ladders_write_a_run_with_their_table(tmp_path):
-    assert run(["ladders", "vanishing flat end", "--out", str(tmp_path)]) == 0
     page = (tmp_path / "report.html").read_text(encoding="utf-8")
     assert "Breakdown rungs and digits" in page
     assert "climbed to the end" in page
+
+
+def test_an_unknown_ladder_names_those_there_are(capsys):
+    assert run(["run", "--only", "stability", "nonsense"]) == 4
+    assert "nearly incompressible" in capsys.readouterr().err.replace("\n", " ")
 
 
 def test_a_refusal_and_a_failure_are_told_apart_and_said_once():
@@ -63,7 +59,7 @@ def test_a_refusal_and_a_failure_are_told_apart_and_said_once():
 
 @pytest.mark.slow
 def test_the_cost_command_says_what_accuracy_costs(tmp_path, capsys):
-    assert run(["cost", "truncated_cone", "--suite", "ci", "--out", str(tmp_path), "--quiet"]) == 0
+    assert run(["run", "--only", "cost", "truncated_cone", "--suite", "ci", "--out", str(tmp_path), "--quiet"]) == 0
     assert "How much faster MDR is" in capsys.readouterr().out
     page = (tmp_path / "report.html").read_text(encoding="utf-8")
     assert 'id="costs"' in page
@@ -77,7 +73,9 @@ def test_an_answer_lists_the_stages_that_ran_and_no_others(scene, capsys):
     assert "adhes" not in line
 
 
-@pytest.mark.parametrize("command", [["ladders", "--out"], ["cost", "--out"], ["run", "--out"]])
+@pytest.mark.parametrize(
+    "command", [["run", "--only", "stability", "--out"], ["run", "--only", "cost", "--out"], ["run", "--out"]]
+)
 def test_a_file_in_the_way_of_a_report_is_refused_before_the_study(command, tmp_path, capsys):
     (tmp_path / "report").write_text("mine")
     assert run([*command, str(tmp_path / "report")]) == 4

@@ -13,7 +13,7 @@ from contact import (
     Sublayer,
 )
 from mdr import Mdr
-from reports.charts.inside import draw_inside
+from reports.inside import draw_inside
 
 LAYER = Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.5)
 SPHERE, PRESSED = Paraboloid(radius_of_curvature=10.0), ContactRadii([1.0])

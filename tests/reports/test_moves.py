@@ -7,8 +7,8 @@ import pytest
 
 from cases.gate.checks.check import missing, regression_claim
 from cases.judgement.rules.regression import judge_regression
-from reports.commands.run import show_verdict
-from reports.words.moves import baseline_sentence, moves
+from reports.commands.runs import show_verdict
+from reports.pages.moves import baseline_sentence, moves
 from tests.cases.example_run import example_run, passing_case
 
 

@@ -8,7 +8,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from contact.records.units import prefix_for
-from reports.words.numbers import NOT_FINITE, duration, measured, memory, small, with_prefix
+from reports.words import NOT_FINITE, duration, measured, memory, small, with_prefix
 
 
 @pytest.mark.parametrize(

@@ -12,9 +12,9 @@ from cases.results.status import Status
 from contact.records.errors import printable
 from reports.pages.annotations import MOST, annotation_lines
 from reports.pages.junit import junit_text
+from reports.pages.outcomes import WORST_FIRST, counts, headline, outcomes
 from reports.pages.report import write_report
 from reports.pages.summary import summary_text
-from reports.words.outcomes import WORST_FIRST, counts, headline, outcomes
 from tests.cases.example_run import example_run, failing_case, passing_case
 
 

@@ -97,11 +97,11 @@ def test_a_run_is_made_with_them(capsys):
 
 
 def test_cost_climbs_a_ladder_of_them(monkeypatch, capsys):
-    from reports.commands import cost as cost_command
+    from reports.commands import runs
 
     case = fake_case(work=True)
-    monkeypatch.setattr(cost_command, "load_cases", lambda: {case.name: case})
-    words = ["cost", "--suite", "ci", "--out", "out", "--quiet", "--method", "mine"]
+    monkeypatch.setattr(runs, "load_cases", lambda: {case.name: case})
+    words = ["run", "--only", "cost", "--suite", "ci", "--out", "out", "--quiet", "--method", "mine"]
     assert run([*words, "--setting", "cell=[0.01, 0.001]", "--setting", "order=2"]) == 0
     (record,) = read_run(Path("out")).cases[0].work_precision
     assert [(point.method, point.label) for point in record.points] == [

@@ -9,8 +9,8 @@ import pytest
 from contact import DepthHistory, IndentationDepths, load_scene
 from fem_reference import Fem
 from mdr import Mdr
-from reports.charts.solution import between, solution_figure
 from reports.command_line import run
+from reports.pictures import between, solution_figure
 
 TASKS = Path("examples/tasks")
 RELAXATION = load_scene(TASKS / "relaxation.toml")
@@ -30,19 +30,20 @@ def test_a_written_picture_follows_the_answer_between_prescribed_states(task, tm
 
 
 def test_the_line_of_a_relaxation_is_the_answer_at_instants_that_were_not_asked_for():
-    curve, symbols = solution_figure(Mdr().solve(RELAXATION), Mdr().solve(between(RELAXATION))).panels[0].series
+    axes = solution_figure(Mdr().solve(RELAXATION), Mdr().solve(between(RELAXATION))).axes[0]
+    curve, symbols = (line.get_xydata().T for line in axes.lines[:2])
     asked = RELAXATION.replace(loading=DepthHistory(time=[0.0, 0.1, 3.0, 10.0], depth=[0.0, 5e-5, 5e-5, 5e-5]))
     force = 1e6 * Mdr().solve(asked).normal_force[2]
     assert force == pytest.approx(318, rel=1e-2, abs=0.0)
-    assert np.interp(3.0, curve.x, curve.y) == pytest.approx(force, rel=1e-3, abs=0.0)
-    assert symbols.x == (0.0, 0.1, 10.0)
-    assert symbols.style == "symbols"
+    assert np.interp(3.0, *curve) == pytest.approx(force, rel=1e-3, abs=0.0)
+    assert symbols[0].tolist() == [0.0, 0.1, 10.0]
+    assert axes.lines[1].get_linestyle() == "None"
 
 
 def test_prescribed_states_alone_are_symbols_and_steps_of_a_method_a_line():
     two = load_scene(TASKS / "afm_pyramid.toml")
-    assert solution_figure(Mdr().solve(two)).panels[0].series[0].style == "symbols"
+    assert solution_figure(Mdr().solve(two)).axes[0].lines[0].get_linestyle() == "None"
     assert between(two.replace(loading=IndentationDepths([1e-7]))) is None
-    (steps,) = solution_figure(Fem(order=2, edge_cell=1e-4).solve(RELAXATION)).panels[0].series
-    assert steps.style == "solid"
-    assert len(steps.x) > 3
+    (steps,) = solution_figure(Fem(order=2, edge_cell=1e-4).solve(RELAXATION)).axes[0].lines
+    assert steps.get_linestyle() == "-"
+    assert len(steps.get_xdata()) > 3

@@ -5,7 +5,7 @@ from xml.etree import ElementTree
 import numpy as np
 from matplotlib.figure import Figure
 
-from reports.figures.style import figure_style, svg_text
+from reports.style import figure_style, svg_text
 
 
 def test_a_label_keeps_its_digits():

@@ -10,10 +10,10 @@ import sys
 import pytest
 from rich.text import Text
 
+from reports import command_line, terminal
 from reports.command_line import run
-from reports.tables.table import Table
-from reports.terminal import encoding, terminal
-from reports.terminal.terminal import Terminal, show_facts, show_table
+from reports.terminal import Terminal, show_facts, show_table
+from reports.words import Table
 from tests.reports.test_command_line import HERTZ
 
 ENCODINGS = (
@@ -43,7 +43,9 @@ def test_an_answer_is_printed_in_any_encoding(environment, tmp_path):
     assert written.is_file()
 
 
-@pytest.mark.parametrize("command", [["--help"], ["solve", "--help"], ["list"], ["solve", "µ \u2013 漢.toml"]], ids=str)
+@pytest.mark.parametrize(
+    "command", [["--help"], ["solve", "--help"], ["run", "--list"], ["solve", "µ \u2013 漢.toml"]], ids=str
+)
 def test_help_lists_and_complaints_are_printed_in_ascii(command):
     done = process(command, PYTHONIOENCODING="ascii")
     assert done.returncode == (4 if command[-1].endswith("toml") else 0)
@@ -54,7 +56,7 @@ def test_help_lists_and_complaints_are_printed_in_ascii(command):
 def test_letters_that_an_encoding_lacks_are_replaced_by_the_nearest(monkeypatch):
     raw = io.BytesIO()
     monkeypatch.setattr(sys, "stdout", io.TextIOWrapper(raw, encoding="ascii"))
-    encoding.show_in_any_encoding()
+    command_line.show_in_any_encoding()
     sys.stdout.write("1 ± 2 µm, 10⁻⁷, −3, 漢")
     sys.stdout.flush()
     assert raw.getvalue() == b"1 +- 2 um, 10^-7, -3, \\u6f22"

@@ -20,10 +20,10 @@ from contact import (
     UnsupportedSceneError,
 )
 from contact.scene.extent import first_radius
-from fem_reference.discrete_layer.indenter import shape
-from fem_reference.discrete_layer.settings import Discretisation
-from fem_reference.elastic.active_set import solve_complementarity
-from fem_reference.elastic.surface_compliance import STRIP_CELLS, condense, strip_mesh
+from fem_reference.contact_set import solve_complementarity
+from fem_reference.profiles import shape
+from fem_reference.settings import Discretisation
+from fem_reference.surface import STRIP_CELLS, condense, strip_section
 from mdr import Mdr
 from tests.stacked_scenes import stiff_on_soft
 
@@ -78,11 +78,11 @@ class Touching:
 def on_strip(scene: AnyScene, reach: float, depth: float, cells: int) -> Touching:
     """What touches at the depth [m] on a strip of a radius [m]."""
     settings, log = Discretisation(growth=0.8, edge_cell=1e-4), StageLog()
-    strip = condense(scene.layer, strip_mesh(scene.layer, reach, cells, scene.indenter.kinks, settings), "superlu", log)
-    quadrature, _ = strip.pressure_space.gauss(4)
+    strip = condense(*strip_section(scene.layer, reach, cells, scene.indenter.kinks, settings), "superlu", log)
+    quadrature, _ = strip.tractions.gauss(4)
     inside = np.minimum(quadrature * reach, scene.indenter.max_radius)
-    profile = strip.weighted(shape(scene.indenter, inside).height / reach)
-    state = solve_complementarity(strip.matrix, depth / reach * strip.resultants - profile)
+    profile = strip.moments(shape(scene.indenter, inside).height / reach)
+    state = solve_complementarity(strip.pressed, depth / reach * strip.resultants - profile)
     last = int(np.flatnonzero(state.active)[-1]) if state.active.any() else 0
     is_disc = bool(state.active[: last + 1].all())
     return Touching(is_disc, float(strip.radii[last]) * reach, float(strip.resultants @ state.pressure) * reach**2)

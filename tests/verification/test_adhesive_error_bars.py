@@ -7,7 +7,6 @@ import pytest
 from cases.declare.methods import build
 from contact import (
     Adhesion,
-    Cone,
     ContactRadii,
     Detachment,
     FlatPunch,
@@ -17,12 +16,10 @@ from contact import (
     Paraboloid,
     Scene,
     TruncatedCone,
-    TruncatedParaboloid,
 )
 from mdr import Mdr
 from mdr.adhesive_branch import Adhesive
-from tests.drawn_scenes import random_scene, random_scenes
-from tests.referees.second_opinion import CHEAP_RATIO, adhesive_states, pressure_of
+from tests.referees.second_opinion import adhesive_states, pressure_of
 
 QUANTITIES = ("contact_radius", "indentation_depth", "normal_force", "contact_stiffness")
 ROUNDING = 2.3e-16  # of the reference itself, once it is a double
@@ -90,24 +87,6 @@ def test_an_error_without_its_condition_number_would_be_seen(monkeypatch):
         test_stated_errors_cover_those_against_forty_digits(ContactRadii)
 
 
-@pytest.mark.parametrize("number", range(12))
-def test_stated_errors_of_random_scenes_cover_the_change_by_refinement(number):
-    scene = random_scenes(5, number + 1, "adhesive", (1e-3, 20.0))[number]
-    coarse, fine = Mdr().solve(scene), Mdr().refined().solve(scene)
-    rows = np.random.default_rng(number).choice(np.flatnonzero(coarse.stable_displacement_control), 3)
-    depths = IndentationDepths(values=coarse.indentation_depth[rows])
-    pairs = [(coarse, fine), tuple(m.solve(scene.replace(loading=depths)) for m in (Mdr(), Mdr().refined()))]
-    for one, other in pairs:
-        for quantity, stated in one.error_estimate.items():
-            # Pressures have a referee of their own, below; displacements are judged by their campaign.
-            if quantity in ("pressure", "surface_displacement"):
-                continue
-            change = np.abs(np.asarray(getattr(one, quantity)) - getattr(other, quantity)) / one.scale(quantity)
-            assert np.all(change <= stated + other.error_estimate[quantity] + 3e-15), quantity
-            if not isinstance(scene.indenter, FlatPunch):
-                assert np.all(stated < 1e-8)
-
-
 def test_a_detachment_at_a_rim_states_what_it_errs():
     """Contact is lost where the branch has a kink."""
     scene = Scene(
@@ -123,7 +102,7 @@ def test_a_detachment_at_a_rim_states_what_it_errs():
         assert true <= coarse.error_estimate[quantity][0] + fine.error_estimate[quantity][0], quantity
 
 
-@pytest.mark.parametrize("growth", range(0, 24, 2))
+@pytest.mark.parametrize("growth", [0, 8, 22])
 def test_a_flat_end_that_is_hardly_outgrown_detaches_like_a_punch(growth):
     """The branch beyond the flat end is 1e-14 to 1e-12 of it long: roundings of the way along it count."""
     layer = Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.3)
@@ -197,73 +176,6 @@ def test_pressures_of_adhering_contacts_are_covered(nodes):
         assert distance(path, a, expected) <= float(path.error_estimate["pressure"][0]) + 1e-13
 
 
-@pytest.mark.parametrize(
-    ("indenter", "work"),
-    [
-        (Paraboloid(radius_of_curvature=1.0), 1e-9),
-        (TruncatedCone(flat_radius=0.05, slope=0.1), 1e-6),
-        (FlatPunch(radius=2.5), 1e-4),
-    ],
-    ids=["narrow", "rim", "wide"],
-)
-def test_stated_errors_of_pull_off_are_true_ones_twice(indenter, work):
-    """Seen to fail: bounds of narrow contacts were 20 to 120 times true errors, which nearly cancel in the force."""
-    scene = Scene(
-        layer=Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.4),
-        indenter=indenter,
-        loading=Detachment(),
-        effects=(Adhesion(work_of_adhesion=work),),
-    )
-    coarse, fine = (build("mdr", {"nodes": nodes}).solve(scene) for nodes in (12, 32))
-    for name in ("pull_off_force", "pull_off_depth"):
-        error = abs(getattr(coarse, name) / getattr(fine, name) - 1)
-        assert error < coarse.error_estimate[name][0] < 5 * error + 1e-12, name
-
-
-def test_forces_where_a_soft_machine_loses_contact_are_solved_again():
-    """Seen to fail: 8.4 times the true error, by bounds of narrow contacts."""
-    scene = Scene(
-        layer=Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.4),
-        indenter=Paraboloid(radius_of_curvature=1.0),
-        loading=Detachment(control="displacement", machine_stiffness=0.01),
-        effects=(Adhesion(work_of_adhesion=1e-9),),
-    )
-    coarse, fine = (build("mdr", {"nodes": nodes}).solve(scene) for nodes in (12, 32))
-    error = abs(coarse.force_at_loss / fine.force_at_loss - 1)
-    assert error < coarse.error_estimate["force_at_loss"][0] < 5 * error
-
-
-def test_forces_count_what_the_moment_leaves_out():
-    """Seen to fail: 2.8 times the stated error, under a paraboloid with a flat end of 5.6e-6 of the thickness.
-
-    One piece of the profile's grid reached over an eightfold growth: errors of its far end counted at its near end.
-    """
-    scene = random_scene(np.random.default_rng([8401, 22]), "adhesive", (1e-2, CHEAP_RATIO))
-    assert isinstance(scene.indenter, TruncatedParaboloid)
-    assert scene.indenter.flat_radius < 1e-5 * scene.layer.thickness
-    path = build("mdr", {"nodes": 12}).solve(scene)
-    radii = path.contact_radius[:180:6]
-    expected = adhesive_states(scene, radii).values["normal_force"]
-    error = np.abs(path.normal_force[:180:6] - expected) / np.abs(path.normal_force).max()
-    assert np.all(error <= path.error_estimate["normal_force"][:180:6])
-
-
-def test_a_rim_a_little_beyond_a_panel_errs_like_that_panel():
-    """Seen to fail: 2.3 to 2.5 times the stated error, which was that of the next panel, at a/h = 2 + 5e-10.
-
-    No sample of the branch lies on that next panel.
-    """
-    scene = random_scene(np.random.default_rng([8401, 46]), "adhesive", (1e-2, CHEAP_RATIO))
-    assert isinstance(scene.indenter, FlatPunch)
-    path = build("mdr", {"nodes": 12}).solve(scene)
-    rim = np.flatnonzero(path.contact_radius == scene.indenter.radius)[-1]
-    expected = adhesive_states(scene, path.contact_radius[[rim]]).values
-    for quantity in ("indentation_depth", "normal_force"):
-        values = getattr(path, quantity)
-        error = abs(values[rim] - expected[quantity][0]) / np.abs(values).max()
-        assert 0.1 * path.error_estimate[quantity][rim] < error < path.error_estimate[quantity][rim], quantity
-
-
 @pytest.mark.parametrize("kind", [ContactRadii, IndentationDepths, NormalForces])
 def test_displacements_beside_an_adhering_contact_keep_their_stated_error(kind):
     """Close to the edge too, which a radius that is looked for may miss: the surface rises there like a root."""
@@ -283,17 +195,3 @@ def test_displacements_beside_an_adhering_contact_keep_their_stated_error(kind):
         error = np.abs(coarse.surface_displacement(radii, step) - exact.surface_displacement(radii, step))
         assert np.all(error <= stated[step]), (step, error, stated)
         assert stated[step] < 1e-3
-
-
-def test_densities_tell_what_their_polynomials_leave_of_wide_contacts():
-    """Seen to fail: 130 times the true error in the median, by a bound on the slope that forgot how phi ends."""
-    coarse, fine, ratio = build("mdr", {"nodes": 12}), build("mdr", {"nodes": 40}), []
-    for a in (5.0, 8.0, 13.0):
-        for indenter in (Paraboloid(radius_of_curvature=30.0 * a), Cone(slope=0.03)):
-            layer = Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.3)
-            weak = (Adhesion(work_of_adhesion=1e-6 * a),)
-            scene = Scene(layer=layer, indenter=indenter, loading=ContactRadii([a]), effects=weak)
-            one, other = coarse.solve(scene), fine.solve(scene)
-            ratio.append(float(one.error_estimate["pressure"][0]) / distance(one, a, other.pressure))
-    assert min(ratio) > 1.0
-    assert np.median(ratio) < 60.0

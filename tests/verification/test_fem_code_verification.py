@@ -16,8 +16,7 @@ from cases.library._code_verification.finite_elements import (
 )
 from cases.results.records.claim import Kind
 from cases.results.status import Status
-from fem_reference.code_verification import manufactured
-from fem_reference.discrete_layer.problem import LayerProblem
+from fem_reference import assembly, verification
 
 LARGEST = {2: 3e-6, 3: 2e-7, 4: 2e-9}
 
@@ -43,20 +42,16 @@ def test_every_pair_has_both_orders_and_mixed_ones_at_both_ratios_of_poisson(cas
 
 
 def test_a_hundredth_of_the_body_force_missing_costs_the_order(monkeypatch):
-    own = manufactured.ManufacturedProblem._force
-    monkeypatch.setattr(manufactured.ManufacturedProblem, "_force", lambda self: 0.99 * own(self))
+    own = verification.ManufacturedProblem.force
+    monkeypatch.setattr(verification.ManufacturedProblem, "force", lambda self, *at: 0.99 * own(self, *at))
     monkeypatch.setattr(finite_elements, "MIXED", ("P2P1",))
     assert {order_claim(study).status for study in manufactured_studies()} == {Status.FAIL}
 
 
 def test_a_wrong_hoop_strain_fails_the_patch_claims(monkeypatch):
-    built = LayerProblem.__init__
-
-    def spoiled(self, *args):
-        built(self, *args)
-        self.space.__dict__["strains"] = self.space.strains * np.array([1, 1, 1 + 1e-6, 1])[:, None]
-
-    monkeypatch.setattr(LayerProblem, "__init__", spoiled)
+    right = assembly.strains
+    spoiled = np.array([1, 1, 1 + 1e-6, 1])[:, None, None]
+    monkeypatch.setattr(assembly, "strains", lambda jacobian: right(jacobian) * spoiled)
     assert {claim.status for claim in patch_claims()} == {Status.FAIL}
 
 

@@ -8,7 +8,7 @@ import pytest
 from contact import FlatPunch, IndentationDepths, Layer, Scene, StageLog
 from contact.stated import SAFETY
 from fem_reference import Fem
-from fem_reference.elastic.prescribed_radius import solve_contact
+from fem_reference.prescribed_contact import solve_contact
 from tests.fem_reference.integral_equation import solve_contact as solve_exactly
 
 RATIOS = (0.05, 0.2, 1, 2, 5, 10, 50)

@@ -8,13 +8,12 @@ from skfem import ElementVector, FacetBasis, LinearForm, MeshTri
 
 from contact import FlatPunch, IndentationDepths, Layer, NotConvergedError, Paraboloid, Scene, StageLog
 from fem_reference import Fem
-from fem_reference.code_verification.inf_sup import inf_sup_constant, uniform_mesh
-from fem_reference.discrete_layer.elements import PAIRS
-from fem_reference.discrete_layer.grading import Grading
-from fem_reference.discrete_layer.indenter import ScaledIndenter
-from fem_reference.discrete_layer.mesh import layer_mesh, named_layer_mesh
-from fem_reference.discrete_layer.problem import LayerProblem
-from fem_reference.elastic.prescribed_radius import solve_prescribed_contact
+from fem_reference.assembly import PAIRS
+from fem_reference.materials import uniform as uniform_parts
+from fem_reference.mesh import section_mesh
+from fem_reference.prescribed_contact import solve_prescribed_contact
+from fem_reference.profiles import ScaledIndenter
+from fem_reference.verification import inf_sup_constant, plain_section, uniform_layer, uniform_mesh
 from tests.fem_reference.integral_equation import solve_contact
 
 MIXED = [pair for pair in PAIRS.values() if pair.is_mixed and pair.inf_sup_stable]
@@ -22,8 +21,7 @@ DISPLACEMENT = [pair for pair in PAIRS.values() if not pair.is_mixed]
 
 
 def uniform(cells, shift=0.0):
-    mesh = MeshTri.init_tensor(np.linspace(0, 1, cells + 1) + shift, np.linspace(0, 1, cells + 1))
-    return named_layer_mesh(mesh.p, mesh.t)
+    return plain_section(MeshTri.init_tensor(np.linspace(0, 1, cells + 1) + shift, np.linspace(0, 1, cells + 1)))
 
 
 @pytest.mark.parametrize("pair", [p for p in PAIRS.values() if p.is_mixed], ids=lambda pair: pair.name)
@@ -36,12 +34,12 @@ def test_inf_sup_constant_tells_stable_pairs_from_unstable_ones(pair):
         assert min(constants) > 0.45
 
 
-LOCKING_MESH = layer_mesh(1.0, 11.0, Grading(points=((1.0, 1e-5),), growth=0.5, max_cell=0.5))
+LOCKING_MESH = section_mesh(uniform_parts(0.5), 11.0, ((1.0, 1e-5),), 0.5)
 
 
 def stiffness_error(pair, nu):
     """Relative error of the flat-punch stiffness at a/h = 1, from the reactions."""
-    problem = LayerProblem(LOCKING_MESH, pair, nu, "bonded")
+    problem = uniform_layer(LOCKING_MESH, pair, nu)
     pressed = 2 * problem.top_nodes(1.0) + 1
     solver = problem.solver(np.concatenate([problem.supported_unknowns, pressed]))
     values = np.zeros((len(solver.held), 1))
@@ -51,7 +49,7 @@ def stiffness_error(pair, nu):
 
 
 def test_a_displacement_formulation_too_ill_conditioned_to_trust_is_refused():
-    problem = LayerProblem(LOCKING_MESH, PAIRS["P3"], 0.4999999, "bonded")
+    problem = uniform_layer(LOCKING_MESH, PAIRS["P3"], 0.4999999)
     with pytest.raises(NotConvergedError, match="energy"):
         solve_prescribed_contact(problem, ScaledIndenter(FlatPunch(radius=1.0), 1.0), StageLog())
 
@@ -82,8 +80,8 @@ def lame_error(nu, cells):
     """Largest relative error of the radial displacement of a thick-walled tube."""
     # plane strain, internal pressure p: u = (1+nu) p ri^2 / (E (ro^2 - ri^2)) [(1 - 2 nu) r + ro^2 / r]
     inner, outer, p = 1.0, 2.0, 0.01
-    problem = LayerProblem(uniform(cells, shift=inner), PAIRS["P3P2"], nu, "bonded")
-    mesh = problem.layer_mesh.mesh
+    problem = uniform_layer(uniform(cells, shift=inner), PAIRS["P3P2"], nu)
+    mesh = problem.section.mesh
     bore = np.flatnonzero((mesh.p[0, mesh.facets] == inner).all(axis=0))
     basis = FacetBasis(mesh, ElementVector(problem.pair.displacement), facets=bore)
     load = LinearForm(lambda v, w: p * v[0] * 2 * np.pi * w.x[0]).assemble(basis)
@@ -91,7 +89,7 @@ def lame_error(nu, cells):
     loads[: len(load), 0] = load
     ends = np.concatenate([problem.nodes_on("top"), problem.nodes_on("base")])
     solution = problem.solver(np.unique(2 * ends + 1)).solve_loaded(loads)
-    r = problem.positions[0]
+    r = problem.space.positions[0]
     E = 1 - nu**2
     exact = (1 + nu) * p * inner**2 / (E * (outer**2 - inner**2)) * ((1 - 2 * nu) * r + outer**2 / r)
     return np.abs(solution[: 2 * len(r) : 2, 0] / exact - 1).max()
@@ -106,7 +104,7 @@ def test_lame_cylinder(nu):
 
 @pytest.mark.parametrize("support", ["bonded", "unbonded"])
 def test_base_carries_what_the_top_receives(support):
-    problem = LayerProblem(LOCKING_MESH, PAIRS["P3P2"], 0.5, support)
+    problem = uniform_layer(LOCKING_MESH, PAIRS["P3P2"], 0.5, bonded=support == "bonded")
     pressed = 2 * problem.top_nodes(1.0) + 1
     solver = problem.solver(np.concatenate([problem.supported_unknowns, pressed]))
     values = np.zeros((len(solver.held), 1))
@@ -119,7 +117,7 @@ def test_base_carries_what_the_top_receives(support):
 
 @pytest.mark.parametrize("name", ["P2", "P3P2", "P4P3"])
 def test_rigid_translation_costs_nothing(name):
-    problem = LayerProblem(LOCKING_MESH, PAIRS[name], 0.3, "bonded")
+    problem = uniform_layer(LOCKING_MESH, PAIRS[name], 0.3)
     shift = np.zeros(problem.space.size)
     shift[1 : problem.space.displacement_count : 2] = 1.0
     assert np.abs(problem.matrix @ shift).max() < 1e-12 * abs(problem.matrix).max()

@@ -17,10 +17,10 @@ from contact import (
     Layer,
     Paraboloid,
     Scene,
+    Solution,
     TruncatedCone,
 )
 from contact.files.scene_file import scene_from_mapping
-from contact.files.storage import load_solution, save_solution
 from fem_reference import Fem
 from mdr import Mdr
 from mdr.batches import pull_offs
@@ -149,8 +149,8 @@ def test_a_cantilever_is_written_with_its_unit_and_the_answer_is_stored(tmp_path
     written = scene_from_mapping(tomllib.loads(text))
     assert written.loading == Detachment(machine_stiffness=0.05)
     path = Mdr().solve(written)
-    save_solution(tmp_path / "a.h5", path)
-    again = load_solution(tmp_path / "a.h5")
+    path.save(tmp_path / "a.h5")
+    again = Solution.load(tmp_path / "a.h5")
     assert again.force_at_loss == path.force_at_loss
     assert again.scene == written
     assert "force_at_loss" in repr(path)

@@ -266,3 +266,13 @@ def test_heights_that_follow_gaps_are_no_minimum_to_be_narrowed():
 
     assert touching_radius(scene, Circle(1.0, float(path.indentation_depth[0]), displacement, 0.0)) is None
     assert len(asked) < 30
+
+
+@METHODS
+def test_the_surface_under_the_contact_alone_may_be_asked(method):
+    """The direct equation once took the largest of no radii outside."""
+    answer = method.solve(scene_of(Paraboloid(radius_of_curvature=1e-2), ContactRadii(values=[5e-4])))
+    r = np.array([1e-4, 4e-4])
+    np.testing.assert_allclose(
+        answer.surface_displacement(r), answer.indentation_depth[0] - r**2 / 2e-2, rtol=0, atol=2e-7
+    )

@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from cases.referees.from_depth import BY_DIFFERENCES
 from contact import IndentationDepths, Method, NormalForces, Scene, Solution
-from contact.answer.from_depth import BY_DIFFERENCES
 from contact.records.validation import FloatArray
 
 # How a note begins that tells of such errors; reports mark them by it.

@@ -15,13 +15,16 @@ from cases.results.records.convergence import ConvergenceStudy
 from cases.results.records.figure import Figure, Panel, Series
 from cases.results.records.run import CaseResult
 from cases.results.records.scene_run import Quantity
-from fem_reference.code_verification.inf_sup import inf_sup_constant, uniform_mesh, with_compressibility
-from fem_reference.code_verification.manufactured import ManufacturedProblem
-from fem_reference.discrete_layer.elements import PAIRS, ElementPair
-from fem_reference.discrete_layer.grading import Grading
-from fem_reference.discrete_layer.mesh import layer_mesh
-from fem_reference.discrete_layer.problem import LayerProblem
-from fem_reference.elastic.patch_test import patch_defect
+from fem_reference.assembly import PAIRS, ElementPair
+from fem_reference.materials import uniform
+from fem_reference.mesh import Section, section_mesh
+from fem_reference.verification import (
+    ManufacturedProblem,
+    inf_sup_constant,
+    uniform_layer,
+    uniform_mesh,
+    with_compressibility,
+)
 
 NAME: Final = "finite_element_verification"
 MIXED: Final = ("P2P1", "P3P2", "P4P3")
@@ -32,8 +35,6 @@ UNSTABLE: Final = ("P1P1", "P1P0")
 CELLS: Final = {2: (32, 16, 8), 3: (16, 8, 4), 4: (16, 8, 4)}
 # Cells across the thickness on which inf-sup constants are measured: a dense eigenvalue problem limits them.
 INF_SUP_CELLS: Final = (1, 2, 4)
-# A layer graded towards the edge of a contact, as those that are solved.
-GRADED: Final = Grading(points=((1.0, 0.02),), growth=0.5, max_cell=0.4)
 # Least inf-sup constant of a stable pair, three quarters of the continuous one of about 0.6 on these sections.
 LEAST_CONSTANT: Final = 0.45
 # Relative residual of the patch test: a few roundings of the terms that cancel.
@@ -60,6 +61,11 @@ Patch test: a constant strain on a graded mesh leaves every inner equation satis
 Locking: the stiffness of a flat punch at a/h = 1 on one mesh as nu goes to 1/2, against the direct integral equation.
 Mixed pairs keep their error; displacements alone lose it, and are seen to.
 """
+
+
+def graded_section() -> Section:
+    """A layer graded towards the edge of a contact, as those that are solved."""
+    return section_mesh(uniform(0.5), 2.0, ((1.0, 0.02),), 0.5)
 
 
 def finite_element_case() -> CaseResult:
@@ -121,7 +127,7 @@ def _solved(pair: ElementPair, nu: float, cells: int) -> tuple[float, float, flo
 def measured_constants(pair: ElementPair) -> tuple[float, ...]:
     """On uniform meshes, coarsest first, and on the graded one."""
     meshes = [uniform_mesh(cells) for cells in INF_SUP_CELLS]
-    return tuple(inf_sup_constant(pair, mesh) for mesh in (*meshes, layer_mesh(1.0, 2.0, GRADED).mesh))
+    return tuple(inf_sup_constant(pair, mesh) for mesh in (*meshes, graded_section().mesh))
 
 
 def locking_errors(name: str) -> Iterator[tuple[float, float]]:
@@ -170,10 +176,10 @@ def inf_sup_claims(name: str, constants: tuple[float, ...]) -> Iterator[Claim]:
 
 def patch_claims() -> Iterator[Claim]:
     """Constant strain on the graded mesh, at every nu that a pair is meant for."""
-    mesh = layer_mesh(1.0, 2.0, GRADED)
+    section = graded_section()
     for name in (*MIXED, *ALONE):
         for nu in (0.0, 0.3, 0.5) if PAIRS[name].is_mixed else (0.0, 0.3):
-            defect = patch_defect(LayerProblem(mesh, PAIRS[name], nu, "bonded"))
+            defect = uniform_layer(section, PAIRS[name], nu).patch_defect
             yield _claim(
                 "patch test",
                 passed_or_failed(defect, LARGEST_DEFECT, f"residual {defect:.1e} of a constant strain"),

@@ -6,24 +6,24 @@ import numpy as np
 
 from bem.direct_method import IntegralEquationMethod
 from contact import FlatPunch, IndentationDepths, Layer, Scene
-from fem_reference.discrete_layer.elements import PAIRS
-from fem_reference.discrete_layer.grading import Grading
-from fem_reference.discrete_layer.mesh import LayerMesh, layer_mesh
-from fem_reference.discrete_layer.problem import LayerProblem
-
-# Cells grow from the edge of the contact by a half, and the outer edge lies ten thicknesses beyond it.
-GRADING = Grading(points=((1.0, 1e-5),), growth=0.5, max_cell=0.5)
+from fem_reference.assembly import PAIRS
+from fem_reference.materials import uniform
+from fem_reference.mesh import Section, section_mesh
+from fem_reference.verification import uniform_layer
 
 
 @cache
-def one_mesh() -> LayerMesh:
-    """The mesh around a flat punch as wide as the layer is thick; lengths by the thickness."""
-    return layer_mesh(1.0, 11.0, GRADING)
+def one_mesh() -> Section:
+    """The mesh around a flat punch as wide as the layer is thick; lengths by the thickness.
+
+    Cells grow from the edge of the contact by a half, and the outer edge lies ten thicknesses beyond it.
+    """
+    return section_mesh(uniform(0.5), 11.0, ((1.0, 1e-5),), 0.5)
 
 
 def punch_stiffness(pair: str, poissons_ratio: float) -> float:
     """k_N/(E* h) of the flat punch at a/h = 1, from the reactions."""
-    problem = LayerProblem(one_mesh(), PAIRS[pair], poissons_ratio, "bonded")
+    problem = uniform_layer(one_mesh(), PAIRS[pair], poissons_ratio)
     pressed = 2 * problem.top_nodes(1.0) + 1
     solver = problem.solver(np.concatenate([problem.supported_unknowns, pressed]))
     values = np.zeros((len(solver.held), 1))

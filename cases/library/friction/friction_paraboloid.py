@@ -254,7 +254,6 @@ LAWS = tuple(
     Residual(name=name, quantity=quantity, scenes=scenes, methods=("fem",), tolerance=tolerance, reason=WHY[name])
     for name, quantity, scenes, tolerance in (
         ("base carries the force", "base_force_defect", (*names_of((*SMALL_ONES, *STUCK)), CYCLE.name), 1e-10),
-        ("second order in cells and steps", "order_defect", names_of((*SMALL_ONES, *STUCK, *SELF_SIMILAR)), 0.2),
         ("no heat is given back", "heat_given_back", (CYCLE.name,), 1e-12),
         ("work is stored or heat", "energy_defect", (CYCLE.name,), 2e-3),
     )

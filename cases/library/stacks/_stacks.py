@@ -28,8 +28,7 @@ from contact import (
     Sublayer,
     TruncatedCone,
 )
-from contact.scene.layer import Support
-from contact.scene.layer_stack import Interface
+from contact.scene.layer import Interface, Support
 
 WHY = reasons("stacks")
 

@@ -30,8 +30,7 @@ from contact import (
     Tabulated,
     TruncatedCone,
 )
-from contact.scene.layer import Support
-from contact.scene.layer_stack import Interface
+from contact.scene.layer import Interface, Support
 
 
 def _decades(first: int, last: int, step: int = 1) -> tuple[float, ...]:

@@ -14,6 +14,7 @@ from cases.referees.calculix.deck import deck
 from cases.referees.calculix.extrapolation import at_zero, extrapolated, last_change, observed_order
 from cases.referees.calculix.mesh import section
 from cases.referees.calculix.program import program, reactions, version
+from cases.referees.from_depth import QUANTITIES
 from cases.referees.process import insist, support
 from contact import (
     ContactPath,
@@ -29,7 +30,6 @@ from contact import (
     Unsupported,
     other_layer,
 )
-from contact.answer.from_depth import QUANTITIES
 from contact.records.extras import NOT_INSTALLED
 
 NEEDS = f"CalculiX (the program ccx) {NOT_INSTALLED}: apt-get install calculix-ccx"

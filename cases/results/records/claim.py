@@ -6,27 +6,9 @@ from enum import StrEnum
 from pydantic.dataclasses import dataclass
 
 from cases.results.records.field_types import RECORD, Finite, NotNegative, Positive
-from cases.results.status import Status
+from cases.verdicts import Kind, Origin, Status
 
-
-class Kind(StrEnum):
-    """What a claim compares with."""
-
-    EXACT = "exact"  # closed form or literature
-    ORDER = "order"  # observed order of convergence against the formal one
-    AGREEMENT = "agreement"  # two methods, both uncertainties known
-    INVARIANT = "invariant"  # a law of the mechanics
-    REGRESSION = "regression"  # own earlier output; never verification
-
-
-class Origin(StrEnum):
-    """Where an expected number comes from; they are never mixed."""
-
-    CLOSED_FORM = "closed form"
-    LITERATURE = "literature"
-    INDEPENDENT_METHOD = "independent method"  # shares neither code nor data with what it checks
-    RELATED_METHOD = "related method"  # shares what `shared_inputs` names
-    OWN_EARLIER_OUTPUT = "own earlier output"
+__all__ = ["Claim", "Kind", "Origin", "Verdict"]
 
 
 class Verdict(StrEnum):

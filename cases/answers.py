@@ -1,0 +1,164 @@
+"""An answer: what one method said to one scene. A file holds one answer per line; it is store, result and baseline."""
+
+import json
+from collections.abc import Iterable, Iterator
+from dataclasses import field, replace
+from pathlib import Path
+from typing import Self, TypeAlias
+
+from pydantic import TypeAdapter, ValidationError, model_validator
+from pydantic.dataclasses import dataclass
+
+from cases.results.records.field_types import Mapping, NotNegative, Positive, Vector
+from cases.verdicts import RECORD, Status
+from contact import InvalidInput
+
+NAME = "answers.jsonl"
+# Case, scene, method, variant: unique within a run.
+Identity: TypeAlias = tuple[str, str, str, str]
+
+
+@dataclass(frozen=True, kw_only=True, config=RECORD)
+class Values:
+    """A quantity along the steps of the loading, or a field at points.
+
+    Attributes:
+        unit: SI unit, "1" for a ratio.
+        scale: size that errors are relative to, same unit; positive, so a zero crossing does no harm.
+        values: shape (n,).
+        error: what the method states. Of a quantity absolute, shape (n,); of a field one number, relative in its norm.
+            Empty where it states none.
+        at: of a field the radii or numbers of its points, shape (n,); empty of a quantity.
+        spread: in a baseline, the largest relative difference between answers that should be equal.
+    """
+
+    unit: str
+    scale: Positive
+    values: Vector
+    error: tuple[NotNegative, ...] = ()
+    at: Vector = ()
+    spread: NotNegative = 0.0
+
+    @model_validator(mode="after")
+    def _one_error_per_value(self) -> Self:
+        wanted = 1 if self.at else len(self.values)
+        if self.error and len(self.error) != wanted:
+            raise ValueError(f"{len(self.error)} errors for {wanted} values; give one each")
+        return self
+
+
+@dataclass(frozen=True, kw_only=True, config=RECORD)
+class Answer:
+    """One method on one scene: PASS with quantities, or another status with its reason.
+
+    Attributes:
+        case: name of the case.
+        scene: name of the scene within the case.
+        method: label of the method in the case.
+        variant: "" for the scene itself, else what was changed ("doubling E doubles F", "grid nodes=8").
+        question: hash of the scene and of the settings asked for; equal on every processor.
+        code: hash of the sources and versions that answered.
+        status: PASS when solved.
+        reason: why not, one sentence.
+        settings: numerical settings that the answer reports.
+        quantities: by name, those along the steps and fields at points (`Values.at`).
+        shared: names of inputs (a flat-punch table, a kernel) that other methods may use as well.
+        seconds: processor time of the solution [s].
+        wall_seconds: duration of the solution [s].
+        memory: peak [bytes].
+        unknowns: of its largest system.
+        counters: factorisations, iterations, steps.
+        samples: seconds of each repeated solution of a timed task.
+        cold_seconds: first solution of a timed task, with empty caches.
+        notes: remarks of the method.
+    """
+
+    case: str
+    scene: str
+    method: str
+    variant: str = ""
+    question: str = ""
+    code: str = ""
+    status: Status = Status.PASS
+    reason: str = ""
+    settings: Mapping = field(default_factory=dict)
+    quantities: dict[str, Values] = field(default_factory=dict)
+    shared: tuple[str, ...] = ()
+    seconds: NotNegative = 0.0
+    wall_seconds: NotNegative = 0.0
+    memory: int = 0
+    unknowns: int = 0
+    counters: dict[str, int] = field(default_factory=dict)
+    samples: tuple[NotNegative, ...] = ()
+    cold_seconds: NotNegative = 0.0
+    notes: tuple[str, ...] = ()
+
+    @property
+    def identity(self) -> Identity:
+        """Case, scene, method and variant: unique within a run."""
+        return self.case, self.scene, self.method, self.variant
+
+    @property
+    def solved(self) -> bool:
+        """Whether it has numbers."""
+        return self.status is Status.PASS
+
+    def line(self) -> str:
+        """The answer as one line of JSON: sorted keys, every digit; defaults are left out."""
+        tree = _ANSWER.dump_python(self, mode="json", exclude_defaults=True)
+        return json.dumps(tree, sort_keys=True, allow_nan=False) + "\n"
+
+
+_ANSWER: TypeAdapter[Answer] = TypeAdapter(Answer)
+
+
+class Table:
+    """Answers by identity; the last of two with one identity counts."""
+
+    def __init__(self, answers: Iterable[Answer] = ()) -> None:
+        self._answers = {answer.identity: answer for answer in answers}
+
+    def __iter__(self) -> Iterator[Answer]:
+        return iter(self._answers.values())
+
+    def __len__(self) -> int:
+        return len(self._answers)
+
+    def get(self, identity: Identity) -> Answer | None:
+        """Return the answer of that identity; None if there is none."""
+        return self._answers.get(identity)
+
+    def of_case(self, case: str, *, variants: bool = False) -> list[Answer]:
+        """Return the answers of a case on its own scenes, with ``variants`` also those on changed scenes."""
+        return [answer for answer in self if answer.case == case and (variants or not answer.variant)]
+
+    def rows(self) -> Iterator[dict[str, object]]:
+        """The long table, one row per value: for CSV files, data frames and spreadsheets."""
+        for answer in self:
+            place = dict(zip(("case", "scene", "method", "variant"), answer.identity, strict=True))
+            for name, q in answer.quantities.items():
+                for step, value in enumerate(q.values):
+                    error = q.error[step] if q.error and not q.at else None
+                    yield {**place, "quantity": name, "step": step, "value": value, "unit": q.unit, "error": error}
+
+
+def read_answers(path: Path) -> Iterator[Answer]:
+    """Yield the answers of a file; a torn last line is left out, its writer was killed.
+
+    Raises:
+        InvalidInput: naming the file and the line that holds no answer.
+    """
+    for number, line in enumerate(path.read_bytes().splitlines(keepends=True), 1):
+        if not line.endswith(b"\n"):
+            return
+        try:
+            yield _ANSWER.validate_json(line)
+        except (ValidationError, ValueError) as error:
+            words = str(error.errors()[0]["msg"]) if isinstance(error, ValidationError) else str(error)
+            raise InvalidInput(f"{path}, line {number}, is no answer ({words:.200}); delete it and resume") from None
+
+
+def without_fields(answer: Answer) -> Answer:
+    """Return the answer with quantities alone, and of fields their stated errors: what a baseline keeps."""
+    kept = {name: replace(q, values=(), at=(0.0,)) if q.at else q for name, q in answer.quantities.items()}
+    return replace(answer, quantities=kept)

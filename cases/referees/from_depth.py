@@ -1,0 +1,172 @@
+"""Makes an answer of any solver that gives the force at depths: inverts it, and differentiates it for the stiffness."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from contact import (
+    ContactPath,
+    ContactRadii,
+    ForcePath,
+    IndentationDepths,
+    NormalForces,
+    NotConvergedError,
+    UnsupportedSceneError,
+)
+from contact.answer.solution import Setting
+
+if TYPE_CHECKING:
+    from contact.answer.stages import StageLog
+    from contact.records.validation import FloatArray
+    from contact.scene.scene import Scene
+
+QUANTITIES = ContactPath.ARRAYS
+# Depths of the difference quotient of the stiffness, relative. Differences of fourth order leave step^4/30 of a power
+# law: 3e-10 of Hertz's.
+STEP = 1e-2
+# What differences of fourth and of sixth order leave of forces at three steps on either side (Fornberg 1988).
+FOURTH = np.array([0.0, 1.0, -8.0, 0.0, 8.0, -1.0, 0.0]) / 12.0
+SIXTH = np.array([-1.0, 9.0, -45.0, 0.0, 45.0, -9.0, 1.0]) / 60.0
+# The sixth difference of smooth forces is step^6 of them; what it is beyond that is noise of the solver.
+NOISE = np.array([1.0, -6.0, 15.0, -20.0, 15.0, -6.0, 1.0])
+# Quantities whose stated error is that of this module alone; what the solver lacks comes from its refinement.
+BY_DIFFERENCES = frozenset({"contact_stiffness"})
+# Prescribed forces and radii are met within this, relative; secant steps double their digits, so few are needed.
+MET, MOST_STEPS = 1e-10, 40
+
+
+@dataclass(frozen=True, kw_only=True)
+class Response:
+    """What a solver answers at depths, shape (n,); what it does not know is left out.
+
+    Attributes:
+        normal_force: F_N [N].
+        contact_radius: a [m].
+        contact_stiffness: dF/d(delta) [N/m].
+    """
+
+    normal_force: FloatArray
+    contact_radius: FloatArray | None = None
+    contact_stiffness: FloatArray | None = None
+
+
+Respond = Callable[["FloatArray"], Response]
+
+
+def answer_from_depths(
+    scene: Scene,
+    respond: Respond,
+    log: StageLog,
+    *,
+    method: str,
+    settings: Mapping[str, Setting] | None = None,
+    unknowns: int = 1,
+    **further: Any,
+) -> ContactPath | ForcePath:
+    """Return the equilibria that the scene prescribes; without radii where the solver knows none.
+
+    A stiffness by difference quotients states their error, besides what ``error_estimate`` states of it.
+
+    Args:
+        scene: prescribes depths, forces, or (where the solver knows radii) contact radii.
+        respond: the solver: depths [m], shape (n,), to what it answers there.
+        log: of the solver's stages.
+        method: name of the solver.
+        settings: of the solver.
+        unknowns: of its largest system.
+        further: fields of the answer, such as ``error_estimate`` and ``notes``.
+
+    Raises:
+        UnsupportedSceneError: if radii are prescribed and the solver knows none, or for any other loading.
+        NotConvergedError: if no depth gives what is prescribed.
+    """
+    depths = _depths(scene, respond)
+    found = respond(depths)
+    radius, stiffness = found.contact_radius, found.contact_stiffness
+    errors = dict(further.pop("error_estimate", {}))
+    if stiffness is None:
+        stiffness, of_quotient = _slope(respond, depths, found.normal_force)
+        errors["contact_stiffness"] = errors.get("contact_stiffness", 0.0) + of_quotient
+    common: dict[str, Any] = {
+        "scene": scene,
+        "method": method,
+        "settings": dict(settings or {}),
+        "error_estimate": errors,
+        **further,
+    }
+    numbers: dict[str, Any] = {
+        "indentation_depth": depths,
+        "normal_force": found.normal_force,
+        "contact_stiffness": stiffness,
+    }
+    cost: dict[str, Any] = {"cost": log.cost(unknowns=unknowns), "stages": log.records}
+    if radius is None:
+        return ForcePath(**common, **numbers, **cost)
+    return ContactPath(**common, contact_radius=radius, **numbers, **cost)
+
+
+def inverted(function: Callable[[FloatArray], FloatArray], wanted: FloatArray, first: FloatArray) -> FloatArray:
+    """Return where an increasing positive function has the wanted values: secant steps on the logarithms.
+
+    Args:
+        function: of arrays, shape (n,), entry by entry.
+        wanted: positive, shape (n,).
+        first: a first guess, shape (n,); any positive one will do.
+
+    Raises:
+        NotConvergedError: if no argument gives what is wanted.
+    """
+    old, new = np.log(first), np.log(first) + np.log(2.0)
+    target, before, now = np.log(wanted), np.log(function(np.exp(old))), np.log(function(np.exp(new)))
+    for _ in range(MOST_STEPS):
+        if np.max(np.abs(now - target)) <= MET:
+            return np.asarray(np.exp(new))
+        rise = np.where(now == before, 1.0, (now - before) / np.where(new == old, 1.0, new - old))
+        old, new, before = new, new + np.clip((target - now) / np.where(rise > 0, rise, 1.0), -2.0, 2.0), now
+        now = np.log(function(np.exp(new)))
+    worst = float(wanted[np.argmax(np.abs(now - target))])
+    raise NotConvergedError(f"no argument gives {worst:g}; the nearest misses it by {np.max(np.abs(now - target)):.0e}")
+
+
+def _depths(scene: Scene, respond: Respond) -> FloatArray:
+    match scene.loading:
+        case IndentationDepths(values=values):
+            return values
+        case NormalForces(values=values):
+            return inverted(lambda depths: respond(depths).normal_force, values, _scale(scene, values))
+        case ContactRadii(values=values):
+            return inverted(lambda depths: _radius(respond(depths)), values, scene.indenter.height(values))
+        case other:
+            raise UnsupportedSceneError(f"loading = {type(other).__name__}: a force at depths answers no such scene")
+
+
+def _radius(found: Response) -> FloatArray:
+    if found.contact_radius is None:
+        raise UnsupportedSceneError("this solver knows no contact radius; prescribe depths or forces")
+    return found.contact_radius
+
+
+def _scale(scene: Scene, forces: FloatArray) -> FloatArray:
+    """A first depth [m]: any will do, the steps are those of logarithms."""
+    length = scene.indenter.flat_radius or float(np.sqrt(np.max(forces) / scene.layer.contact_modulus))
+    return np.asarray(forces / (2 * scene.layer.contact_modulus * length))
+
+
+def _slope(respond: Respond, depths: FloatArray, at_depths: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """dF/d(delta) by differences of fourth order, and its error, relative.
+
+    The error is the distance to differences of sixth order, the noise of the forces, and what rounding does.
+    """
+    shifts = np.array([-3.0, -2.0, -1.0, 1.0, 2.0, 3.0]) * STEP
+    around = respond((depths[:, None] * (1.0 + shifts)).ravel()).normal_force.reshape(depths.size, -1)
+    forces = np.insert(around, 3, at_depths, axis=1)
+    steps = STEP * depths
+    slope = forces @ FOURTH / steps
+    rounding = np.finfo(np.float64).eps * (np.abs(at_depths) + np.abs(slope * depths))
+    noise = np.abs(forces @ NOISE) + rounding
+    error = np.abs(forces @ SIXTH / steps - slope) + noise / steps
+    return np.asarray(slope), np.asarray(error / np.where(slope == 0.0, 1.0, np.abs(slope)))

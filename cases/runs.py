@@ -1,0 +1,101 @@
+"""A run: its cases in words, its answers, its verdicts and studies, and where it was made.
+
+On disk a folder: ``answers.jsonl`` holds the answers, one per line (`cases.answers`), ``run.json`` all the rest.
+"""
+
+from dataclasses import dataclass as plain
+from dataclasses import field
+from pathlib import Path
+
+from pydantic import TypeAdapter
+from pydantic.dataclasses import dataclass
+
+from cases.answers import NAME, Table, read_answers
+from cases.results.files import write_whole
+from cases.results.records.field_types import Mapping
+from cases.results.records.run import Stamp
+from cases.results.strict_json import json_text, read_json, validated
+from cases.studies import Convergence, CostOfAccuracy, Effect, StressTest
+from cases.verdicts import RECORD, Kind, Status, Verdict
+from contact import InvalidInput
+
+RUN = "run.json"
+REMEDY = "run the cases again (with --resume finished solutions are kept)"
+
+
+@dataclass(frozen=True, kw_only=True, config=RECORD)
+class CaseText:
+    """A case in words: what a page says before its numbers; ``scenes`` holds the parameters of each by its name."""
+
+    name: str
+    title: str
+    question: str
+    equations: str = ""
+    text: str = ""
+    scenes: dict[str, Mapping] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, kw_only=True, config=RECORD)
+class Judged:
+    """All of a run but its answers; ``complete`` is False when it was interrupted, what is there is valid all the same.
+
+    Its ``methods`` are those that were chosen on the command line; none if the cases were solved by their own.
+    """
+
+    suite: str = ""
+    methods: tuple[str, ...] = ()
+    complete: bool = True
+    stamp: Stamp
+    cases: tuple[CaseText, ...] = ()
+    verdicts: tuple[Verdict, ...] = ()
+    convergence: tuple[Convergence, ...] = ()
+    costs: tuple[CostOfAccuracy, ...] = ()
+    stress_tests: tuple[StressTest, ...] = ()
+    effects: tuple[Effect, ...] = ()
+
+
+_JUDGED: TypeAdapter[Judged] = TypeAdapter(Judged)
+
+
+@plain(frozen=True, kw_only=True)
+class Run:
+    """A run with its answers."""
+
+    judged: Judged
+    answers: Table
+
+    @property
+    def statuses(self) -> tuple[Status, ...]:
+        """Every status that counts: of verdicts, and of answers on the scenes of cases themselves."""
+        own = (answer.status for answer in self.answers if not answer.variant)
+        return (*own, *(verdict.status for verdict in self.judged.verdicts))
+
+    @property
+    def unjudged(self) -> tuple[str, ...]:
+        """The chosen methods about which no claim was judged; numbers accepted earlier are no claim."""
+        seen = {
+            label
+            for verdict in self.judged.verdicts
+            if verdict.kind is not Kind.REGRESSION and verdict.status is not Status.SKIP
+            for label in verdict.methods
+        }
+        return tuple(label for label in self.judged.methods if label not in seen)
+
+
+def write_run(run: Judged, folder: Path) -> None:
+    """Write ``run.json``, whole or not at all; the answers lie beside it already."""
+    folder.mkdir(parents=True, exist_ok=True)
+    write_whole(folder / RUN, json_text(_JUDGED.dump_python(run, mode="json", exclude_defaults=True)))
+
+
+def read_run(folder: Path) -> Run:
+    """Return the run in a folder.
+
+    Raises:
+        InvalidInput: in one line, if there is none, or it cannot be read.
+    """
+    if not (folder / RUN).is_file():
+        raise InvalidInput(f"no {RUN} in {folder}; give the directory of a finished run")
+    judged = validated(_JUDGED, read_json(folder / RUN, remedy=REMEDY), place=str(folder / RUN), remedy=REMEDY)
+    answers = folder / NAME
+    return Run(judged=judged, answers=Table(read_answers(answers) if answers.is_file() else ()))

@@ -1,0 +1,145 @@
+"""What some claims show beside their verdicts: convergence, cost of accuracy, stress tests, effects of a scene."""
+
+from dataclasses import field
+
+from pydantic.dataclasses import dataclass
+
+from cases.results.records.field_types import Finite, Mapping, NotNegative, Positive
+from cases.verdicts import RECORD
+
+
+@dataclass(frozen=True, kw_only=True, config=RECORD)
+class Grid:
+    """One refinement: length relative to the coarsest, value, error against the reference, error that is stated."""
+
+    length: Positive
+    unknowns: int
+    seconds: NotNegative
+    value: Finite
+    error: NotNegative | None
+    stated: NotNegative | None = None
+
+
+@dataclass(frozen=True, kw_only=True, config=RECORD)
+class Convergence:
+    """A quantity of one scene and method under refinement, finest grid first.
+
+    Attributes:
+        refined: what is refined; the formal order belongs to it.
+        kind: monotone, oscillatory, divergent, floor, too-few or spectral.
+        grids: finest first; errors are absolute.
+        scale: size that errors are relative to, unit of the quantity.
+        formal_order: None of spectral convergence.
+        observed_order: None where the class has none.
+        digits: per refinement, of spectral convergence; None otherwise.
+        reference: value at vanishing length; None without one.
+        reference_error: of it, absolute.
+        source: of the reference.
+    """
+
+    case: str
+    scene: str
+    method: str
+    quantity: str
+    unit: str
+    refined: str
+    kind: str
+    grids: tuple[Grid, ...]
+    scale: Positive
+    formal_order: Positive | None
+    observed_order: Finite | None
+    digits: Finite | None
+    reference: Finite | None
+    reference_error: NotNegative
+    source: str
+
+
+@dataclass(frozen=True, kw_only=True, config=RECORD)
+class Point:
+    """One setting of one method, timed: relative error, bound U = error + error of the reference, median seconds.
+
+    Attributes:
+        setting: in words.
+        error: None where the setting has no answer; the reason says why.
+        bound: U, None as the error.
+        quartiles: of the seconds.
+        cold_seconds: first solution, with nothing kept from earlier ones.
+        on_front: no other setting of any method is at least as accurate and clearly faster.
+    """
+
+    method: str
+    setting: str
+    settings: Mapping = field(default_factory=dict)
+    reason: str = ""
+    error: NotNegative | None = None
+    bound: NotNegative | None = None
+    seconds: NotNegative = 0.0
+    quartiles: tuple[NotNegative, NotNegative] = (0.0, 0.0)
+    cold_seconds: NotNegative = 0.0
+    unknowns: int = 0
+    memory: int = 0
+    on_front: bool = False
+
+
+@dataclass(frozen=True, kw_only=True, config=RECORD)
+class CostOfAccuracy:
+    """Error against seconds of all methods on one scene; errors are relative, nothing is interpolated.
+
+    Attributes:
+        reference: what errors are measured against, in words.
+        reference_error: relative, of it.
+        noise: relative spread of repeated times.
+    """
+
+    case: str
+    scene: str
+    quantity: str
+    reference: str
+    reference_error: NotNegative
+    noise: NotNegative
+    points: tuple[Point, ...]
+
+
+@dataclass(frozen=True, kw_only=True, config=RECORD)
+class Step:
+    """One step of a stress test: value of the parameter, digits that repeats share (None if refused), the reason."""
+
+    value: Positive
+    status: str
+    digits: NotNegative | None
+    reason: str = ""
+    residuals: dict[str, NotNegative] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, kw_only=True, config=RECORD)
+class StressTest:
+    """A parameter made harder step by step, from easy to hard; ``parameter`` has its symbol, "1/2 - nu"."""
+
+    case: str
+    name: str
+    parameter: str
+    unit: str
+    method: str
+    quantity: str
+    steps: tuple[Step, ...]
+
+
+@dataclass(frozen=True, kw_only=True, config=RECORD)
+class Effect:
+    """What a part of a scene ("Adhesion", "finite thickness") costs and changes: solved with it and without.
+
+    Attributes:
+        seconds: processor time of a first solution of the whole scene [s].
+        seconds_without: the same without the part; None where the scene has no answer without it.
+        changes: relative change of each quantity without it, largest over the steps.
+        remark: why there is no answer without it, or "".
+    """
+
+    case: str
+    scene: str
+    method: str
+    part: str
+    seconds: NotNegative
+    seconds_without: NotNegative | None = None
+    changes: dict[str, NotNegative] = field(default_factory=dict)
+    remark: str = ""

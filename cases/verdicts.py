@@ -1,0 +1,180 @@
+"""A verdict is a claim on one scene, judged; how it can end, and the exit codes of the command line (as pytest's)."""
+
+from collections.abc import Iterable
+from dataclasses import field
+from enum import IntEnum, StrEnum
+
+from pydantic import ConfigDict
+from pydantic.dataclasses import dataclass
+
+from cases.results.records.field_types import Finite, NotNegative, Positive
+from contact import InvalidInput
+
+# A record refuses a field that it does not know: a misspelt name in a file is an error.
+RECORD = ConfigDict(extra="forbid")
+
+
+class Status(StrEnum):
+    """The end of an answer, of a claim, of a comparison; a non-finite number is INVALID and never equal to itself."""
+
+    PASS = "PASS"
+    FAIL = "FAIL"  # accuracy, order, agreement or invariant: the kind of the claim says which
+    DIFF = "DIFF"  # differs from the accepted baseline
+    PERF = "PERF"  # slower than the accepted baseline
+    INVALID = "INVALID"  # non-finite number, breakdown of a solver
+    INCOMPARABLE = "INCOMPARABLE"  # shape, unit or specification differ
+    INCONCLUSIVE = "INCONCLUSIVE"  # the uncertainties do not allow a verdict
+    TIMEOUT = "TIMEOUT"
+    SKIP = "SKIP"  # the method does not model this scene: the reason says why
+    XFAIL = "XFAIL"  # fails, and is declared to fail with a reason
+    XPASS = "XPASS"  # declared to fail, but passes: the declaration is out of date
+
+    @property
+    def is_failure(self) -> bool:
+        """Whether this alone makes the gate fail."""
+        return self in _FAILURES
+
+    @property
+    def is_warning(self) -> bool:
+        """Whether this leaves the verdict open: under ``strict`` it has an exit code of its own."""
+        return self is Status.INCONCLUSIVE
+
+
+_FAILURES = frozenset(
+    {Status.FAIL, Status.DIFF, Status.PERF, Status.INVALID, Status.INCOMPARABLE, Status.TIMEOUT, Status.XPASS}
+)
+# From the mildest to the worst.
+_ORDER = (
+    Status.SKIP,
+    Status.PASS,
+    Status.XFAIL,
+    Status.INCONCLUSIVE,
+    Status.PERF,
+    Status.DIFF,
+    Status.XPASS,
+    Status.INCOMPARABLE,
+    Status.TIMEOUT,
+    Status.FAIL,
+    Status.INVALID,
+)
+
+
+def worst(statuses: Iterable[Status]) -> Status:
+    """Return the status that decides: a failure before a warning before a pass; SKIP when nothing ran."""
+    return max(statuses, key=_ORDER.index, default=Status.SKIP)
+
+
+class ExitCode(IntEnum):
+    """What the command line answers to the shell."""
+
+    PASSED = 0
+    GATE_FAILED = 1
+    INTERRUPTED = 2
+    INTERNAL_ERROR = 3
+    USAGE = 4
+    NOTHING_RAN = 5
+    # Only under ``strict``: nothing failed, but a verdict stays open (INCONCLUSIVE).
+    UNDECIDED = 6
+
+
+def exit_code(statuses: Iterable[Status], *, strict: bool = False) -> ExitCode:
+    """Return the exit code of a run whose checks ended with ``statuses``; skipped checks did not run."""
+    ran = [status for status in statuses if status is not Status.SKIP]
+    if not ran:
+        return ExitCode.NOTHING_RAN
+    if any(status.is_failure for status in ran):
+        return ExitCode.GATE_FAILED
+    return ExitCode.UNDECIDED if strict and any(status.is_warning for status in ran) else ExitCode.PASSED
+
+
+class Kind(StrEnum):
+    """What a claim compares with."""
+
+    EXACT = "exact"  # closed form or literature
+    ORDER = "order"  # observed order of convergence against the formal one
+    AGREEMENT = "agreement"  # two methods, both errors known
+    INVARIANT = "invariant"  # a law of the mechanics
+    REGRESSION = "regression"  # own earlier output; never verification
+
+
+class Origin(StrEnum):
+    """Where an expected number comes from; they are never mixed."""
+
+    CLOSED_FORM = "closed form"
+    LITERATURE = "literature"
+    INDEPENDENT_METHOD = "independent method"  # shares neither code nor data with what it checks
+    RELATED_METHOD = "related method"  # shares what `Verdict.shared` names
+    OWN_EARLIER_OUTPUT = "own earlier output"
+
+
+@dataclass(frozen=True, config=RECORD)
+class Why:
+    """Why a claim should hold; it stands beside the claim, before anything is computed.
+
+    Attributes:
+        origin: of the expected number.
+        source: closed form, page and table, or method.
+        because: why the claim should hold.
+        tolerance: how the tolerance was chosen: theory, then a numerical error, then ten times a measured spread; never
+            today's result.
+    """
+
+    origin: Origin
+    source: str
+    because: str
+    tolerance: str
+
+    def __post_init__(self) -> None:
+        """Refuse a reason that says nothing."""
+        for what in ("source", "because", "tolerance"):
+            if not getattr(self, what).strip():
+                raise InvalidInput(f"{what} is empty; a claim states its source, its reason and its tolerance's origin")
+
+
+@dataclass(frozen=True, kw_only=True, config=RECORD)
+class Verdict:
+    """A claim on one scene, judged.
+
+    Attributes:
+        case: name of the case.
+        claim: name of the claim, unique within the case.
+        kind: what it compares with.
+        scene: name of the scene, or of the last of the scenes it speaks about.
+        methods: the method, or the two methods compared.
+        quantity: what is compared.
+        status: how it ended; decides the exit code.
+        error: measured relative error or difference, signed, or the observed order; None when nothing was compared.
+        expected: the number compared with; None where there is none.
+        tolerance: largest permitted error, same unit as the error.
+        fraction: error (of agreements: and stated errors) over tolerance, at most 1 passes; None as the error.
+        uncertainty: error that each method states, by its label, same unit as the error.
+        unit: of error, expected and tolerance; "1" where they are relative.
+        why: why it should hold.
+        shared: what both answers rest on; agreement says nothing about that.
+        message: what was seen, one sentence.
+        identity: why the comparison holds by construction, empty where it can fail; identities are not counted.
+    """
+
+    case: str
+    claim: str
+    kind: Kind
+    scene: str
+    methods: tuple[str, ...]
+    quantity: str
+    status: Status
+    error: Finite | None = None
+    expected: Finite | None = None
+    tolerance: Positive
+    fraction: NotNegative | None = None
+    uncertainty: dict[str, NotNegative] = field(default_factory=dict)
+    unit: str = "1"
+    why: Why
+    shared: tuple[str, ...] = ()
+    message: str
+    identity: str = ""
+
+    @property
+    def word(self) -> str:
+        """The word for the reader: AGREE and DISAGREE of two methods, else the status."""
+        words = {Status.PASS: "AGREE", Status.FAIL: "DISAGREE"} if self.kind is Kind.AGREEMENT else {}
+        return words.get(self.status, self.status.value)

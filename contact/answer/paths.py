@@ -1,0 +1,437 @@
+"""The kinds of answers: equilibria, a detachment, a history in time, an impact."""
+
+import dataclasses
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any, ClassVar, Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from contact.answer.evidence import (
+    Depths,
+    Dissipation,
+    Force,
+    Forces,
+    Length,
+    Quantity,
+    Radii,
+    Stiffnesses,
+    Times,
+    finite,
+)
+from contact.answer.inside import Inside, InteriorFields, KnownContact
+from contact.answer.one_thread import one_thread
+from contact.answer.solution import Solution
+from contact.records.errors import InvalidInput
+from contact.records.validation import FloatArray
+from contact.scene.effects import Adhesion
+
+
+class Fields(Protocol):
+    """Surface fields of one equilibrium."""
+
+    def pressure(self, radius: FloatArray, step: int) -> FloatArray:
+        """p(r) [Pa], zero outside the contact."""
+
+    def surface_displacement(self, radius: FloatArray, step: int) -> FloatArray:
+        """w(r) [m], positive into the layer."""
+
+
+class InstantInterior(InteriorFields, Protocol):
+    """Fields inside at one instant of a history."""
+
+    @property
+    def singular_edge(self) -> bool:
+        """Whether the pressure is infinite at the edge of contact."""
+
+
+class InstantFields(Protocol):
+    """Fields of a method at the instants of a history."""
+
+    def inside(self, step: int) -> InstantInterior:
+        """At one of them, at which something touches."""
+
+
+@dataclass(frozen=True)
+class SampledFields:
+    """Surface fields at stored radii; other radii are refused, never interpolated.
+
+    Attributes:
+        radius: r [m], shape (m,) or (n, m): m radii for each of n steps, increasing.
+        pressures: p [Pa], shape (n, m).
+        displacements: w [m], shape (n, m).
+    """
+
+    radius: FloatArray
+    pressures: FloatArray
+    displacements: FloatArray
+
+    def pressure(self, radius: FloatArray, step: int) -> FloatArray:
+        """p [Pa] at stored radii."""
+        return self._at(self.pressures, radius, step)
+
+    def surface_displacement(self, radius: FloatArray, step: int) -> FloatArray:
+        """w [m] at stored radii."""
+        return self._at(self.displacements, radius, step)
+
+    def _at(self, values: FloatArray, radius: FloatArray, step: int) -> FloatArray:
+        stored = np.broadcast_to(self.radius, values.shape)[step]
+        places = np.minimum(np.searchsorted(stored, radius), stored.size - 1)
+        missing = radius[stored[places] != radius]
+        if missing.size:
+            reason = f"not among the {stored.size} stored radii; solve the scene again"
+            raise InvalidInput(f"radius = {missing[0]:.17g}: {reason}")
+        return np.asarray(values[step, places])
+
+
+@one_thread
+def sampled(answer: Solution, fields: object | None, name: str, radius: ArrayLike, step: int) -> FloatArray:
+    """A surface field of one step at radii [m].
+
+    Raises:
+        InvalidInput: The method gave no fields, the answer has no such step, or a radius is negative or not finite.
+    """
+    if fields is None:
+        raise InvalidInput(f"{answer.method} gave no surface fields; ask a method that does")
+    answer.refuse_step(step)
+    r = np.asarray(radius, dtype=np.float64)
+    if not np.all(np.isfinite(r) & (r >= 0.0)):
+        raise InvalidInput(f"radius = {np.min(r) if r.size else r}: radii must be finite and not negative")
+    values: FloatArray = getattr(fields, name)(np.atleast_1d(r), step % len(answer))
+    return finite(name, values, answer.method).reshape(r.shape)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class ContactPath(Solution):
+    """Equilibria at the prescribed radii, depths or forces, in their order.
+
+    Attributes:
+        contact_radius: a [m], shape (n,).
+        indentation_depth: delta [m], shape (n,).
+        normal_force: F_N [N], shape (n,).
+        contact_stiffness: k_N = dF/d(delta) at fixed radius [N/m], shape (n,).
+        fields: Pressure and displacement at the surface, where the method gives them.
+    """
+
+    OFFERS: ClassVar[tuple[str, ...]] = ("pressure(radius, step)", "surface_displacement(radius, step)")
+    ASKED: ClassVar[tuple[str, ...]] = ("contact_radius", "indentation_depth", "normal_force", "contact_stiffness")
+
+    contact_radius: Radii
+    indentation_depth: Depths
+    normal_force: Forces
+    contact_stiffness: Stiffnesses
+    fields: Fields | None = None
+
+    def scale(self, quantity: str) -> FloatArray:
+        """The quantity's own magnitude; with adhesion, where it may cross zero, its largest along the path.
+
+        That of the pressure is the mean pressure F/(pi a^2) under the contact, with adhesion at least that of a flat
+        punch at the same depth; that of the surface's displacement is the depth.
+        """
+        if quantity == "pressure":
+            return self._mean_pressure()
+        if quantity == "surface_displacement":
+            return self.scale("indentation_depth")
+        if self._adheres or not hasattr(self, quantity):
+            return super().scale(quantity)
+        return np.abs(np.asarray(getattr(self, quantity), dtype=np.float64))
+
+    def _mean_pressure(self) -> FloatArray:
+        force, area = np.abs(self.normal_force), np.pi * self.contact_radius**2
+        if self._adheres:
+            force = np.maximum(force, self.contact_stiffness * np.abs(self.indentation_depth))
+        pressure = np.divide(force, area, out=np.zeros_like(force), where=area > 0)
+        return np.full(force.shape, pressure.max(initial=0.0)) if self._adheres else pressure
+
+    @property
+    def _adheres(self) -> bool:
+        return self.scene.effect(Adhesion) is not None
+
+    def pressure(self, radius: ArrayLike, step: int = 0) -> FloatArray:
+        """Contact pressure p(r) [Pa] of one step at radii [m], zero outside the contact."""
+        return sampled(self, self.fields, "pressure", radius, step)
+
+    def surface_displacement(self, radius: ArrayLike, step: int = 0) -> FloatArray:
+        """Surface displacement w(r) [m] of one step at radii [m], inside and outside the contact."""
+        return sampled(self, self.fields, "surface_displacement", radius, step)
+
+    def inside(self, step: int = 0) -> Inside:
+        """The body under one step: `.at(radius, depth)` and `.largest("von_mises")`.
+
+        Raises:
+            InvalidInput: If the path has no such step, or the method no fields inside.
+        """
+        inside = getattr(self.fields, "inside", None)
+        if inside is None:
+            raise InvalidInput(f"{self.method} gives no fields inside the body; ask mdr or fem")
+        self.refuse_step(step)
+        if "pressure" not in self.error_estimate:
+            raise InvalidInput(f"{self.method} states no error of this pressure, nor of the fields that follow inside")
+        radius = float(self.contact_radius[step])
+        names = ("contact_radius", "pressure")
+        errors = (np.broadcast_to(self.error_estimate.get(name, 0.0), len(self))[step] for name in names)
+        fields = inside(step % len(self), KnownContact(radius, *map(float, errors)))
+        return Inside(fields=fields, scene=self.scene, contact_radius=radius)
+
+    def save(self, path: str | Path, radius: ArrayLike | None = None) -> None:
+        """Write the answer to an HDF5 file, with its surface fields at radii [m], shape (m,) or (n, m), increasing.
+
+        Raises:
+            InvalidInput: If the file cannot be written, or the radii do not increase.
+        """
+        if radius is None:
+            return super().save(path)
+        r = np.asarray(radius, dtype=np.float64)
+        if np.any(np.diff(r) <= 0.0):
+            raise InvalidInput("radius: stored radii must increase strictly")
+        rows = list(enumerate(np.broadcast_to(r, (len(self), r.shape[-1]))))
+        pressures = np.array([self.pressure(row, step) for step, row in rows])
+        displacements = np.array([self.surface_displacement(row, step) for step, row in rows])
+        stored = SampledFields(r, pressures, displacements)
+        return super(ContactPath, dataclasses.replace(self, fields=stored)).save(path)
+
+    def _tree(self) -> dict[str, Any]:
+        stored = {"fields": vars(self.fields)} if isinstance(self.fields, SampledFields) else {}
+        return super()._tree() | stored
+
+    @classmethod
+    def _further(cls, tree: Mapping[str, Any]) -> dict[str, Any]:
+        return {"fields": SampledFields(**tree["fields"])} if "fields" in tree else {}
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class FrictionPath(ContactPath):
+    """Equilibria with friction, each reached by loading alone.
+
+    Attributes:
+        stick_radius: Radius of the outermost point that sticks [m], shape (n,); the contact's own under full stick.
+        dissipated_energy: Turned into heat since the first touch [J], shape (n,).
+    """
+
+    OFFERS: ClassVar[tuple[str, ...]] = (
+        *ContactPath.OFFERS,
+        "tangential_traction(radius, step)",
+        "slip(radius, step)",
+    )
+
+    stick_radius: Annotated[FloatArray, Quantity("c", "m")]
+    dissipated_energy: Dissipation
+
+    def scale(self, quantity: str) -> FloatArray:
+        """The quantity's own magnitude; the contact radius for that of the stick, work for heat, p's for tractions."""
+        if quantity == "dissipated_energy":
+            return np.abs(self.normal_force * self.indentation_depth)
+        if quantity in ("pressure", "tangential_traction"):
+            return np.asarray(np.abs(self.normal_force) / (np.pi * self.contact_radius**2))
+        values = self.contact_radius if quantity == "stick_radius" else getattr(self, quantity, np.ones(len(self)))
+        return np.abs(np.asarray(values, dtype=np.float64))
+
+    def tangential_traction(self, radius: ArrayLike, step: int = 0) -> FloatArray:
+        """Traction q(r) [Pa] of one step at radii [m], positive where it pushes the layer outward, zero outside."""
+        return sampled(self, self.fields, "tangential_traction", radius, step)
+
+    def slip(self, radius: ArrayLike, step: int = 0) -> FloatArray:
+        """How far the surface has slid outward at radii [m] since it touched there [m], zero outside."""
+        return sampled(self, self.fields, "slip", radius, step)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class ForcePath(Solution):
+    """Equilibria of a solver that gives no contact radius.
+
+    Attributes:
+        indentation_depth: delta [m], shape (n,).
+        normal_force: F_N [N], shape (n,).
+        contact_stiffness: dF/d(delta) [N/m], shape (n,).
+    """
+
+    ASKED: ClassVar[tuple[str, ...]] = ("indentation_depth", "normal_force", "contact_stiffness")
+
+    indentation_depth: Depths
+    normal_force: Forces
+    contact_stiffness: Stiffnesses
+
+    def scale(self, quantity: str) -> FloatArray:
+        """The quantity's own magnitude."""
+        return np.abs(np.asarray(getattr(self, quantity, 1.0), dtype=np.float64))
+
+
+@dataclass(frozen=True, kw_only=True)
+class CriticalPoint:
+    """A state where the equilibrium branch gains or loses stability.
+
+    Attributes:
+        control: "displacement", "force" or "machine" (the displacement of one that gives way).
+        kind: "pull-off", "snap-in" or "start" (detachment begins at a punch's edge).
+        contact_radius: a [m].
+        indentation_depth: delta [m].
+        normal_force: F_N [N].
+    """
+
+    control: str
+    kind: str
+    contact_radius: float
+    indentation_depth: float
+    normal_force: float
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class DetachmentPath(Solution):
+    """The equilibrium branch of an adhering indenter, in order of decreasing contact radius.
+
+    Attributes:
+        contact_radius: a [m], shape (n,).
+        indentation_depth: delta [m], shape (n,).
+        normal_force: F_N [N], shape (n,).
+        stable_displacement_control: Whether the state is stable at prescribed depth, shape (n,).
+        stable_force_control: Whether it is stable at prescribed force, shape (n,).
+        pull_off_force: Largest tensile force on the way, as a (negative) F_N [N], under the scene's control.
+        pull_off_depth: delta [m] where contact is lost under the scene's control.
+        pull_off_contact_radius: a [m] where contact is lost.
+        force_at_loss: F_N [N] just before contact is lost, often a smaller tension than the largest on the way.
+        critical_points: All changes of stability under either control, and under that of a machine that gives way.
+    """
+
+    CURVE_ALONE: ClassVar[bool] = True
+    OFFERS: ClassVar[tuple[str, ...]] = ("critical_points", "stable_displacement_control", "stable_force_control")
+
+    contact_radius: Radii
+    indentation_depth: Depths
+    normal_force: Forces
+    stable_displacement_control: NDArray[np.bool_]
+    stable_force_control: NDArray[np.bool_]
+    pull_off_force: Force
+    pull_off_depth: Length
+    pull_off_contact_radius: Length
+    force_at_loss: Force
+    critical_points: tuple[CriticalPoint, ...] = ()
+
+    def _tree(self) -> dict[str, Any]:
+        points = [dataclasses.asdict(point) for point in self.critical_points]
+        return super()._tree() | {"critical_points": json.dumps(points)}
+
+    @classmethod
+    def _further(cls, tree: Mapping[str, Any]) -> dict[str, Any]:
+        return {"critical_points": tuple(CriticalPoint(**point) for point in json.loads(tree["critical_points"]))}
+
+
+DetachmentPath.ASKED = (*DetachmentPath.ARRAYS, *DetachmentPath.SCALARS)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class HistoryPath(Solution):
+    """Response to a prescribed depth or force history.
+
+    Attributes:
+        time: t [s], shape (n,).
+        indentation_depth: delta [m], shape (n,).
+        normal_force: F_N [N], shape (n,).
+        contact_radius: a [m], shape (n,); zero where the indenter is free.
+        fields: Fields inside the body at the instants, where the method gives them.
+    """
+
+    ASKED: ClassVar[tuple[str, ...]] = ("indentation_depth", "normal_force")
+
+    time: Times
+    indentation_depth: Depths
+    normal_force: Forces
+    contact_radius: Radii
+    fields: InstantFields | None = None
+
+    def inside(self, step: int = 0) -> Inside:
+        """The body at one instant: `.at(radius, depth)` and `.largest("von_mises")`.
+
+        Stresses follow from the pressure of the instant, displacements from the whole history.
+
+        Raises:
+            InvalidInput: If the path has no such step, nothing touches then, or the method gives no fields inside.
+        """
+        if self.fields is None:
+            raise InvalidInput(f"{self.method} gives no fields inside the body under a history; ask mdr")
+        self.refuse_step(step)
+        radius, instant = float(self.contact_radius[step]), float(self.time[step])
+        if radius <= 0.0:
+            raise InvalidInput(f"step = {step}: nothing touches at t = {instant:g} s; ask for an instant of contact")
+        fields = self.fields.inside(step % len(self))
+        singular = fields.singular_edge
+        return Inside(fields=fields, scene=self.scene, contact_radius=radius, singular_edge=singular)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class FrictionHistory(HistoryPath):
+    """Response to a prescribed history of depth or force, at its own instants: dry friction knows no time.
+
+    Attributes:
+        stick_radius: Radius of the outermost point that sticks [m], shape (n,).
+        dissipated_energy: Turned into heat since the first touch [J], shape (n,).
+        surface: Tractions at the surface at each instant, where the method gives them.
+    """
+
+    OFFERS: ClassVar[tuple[str, ...]] = ("pressure(radius, step)", "tangential_traction(radius, step)")
+
+    stick_radius: Annotated[FloatArray, Quantity("c", "m")]
+    dissipated_energy: Dissipation
+    surface: Fields | None = None
+
+    def pressure(self, radius: ArrayLike, step: int) -> FloatArray:
+        """Pressure p(r) [Pa] of one instant at radii [m], zero outside."""
+        return sampled(self, self.surface, "pressure", radius, step)
+
+    def tangential_traction(self, radius: ArrayLike, step: int) -> FloatArray:
+        """Traction q(r) [Pa] of one instant at radii [m], positive where it pushes the layer outward, zero outside."""
+        return sampled(self, self.surface, "tangential_traction", radius, step)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class ImpactHistory(Solution):
+    """An impact from first touch (first sample) to the loss of contact (last sample).
+
+    Attributes:
+        time: t [s] since first touch, shape (n,).
+        indentation_depth: delta [m], shape (n,).
+        velocity: d(delta)/dt [m/s], shape (n,).
+        normal_force: F_N [N], shape (n,).
+        contact_radius: a [m], shape (n,).
+        kinetic_energy: [J], shape (n,).
+        stored_energy: Recoverable energy in the layer [J], shape (n,).
+        dissipated_energy: [J], shape (n,). What a part of the surface keeps when contact leaves it does no work on the
+            body any more: MDR counts it as dissipated at once, finite elements as stored until it has relaxed.
+        peak_force: max F_N [N], between samples too.
+        peak_depth: max delta [m].
+        peak_contact_radius: max a [m].
+    """
+
+    CURVE_ALONE: ClassVar[bool] = True
+    OFFERS: ClassVar[tuple[str, ...]] = ("energy_residual",)
+    ASKED: ClassVar[tuple[str, ...]] = ("coefficient_of_restitution", "peak_force", "peak_depth")
+
+    time: Times
+    indentation_depth: Depths
+    velocity: Annotated[FloatArray, Quantity("v", "m/s")]
+    normal_force: Forces
+    contact_radius: Radii
+    kinetic_energy: Annotated[FloatArray, Quantity("E_kin", "J")]
+    stored_energy: Annotated[FloatArray, Quantity("E_el", "J")]
+    dissipated_energy: Dissipation
+    peak_force: Force
+    peak_depth: Length
+    peak_contact_radius: Length
+
+    @property
+    def coefficient_of_restitution(self) -> float:
+        """Rebound speed over approach speed [-]."""
+        return float(-self.velocity[-1] / self.velocity[0])
+
+    @property
+    def contact_time(self) -> float:
+        """Duration of the contact [s]."""
+        return float(self.time[-1] - self.time[0])
+
+    @property
+    def energy_residual(self) -> float:
+        """Largest violation of kinetic + stored + dissipated = initial kinetic energy, relative to the latter."""
+        total = self.kinetic_energy + self.stored_energy + self.dissipated_energy
+        return float(np.max(np.abs(total / self.kinetic_energy[0] - 1.0)))

@@ -1,1 +1,0 @@
-"""Linear systems of a discrete layer: condensed triangles, order of elimination, checked factorisation."""

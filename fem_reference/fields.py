@@ -1,0 +1,285 @@
+"""Fields inside the layer in one equilibrium, their errors from coarser cells, and files of them for ParaView.
+
+Displacements are the solution's own. Stresses and the gradient of the pressure, which jump between triangles, are
+averaged over the triangles that meet at a node; the pressure of a mixed pair is continuous within a part.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+from contact import InvalidInput
+from contact.answer.inside import InsideFields, KnownContact
+from contact.records.validation import FloatArray, IntArray
+from contact.stated import SAFETY
+from fem_reference.assembly import barycentric, tabulate
+from fem_reference.equilibria import FemEquilibrium
+from fem_reference.prescribed_contact import PrescribedContact
+from fem_reference.stated import FLOOR
+
+NAMES = (
+    "radial_displacement",
+    "axial_displacement",
+    "radial_stress",
+    "hoop_stress",
+    "axial_stress",
+    "shear_stress",
+    "hydrostatic_pressure",
+    "pressure_gradient_radial",
+    "pressure_gradient_axial",
+)
+# Fields that change sign across the axis.
+ODD = [NAMES.index(name) for name in ("radial_displacement", "shear_stress", "pressure_gradient_radial")]
+# Errors that are stated together, as columns of the fields.
+GROUPS = {
+    "displacement": slice(0, 2),
+    "stress": slice(2, 6),
+    "hydrostatic_pressure": slice(6, 7),
+    "pressure_gradient": slice(7, 9),
+}
+# Two meshes are compared at the nodes of a triangle, moved towards its centre by this share, off faces where fields
+# jump.
+INWARD = 0.1
+# Triangles with the nearest centres that are tried before all are.
+NEAREST = 12
+# Least barycentric coordinate of a point inside a triangle, to rounding.
+ROUNDING = -1e-10
+ENDINGS = (".vtu", ".xdmf")
+# Corners and middles of sides of the reference triangle, in the order of quadratic triangles in files.
+CORNERS_AND_MIDDLES = np.array([[0, 1, 0, 0.5, 0.5, 0], [0, 0, 1, 0, 0.5, 0.5]])
+
+
+@dataclass(frozen=True)
+class MeridianSection:
+    """Fields of one solution at one depth, lengths by the contact radius and stresses by E*, in the order of `NAMES`.
+
+    Attributes:
+        contact: the discrete answer at contact radius one.
+        depth: delta / a.
+    """
+
+    contact: PrescribedContact
+    depth: float
+
+    @cached_property
+    def corners(self) -> FloatArray:
+        """(r, z) of the corners, shape (2, 3, triangle)."""
+        mesh = self.contact.layer.section.mesh
+        return np.asarray(mesh.p[:, mesh.t])
+
+    @property
+    def local_nodes(self) -> FloatArray:
+        """Places of a triangle's nodes in the reference triangle, shape (2, basis)."""
+        return np.asarray(self.contact.layer.pair.displacement.doflocs.T)
+
+    def units(self, modulus: float) -> FloatArray:
+        """Units of the fields [m, Pa, Pa/m] for E* [Pa], shape (9,)."""
+        a = self.contact.contact_radius
+        return np.array([a, a, *[modulus] * 5, modulus / a, modulus / a])
+
+    @cached_property
+    def nodal(self) -> FloatArray:
+        """Values at the nodes of each triangle, averaged over the triangles of a node, shape (triangle, basis, 9)."""
+        space = self.contact.layer.space
+        numbers, local = space.displacement_dofs.element_dofs.T, self.by_triangle
+        total = np.zeros((space.positions.shape[1], len(NAMES)))
+        np.add.at(total, numbers, local)
+        total /= np.bincount(numbers.ravel())[:, None]
+        # On the axis half of the triangles that meet at a node are mirror images, in which these are opposite.
+        total[np.ix_(space.positions[0] == 0.0, ODD)] = 0.0
+        return np.asarray(total[numbers])
+
+    def at(self, triangles: IntArray, local: FloatArray) -> FloatArray:
+        """Values at reference points (2, n) of n triangles, shape (n, 9)."""
+        basis = tabulate(self.contact.layer.pair.displacement, local)[0]
+        return np.asarray(np.einsum("nbc,bn->nc", self.nodal[triangles], basis))
+
+    @cached_property
+    def by_triangle(self) -> FloatArray:
+        """Values of each triangle alone at its nodes, shape (triangle, basis, 9)."""
+        layer, local = self.contact.layer, self.local_nodes
+        space, unknowns = layer.space, self.contact.solutions @ [self.depth, 1.0]
+        nodal = unknowns[space.element_displacements].reshape(len(layer.corners), -1, 2)
+        radius, depth = np.moveaxis(np.einsum("tvc,vb->tbc", layer.corners, barycentric(local)), -1, 0)
+        first, second, third = np.moveaxis(layer.corners, 1, 0)
+        inverse = np.linalg.inv(np.stack([second - first, third - first], axis=-1))
+        slope = np.einsum(
+            "tbi,kbn,tkj->tnij", nodal, tabulate(layer.pair.displacement, local)[1], inverse, optimize=True
+        )
+        # On the axis the hoop strain is u_r,r.
+        hoop = np.divide(nodal[..., 0], radius, out=slope[..., 0, 0].copy(), where=radius > 0)
+        normal = np.stack([slope[..., 0, 0], hoop, slope[..., 1, 1]], axis=-1)
+        shear = layer.parts.at(layer.section.part, depth).shear
+        values, gradients = tabulate(layer.pair.pressure, local)
+        pressures = unknowns[space.element_pressures]
+        pressure, rise = pressures @ values, np.einsum("tb,kbn,tkj->tnj", pressures, gradients, inverse, optimize=True)
+        stress = 2 * shear[..., None] * (normal - normal.mean(axis=-1, keepdims=True)) - pressure[..., None]
+        tangential = shear * (slope[..., 0, 1] + slope[..., 1, 0])
+        return np.concatenate([nodal, stress, tangential[..., None], pressure[..., None], rise], axis=-1)
+
+    def places_of(self, points: FloatArray) -> tuple[IntArray, FloatArray]:
+        """Triangles of points (2, n), and the points in the reference triangle: where the least barycentric is largest.
+
+        The triangles with the nearest centres are tried first, then all.
+        """
+        from scipy.spatial import cKDTree  # noqa: PLC0415 - takes 0.1 s to import, and only fields inside need it
+
+        corners = self.corners
+        near = cKDTree(corners.mean(axis=1).T).query(points.T, min(NEAREST, corners.shape[2]))[1]
+        near = near.reshape(points.shape[1], -1)
+        least, local = _coordinates(corners[:, :, near], points[:, :, None])
+        rows, best = np.arange(points.shape[1]), np.argmax(least, axis=1)
+        found, inside = near[rows, best], local[:, rows, best]
+        for n in np.flatnonzero(least[rows, best] < ROUNDING):
+            least, local = _coordinates(corners, points[:, n, None])
+            found[n] = np.argmax(least)
+            inside[:, n] = local[:, found[n]]
+        return found, inside
+
+
+def _coordinates(corners: FloatArray, point: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Smallest barycentric coordinate, and the second and third, of points in triangles with corners (2, 3, ...)."""
+    (ax, bx, cx), (ay, by, cy) = corners
+    area = (bx - ax) * (cy - ay) - (cx - ax) * (by - ay)
+    second = ((point[0] - ax) * (cy - ay) - (cx - ax) * (point[1] - ay)) / area
+    third = ((bx - ax) * (point[1] - ay) - (point[0] - ax) * (by - ay)) / area
+    return np.minimum(np.minimum(second, third), 1 - second - third), np.array([second, third])
+
+
+@dataclass(frozen=True, eq=False)
+class FemInterior:
+    """Fields inside the layer in one equilibrium.
+
+    Attributes:
+        section: the solution.
+        coarser: that of the companion.
+        modulus: E* [Pa].
+    """
+
+    section: MeridianSection
+    coarser: MeridianSection
+    modulus: float
+
+    def at(self, radius: FloatArray, depth: FloatArray) -> InsideFields:
+        """Fields at points [m] of shape (n,).
+
+        Raises:
+            InvalidInput: a point lies beyond the mesh.
+        """
+        a = self.section.contact.contact_radius
+        triangles, local = self.section.places_of(self._within_mesh(np.array([radius, depth]) / a))
+        values = self.section.at(triangles, local) * self.section.units(self.modulus)
+        return InsideFields(
+            **dict(zip(NAMES, values.T, strict=True)),
+            error_estimate=self._stated(values, SAFETY * self._changes(triangles)),
+        )
+
+    def _within_mesh(self, points: FloatArray) -> FloatArray:
+        """Points (2, n) of the mesh; rounding does not move them out of it."""
+        mesh, scale, (r, z) = self.section.contact.layer.section, self.section.contact.contact_radius, points
+        rounded = np.where(z <= mesh.thickness * (1 + 1e-14), np.minimum(z, mesh.thickness), z)
+        beyond = (r > mesh.outer_radius) | (rounded > mesh.thickness)
+        if beyond.any():
+            first = points[:, beyond][:, 0] * scale
+            raise InvalidInput(
+                f"(r, z) = ({first[0]:g}, {first[1]:g}) m lies beyond the mesh of finite elements, which ends at r = "
+                f"{mesh.outer_radius * scale:g} m; ask nearer, or mdr"
+            )
+        return np.array([r, rounded])
+
+    def _changes(self, triangles: IntArray) -> FloatArray:
+        """Largest change of each field [SI] in the triangles of n points by the coarser cells, shape (n, 9)."""
+        fine, coarse = self.section, self.coarser
+        chosen, back = np.unique(triangles, return_inverse=True)
+        local = fine.local_nodes + INWARD * (1 / 3 - fine.local_nodes)
+        points = np.einsum("cvt,vb->ctb", fine.corners[:, :, chosen], barycentric(local)).reshape(2, -1)
+        points *= fine.contact.contact_radius / coarse.contact.contact_radius
+        mesh = coarse.contact.layer.section
+        there = coarse.places_of(np.minimum(points, [[mesh.outer_radius], [mesh.thickness]]))
+        here = np.repeat(chosen, local.shape[1]), np.tile(local, len(chosen))
+        change = np.abs(fine.at(*here) * fine.units(self.modulus) - coarse.at(*there) * coarse.units(self.modulus))
+        # The touched surface moves with the depth.
+        depth, other = (each.depth * each.contact.contact_radius for each in (fine, coarse))
+        change[:, :2] = np.maximum(change[:, :2], abs(depth - other))
+        return np.asarray(change.reshape(len(chosen), -1, len(NAMES)).max(axis=1)[back])
+
+    def _stated(self, values: FloatArray, error: FloatArray) -> dict[str, float]:
+        """Largest error of each group over its scale: the depth, the largest stress and gradient."""
+        contact, tiny = self.section.contact, np.finfo(float).tiny
+        depth = max(abs(self.section.depth) * contact.contact_radius, tiny)
+        stress = np.abs(values[:, 2:7]).max(initial=tiny)
+        length = contact.contact_radius * min(1.0, contact.layer.section.thickness)
+        scales = (depth, stress, stress, max(np.abs(values[:, 7:]).max(initial=0.0), stress / length))
+        return {
+            name: float(error[:, group].max(initial=0.0)) / scale + FLOOR
+            for (name, group), scale in zip(GROUPS.items(), scales, strict=True)
+        }
+
+    def write(self, path: str | Path) -> None:
+        """Write displacement [m], stresses [Pa] and the pressure's gradient [Pa/m] on quadratic triangles.
+
+        Args:
+            path: a .vtu or .xdmf file for ParaView.
+
+        Raises:
+            InvalidInput: another file ending.
+        """
+        import meshio  # noqa: PLC0415 - loaded where a file is written
+
+        file, section = Path(path), self.section
+        if file.suffix not in ENDINGS:
+            raise InvalidInput(f"{file.name}: the ending must be .vtu or .xdmf")
+        units, places = section.units(self.modulus), barycentric(CORNERS_AND_MIDDLES)
+        basis = tabulate(section.contact.layer.pair.displacement, CORNERS_AND_MIDDLES)[0]
+        values = np.einsum("tbc,bn->tnc", section.nodal, basis, optimize=True).reshape(-1, len(NAMES)) * units
+        found = InsideFields(**dict(zip(NAMES, values.T, strict=True)), error_estimate={})
+        points = np.einsum("cvt,vn->tnc", section.corners, places).reshape(-1, 2) * units[0]
+        flat = np.zeros(len(points))
+        exported = meshio.Mesh(
+            np.column_stack([points, flat]),
+            [("triangle6", np.arange(len(points)).reshape(-1, 6))],
+            point_data={
+                "displacement": np.column_stack([found.radial_displacement, found.axial_displacement, flat]),
+                **{name: getattr(found, name) for name in NAMES[2:7]},
+                "pressure_gradient": np.column_stack(
+                    [found.pressure_gradient_radial, found.pressure_gradient_axial, flat]
+                ),
+                "von_mises": found.von_mises,
+                "largest_shear": found.largest_shear,
+                "principal_stresses": found.principal_stresses.T,
+            },
+        )
+        exported.write(file, **({"data_format": "XML"} if file.suffix == ".xdmf" else {}))
+
+
+@dataclass(frozen=True)
+class FemFields:
+    """Surface fields of a path; satisfies `contact.Fields`.
+
+    Attributes:
+        states: the equilibria.
+        modulus: E* [Pa].
+        coarser: the equilibria of the companion, for the errors of fields inside.
+    """
+
+    states: Sequence[FemEquilibrium]
+    modulus: float
+    coarser: Sequence[FemEquilibrium] = ()
+
+    def pressure(self, radius: FloatArray, step: int) -> FloatArray:
+        """Pressure p(r) [Pa]."""
+        return self.modulus * self.states[step].pressure(radius)
+
+    def surface_displacement(self, radius: FloatArray, step: int) -> FloatArray:
+        """Displacement w(r) [m], positive into the layer; zero beyond the mesh, where it is below its error."""
+        return self.states[step].surface_displacement(radius)
+
+    def inside(self, step: int, known: KnownContact) -> FemInterior:
+        """Fields inside the layer at one step; their errors are estimated there."""
+        fine, coarse = (MeridianSection(path[step].contact, path[step].depth) for path in (self.states, self.coarser))
+        return FemInterior(fine, coarse, self.modulus)

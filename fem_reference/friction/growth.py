@@ -1,0 +1,289 @@
+"""A contact with friction that grows, on two strips: its numbers at any depth, freed of the cells' leading error.
+
+At touching points depth, force and radius err by ``c h^p`` in the cell h, smoothly. A polynomial through some of them
+interpolates their values between. Two strips of cells h and 2 h give the next order, ``F_h + (F_h - F_2h)/(2^p - 1)``.
+The change against the finer strip is stated as the error.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.optimize import brentq
+
+from contact import Friction, IndentationDepths, InvalidInput, NormalForces, NotConvergedError, Profile, Scene, StageLog
+from contact.records.validation import FloatArray
+from contact.scene.extent import first_radius
+from contact.stated import SAFETY
+from fem_reference.friction.step import RubbedContact, RubbedState, grown, stick_radius
+from fem_reference.materials import contact_modulus
+from fem_reference.profiles import height, shape
+from fem_reference.settings import Discretisation
+from fem_reference.stated import LEAST_SHARE
+from fem_reference.surface import RUBBED_STRIDE, STRIP_CELLS, condense, strip_section
+
+# Share of its strip that the largest contact fills: a few nodes beyond it are needed to follow its growth.
+FILLED = 0.9
+# Fewest and most cells of a strip: fewer make two strips differ by accident, the time grows like the cube.
+FEWEST_CELLS, MOST_CELLS = 20, 480
+# Share of a profile whose heights are used: at its very end a sphere's slope has no bound.
+INSIDE = 0.999
+# Strips that are tried, each half as long again, before no contact counts as found.
+MOST_STRIPS = 12
+# Growth of the cells away from a strip of STRIP_CELLS cells, and growth of the settings that make so many.
+AWAY, USUAL_GROWTH = 0.5, 0.5
+# A touching node lies this share of a cell inside the contact's edge where the edge slides.
+EDGE_SHARE = 0.028
+# Where the edge sticks, the share is less by so much times eps^2, eps = ln(3 - 4 nu)/(2 pi).
+LESS_BY_STICK = 0.25
+# Error of that share; twice what measured contacts leave.
+EDGE_UNCERTAIN = 0.0015
+# One touching point on either side for so many of a strip, and two at least, make the interpolating polynomial of this
+# degree in the logarithm of the depth.
+PER_NEIGHBOUR, DEGREE = 15, 3
+# Power of the cell with which the heat errs: slip begins at the edge, where the pressure goes like a root.
+HEAT_ORDER = 1.5
+# Fewest cells of the finer strip that stick, and that slide, for an extrapolated stick radius.
+FEWEST_STUCK = 8
+# Error of an extrapolated stick radius, in cells.
+STICK_UNCERTAIN = 0.2
+
+
+@dataclass(frozen=True)
+class StripMaker:
+    """Makes the strips of one scene.
+
+    Attributes:
+        scene: with one effect, friction.
+        settings: decide how many cells there are.
+        backend: linear solver.
+        log: of stages.
+    """
+
+    scene: Scene
+    settings: Discretisation
+    backend: str
+    log: StageLog
+
+    @property
+    def cells(self) -> int:
+        """Cells of the finest strip: an even number, more where the growth of cells is less.
+
+        Raises:
+            NotConvergedError: too many.
+        """
+        cells = 4 * max(FEWEST_CELLS, round(STRIP_CELLS * USUAL_GROWTH / self.settings.growth / 4))
+        if cells > MOST_CELLS:
+            raise NotConvergedError(f"a contact with friction takes {MOST_CELLS} cells at most, not {cells}")
+        return cells
+
+    def contact(self, radius: float, cells: int) -> RubbedContact:
+        """The condensed layer and the indenter on a strip of this radius [m]."""
+        scene, friction = self.scene, self.scene.effect(Friction)
+        kinks = scene.indenter.breakpoints
+        section = strip_section(scene.layer, radius, cells, kinks, self.settings, outside=AWAY, stride=RUBBED_STRIDE)
+        surface = condense(*section, self.backend, self.log, stride=RUBBED_STRIDE, tangential=True)
+        profile = surface.moments(_heights(scene.indenter, surface.tractions.gauss(4)[0] * radius) / radius)
+        return RubbedContact(surface, profile, friction.coefficient if friction else 0.0, radius)
+
+    def fitted(self, largest: float) -> tuple[RubbedContact, RubbedContact]:
+        """Two strips, the finer first, that the contact fills under the largest radius [m], depth [m] or force [N].
+
+        Raises:
+            InvalidInput: the contact would reach the end of the profile.
+        """
+        cells, reach = self.cells, self._contact_radius(largest)
+        if reach > self.scene.indenter.max_radius:
+            raise self._beyond
+        return self.contact(reach / FILLED, cells), self.contact(reach / FILLED, cells // 2)
+
+    def _contact_radius(self, largest: float) -> float:
+        """Radius a [m], to a cell: a prescribed one, or that of a contact grown on strips until it carries the load."""
+        name = {IndentationDepths: "depth", NormalForces: "force"}.get(type(self.scene.loading))
+        if name is None:
+            return largest
+        profile, modulus = self.scene.indenter, contact_modulus(self.scene.layer)
+        by_depth, target = name == "depth", largest if name == "depth" else largest / modulus
+        radius = 1.2 * first_radius(profile, lambda r: height(profile, r) * (1.0 if by_depth else 4.0 * r) >= target)
+        for _ in range(MOST_STRIPS):
+            contact = self.contact(radius, self.cells // 2)
+            unit = radius if by_depth else modulus * radius**2
+            loads: FloatArray = np.array([getattr(state, name) for state in grown(contact)]) * unit
+            if loads[-1] >= largest:
+                return radius * float(np.interp(largest, loads, contact.surface.radii[1 : len(loads) + 1]))
+            if radius > 2.0 * profile.max_radius:
+                break
+            radius *= 1.5
+        raise self._beyond
+
+    @property
+    def _beyond(self) -> InvalidInput:
+        end = self.scene.indenter.max_radius
+        return InvalidInput(f"contact reaches the end of the profile at {end:g} m; press less")
+
+
+def _heights(profile: Profile, radius: FloatArray) -> FloatArray:
+    """Height f [m]; beyond the end of a profile straight on, since a strip reaches farther than its contact."""
+    end = INSIDE * profile.max_radius
+    if float(radius.max()) <= end:
+        return shape(profile, radius).height
+    last, inside = shape(profile, np.array([end])), shape(profile, np.minimum(radius, end))
+    return np.where(radius <= end, inside.height, last.height + (radius - end) * last.slope)
+
+
+@dataclass(frozen=True)
+class Growing:
+    """One strip; lengths in metres, forces over E*.
+
+    Attributes:
+        contact: the strip.
+        states: in which each node touches.
+    """
+
+    contact: RubbedContact
+    states: list[RubbedState]
+
+    @cached_property
+    def depth(self) -> FloatArray:
+        """Depth delta [m] at touching points."""
+        return np.asarray(self.contact.radius * np.array([state.depth for state in self.states]))
+
+    @cached_property
+    def force(self) -> FloatArray:
+        """Force F/E* [m^2]."""
+        return np.asarray(self.contact.radius**2 * np.array([state.force for state in self.states]))
+
+    @cached_property
+    def radius(self) -> FloatArray:
+        """Contact radius a [m]."""
+        radii, touching = self.contact.surface.radii, self.contact.surface.radii[1 : len(self.states) + 1]
+        share = EDGE_SHARE - np.where(self.stick == 1.0, self.less_by_stick, 0.0)
+        return np.asarray(self.contact.radius * (touching + share * radii[1]))
+
+    @property
+    def less_by_stick(self) -> float:
+        """Share of a cell by which an edge that sticks lies farther in than one that slides."""
+        return LESS_BY_STICK * (math.log(3.0 - 4.0 * self.contact.surface.poissons_ratio) / (2.0 * math.pi)) ** 2
+
+    @property
+    def edge_error(self) -> float:
+        """Error of the edge in cells: it may slide or stick within a cell."""
+        return EDGE_UNCERTAIN + (self.less_by_stick if math.isfinite(self.contact.coefficient) else 0.0)
+
+    @cached_property
+    def stick(self) -> FloatArray:
+        """Stick radius over a."""
+        radii, touching = self.contact.surface.radii, self.contact.surface.radii[1 : len(self.states) + 1]
+        inner = np.array([stick_radius(self.contact, state) for state in self.states])
+        return np.asarray(np.where(inner == touching, 1.0, inner / (touching + EDGE_SHARE * radii[1])))
+
+    @cached_property
+    def heat(self) -> FloatArray:
+        """Dissipated energy over force times depth."""
+        heat = self.contact.radius**3 * np.array([state.dissipated for state in self.states])
+        return np.asarray(heat / (self.force * self.depth))
+
+    def local(self, values: FloatArray, depth: float) -> tuple[float, float]:
+        """Value and slope in ln(depth) of a quantity at a depth, by the polynomial through its neighbours."""
+        log = np.log(self.depth)
+        middle, aside = int(np.searchsorted(log, np.log(depth))), max(2, len(log) // PER_NEIGHBOUR)
+        first = max(0, min(middle - aside, len(log) - 2 * aside))
+        near = slice(first, first + 2 * aside)
+        fit = np.polynomial.Polynomial.fit(log[near], values[near], DEGREE)
+        return float(fit(np.log(depth))), float(fit.deriv()(np.log(depth)))
+
+    def at(self, name: str, depth: float) -> float:
+        """Force, radius, stiffness, heat or stick at a depth [m]."""
+        if name in ("heat", "stick"):
+            return self.local(getattr(self, name), depth)[0]
+        if name == "stiffness":
+            # dF/d delta, which is k_N, too: at the edge the pressure vanishes.
+            log_force, exponent = self.local(np.log(self.force), depth)
+            return math.exp(log_force) / depth * exponent
+        return math.exp(self.local(np.log(getattr(self, name)), depth)[0])
+
+
+@dataclass(frozen=True)
+class GrowthRecord:
+    """The contact on two strips."""
+
+    fine: Growing
+    coarse: Growing
+
+    @classmethod
+    def of(cls, fine: RubbedContact, coarse: RubbedContact) -> GrowthRecord:
+        """Let it grow on each."""
+        return cls(Growing(fine, grown(fine)), Growing(coarse, grown(coarse)))
+
+    def numbers(self, name: str, value: float, *, extrapolated: bool = True) -> dict[str, float]:
+        """Radius, depth [m], force/E* [m^2], stiffness/E* [m], stick radius [m] and heat/E* [m^3] in one state.
+
+        Args:
+            name: "radius", "depth" or "force", which is prescribed.
+            value: of that quantity.
+            extrapolated: whether the cells' leading error is subtracted, else the finer strip answers.
+        """
+        depth = value if name == "depth" else self._depth_of(name, value, extrapolated)
+        found = {each: self._at(each, depth, extrapolated) for each in ("radius", "force", "stiffness", "heat")}
+        heat, stick = found["heat"] * found["force"] * depth, self._stick(depth, found["radius"], extrapolated)
+        return found | {"depth": depth, "stick": stick * found["radius"], "heat": heat} | {name: value}
+
+    def _depth_of(self, name: str, value: float, extrapolated: bool) -> float:
+        """The depth [m] at which radius [m] or force/E* [m^2] has a value."""
+
+        def missing(log_depth: float) -> float:
+            """Relative difference from the value at a depth."""
+            return self._at(name, math.exp(log_depth), extrapolated) / value - 1.0
+
+        reached = np.log(self.fine.depth)
+        return float(np.exp(brentq(missing, reached[0], reached[-1] + 0.1, xtol=1e-14)))
+
+    def _at(self, name: str, depth: float, extrapolated: bool) -> float:
+        """A quantity at a depth, ``F_h + (F_h - F_2h) / (2^p - 1)``, or on the finer strip."""
+        fine, order = self.fine.at(name, depth), HEAT_ORDER if name == "heat" else 2.0
+        change = fine - self.coarse.at(name, depth) if extrapolated else 0.0
+        return fine + change / float(2.0**order - 1.0)
+
+    def _stick(self, depth: float, radius: float, extrapolated: bool) -> float:
+        """Stick radius over a. With too few nodes that stick, or that slide, that of the finer strip."""
+        fine, coarse = (float(np.interp(depth, strip.depth, strip.stick)) for strip in (self.fine, self.coarse))
+        if min(fine, coarse) == 1.0:
+            return 1.0
+        few = min(fine, 1.0 - fine) < FEWEST_STUCK * self.cell / radius
+        if few:
+            return fine if extrapolated else coarse
+        return min(self._at("stick", depth, extrapolated), 1.0)
+
+    @property
+    def cell(self) -> float:
+        """Cell of the finer strip [m]."""
+        return self.fine.contact.radius * float(self.fine.contact.surface.radii[1])
+
+    def errors(self, name: str, value: float) -> dict[str, float]:
+        """Relative errors of `numbers`: changes against the finer strip, and what is read from its cells.
+
+        One change may vanish by accident: each is at least a share of the largest.
+        """
+        found, other = self.numbers(name, value), self.numbers(name, value, extrapolated=False)
+        change = {each: abs(other[each] / v - 1.0) if v else 0.0 for each, v in found.items() if each != name}
+        least = LEAST_SHARE * max(change[each] for each in change if each not in ("heat", "stick", "radius"))
+        cell = self.cell / found["radius"]
+        error = {each: SAFETY * max(moved, least) for each, moved in change.items()} | {name: 0.0}
+        # The edge may slide or stick within a cell, and dF/F = (k delta/F) d delta/delta.
+        exponent = found["stiffness"] * found["depth"] / found["force"]
+        edge = self.fine.edge_error * cell
+        if name == "radius":
+            depth = edge / self.fine.local(np.log(self.fine.radius), found["depth"])[1]
+            for each, power in (("depth", 1.0), ("force", exponent), ("stiffness", exponent)):
+                error[each] += power * depth
+        else:
+            error["radius"] += edge
+        if found["stick"] < found["radius"]:
+            near = min(found["stick"], found["radius"] - found["stick"]) < FEWEST_STUCK * self.cell
+            error["stick"] += edge + (1.0 if near else STICK_UNCERTAIN) * self.cell / max(found["stick"], self.cell)
+        else:
+            error["stick"] = error["radius"]
+        return error

@@ -1,0 +1,155 @@
+"""The discrete layer: its matrix, its supports, and the unknowns on its top."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy import sparse
+from skfem import ElementVector, FacetBasis
+
+from contact.records.validation import FloatArray, IntArray
+from fem_reference import weak_forms
+from fem_reference.assembly import ElementPair, Space, barycentric, element_matrices, quadrature, scatter
+from fem_reference.materials import Parts, PointModuli
+from fem_reference.mesh import Section
+from fem_reference.solver import RestrictedSolver
+
+# The radial strain s of the patch test, any number of the size of the volume strain 1 - 2 nu: with
+# c = (1 - 2 nu) - 2 s the pressure is finite at nu = 1/2.
+STRETCH = 0.1
+
+
+@dataclass(frozen=True)
+class DiscreteLayer:
+    """A layer discretised on one mesh; lengths by the contact radius, stresses by E* of the surface.
+
+    Attributes:
+        section: the mesh.
+        pair: elements.
+        parts: material over depth, and how the base is held.
+        sticks: whether the top within radius one is held in the radial direction.
+        backend: linear solver, a key of `solver.BACKENDS`.
+    """
+
+    section: Section
+    pair: ElementPair
+    parts: Parts
+    sticks: bool = False
+    backend: str = "superlu"
+
+    @cached_property
+    def space(self) -> Space:
+        """Unknowns of the element pair."""
+        return Space(self.section.mesh, self.pair, self.section.faces)
+
+    @cached_property
+    def corners(self) -> FloatArray:
+        """(r, z) of the corners of triangles, shape (triangle, 3, 2)."""
+        return np.ascontiguousarray(self.section.mesh.p[:, self.section.mesh.t].transpose(2, 1, 0))
+
+    @cached_property
+    def moduli(self) -> PointModuli:
+        """Moduli at quadrature points, shape (triangle, point)."""
+        return self.parts.at(self.section.part, self.corners[:, :, 1] @ barycentric(quadrature(self.pair.degree)[0]))
+
+    @cached_property
+    def elements(self) -> FloatArray:
+        """Matrix of each triangle, in the order of `Space.element_unknowns`."""
+        return element_matrices(self.pair, self.corners, self.moduli)
+
+    @cached_property
+    def matrix(self) -> sparse.csc_array:
+        """Stiffness matrix of all unknowns, the outer edge included."""
+        matrix = scatter(self.elements, self.space.element_unknowns, self.space.size)
+        return matrix if self.edge is None else matrix + self.edge
+
+    @cached_property
+    def edge(self) -> sparse.csc_array | None:
+        """The membrane beyond the outer edge of a layer that slides, in the numbering of all unknowns."""
+        return membrane_matrix(self) if self.parts.slides else None
+
+    def nodes_on(self, boundary: str) -> IntArray:
+        """Scalar displacement unknowns on a named boundary, in the order of increasing r."""
+        return self.space.nodes_on(self.section.mesh.boundaries[boundary])
+
+    @cached_property
+    def supported_unknowns(self) -> IntArray:
+        """Displacements that axis, base and a sticking indenter hold at zero, and those below a face."""
+        base = self.nodes_on("base")
+        held = [2 * self.nodes_on("axis"), 2 * base + 1]
+        if self.parts.bonded:
+            held.append(2 * base)
+        if self.sticks:
+            held.append(2 * self.top_nodes(1.0))
+        owner = self.space.owner
+        return np.unique(np.concatenate([*held, np.flatnonzero(owner != np.arange(len(owner)))]))
+
+    def top_nodes(self, radius: float) -> IntArray:
+        """Scalar displacement unknowns of the top cells within ``radius``, in the order of increasing r."""
+        mesh = self.section.mesh
+        facets = mesh.boundaries["top"]
+        inside = mesh.p[0, mesh.facets[:, facets]].max(axis=0) <= radius * (1 + 1e-14)
+        return self.space.nodes_on(facets[inside])
+
+    def solver(self, held: IntArray) -> RestrictedSolver:
+        """Factorise once with these unknowns prescribed."""
+        return RestrictedSolver(self.space, self.elements, self.edge, held, self.backend)
+
+    def derivative_by_radius(self, solutions: FloatArray, eta: FloatArray) -> FloatArray:
+        """A'(u_i, u_j), the derivative of ``u_i . K u_j`` when vertices move by ``(eta, 0)`` and carry the unknowns.
+
+        It is the exact derivative of the discrete energy (G-theta), hence as accurate as the energy itself. A complex
+        step, ``K' = Im K(r + i h eta) / h``, has no rounding from differences.
+
+        Args:
+            solutions: all unknowns of m solutions, shape (size, m).
+            eta: motion of the vertices, shape (vertex,).
+
+        Returns:
+            Shape (m, m).
+        """
+        moving = np.flatnonzero((eta[self.section.mesh.t] != 0).any(axis=0))
+        step = 1e-20
+        corners = self.corners[moving].astype(complex)
+        corners[:, :, 0] += 1j * step * eta[self.section.mesh.t[:, moving]].T
+        moduli = PointModuli(*(modulus[moving] for modulus in self.moduli))
+        slopes = element_matrices(self.pair, corners, moduli).imag / step
+        local = solutions[self.space.element_unknowns[moving]]
+        return np.asarray(np.einsum("tni,tnj->ij", local, slopes @ local))
+
+    @property
+    def patch_defect(self) -> float:
+        """Residual of a constant strain over the sum of its terms' magnitudes, the largest of all inner equations.
+
+        Nodal values of ``u_r = s r, u_z = c z`` with their constant pressure are inserted into the assembled equations
+        of the surface's material (form A of Taylor, Simo, Zienkiewicz and Chan, Int. J. Numer. Meth. Engng 22 (1986)
+        39-62). A residual off the boundary is an error of assembly: geometry, quadrature, hoop strain or coupling.
+        """
+        space, nu, (r, z) = self.space, self.parts.poissons_ratio, self.space.positions
+        elements = self.elements
+        if len(self.parts.parts) > 1:
+            at_top = np.zeros_like(self.section.part), np.zeros_like(self.moduli.shear)
+            elements = element_matrices(self.pair, self.corners, self.parts.at(*at_top))
+        shear = float(self.parts.at(np.zeros(1, dtype=np.int64), np.zeros(1)).shear[0])
+        state = np.full(space.size, -2 * shear * (1 + nu) / 3)  # p = -K div u with K = 2 mu (1 + nu) / (3 (1 - 2 nu))
+        state[: space.displacement_count] = np.column_stack([STRETCH * r, ((1 - 2 * nu) - 2 * STRETCH) * z]).ravel()
+        local, unknowns = state[space.element_unknowns][..., None], space.element_unknowns.ravel()
+        left = np.bincount(unknowns, (elements @ local).ravel(), space.size)
+        terms = np.bincount(unknowns, (np.abs(elements) @ np.abs(local)).ravel(), space.size)
+        boundary = space.nodes_on(np.concatenate([*self.section.mesh.boundaries.values()]))
+        terms[np.concatenate([2 * boundary, 2 * boundary + 1, self.supported_unknowns])] = np.inf
+        return float(np.max(np.abs(left) / terms))
+
+
+def membrane_matrix(layer: DiscreteLayer) -> sparse.csc_array:
+    """`weak_forms.membrane` on the outer edge, in the numbering of all unknowns."""
+    mesh, owner = layer.section.mesh, layer.space.owner
+    facets = mesh.boundaries["outer"]
+    basis = FacetBasis(mesh, ElementVector(layer.pair.displacement), facets=facets)
+    depth = basis.global_coordinates()[1]
+    shear = layer.parts.at(layer.section.part[mesh.f2t[0, basis.find]], depth).shear
+    found = weak_forms.membrane.assemble(basis, mu=shear).tocoo()
+    shape = (layer.space.size, layer.space.size)
+    return sparse.coo_array((found.data, (owner[found.row], owner[found.col])), shape=shape).tocsc()

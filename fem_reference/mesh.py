@@ -1,0 +1,333 @@
+"""Graded triangle meshes of a layer's cross-section in (r, z), made by gmsh in memory.
+
+The section is 0 <= r <= outer radius, 0 <= z <= thickness with z into the layer. Its boundaries have names: ``axis``
+(r = 0), ``top`` (z = 0), ``base`` (z = thickness), ``outer`` (r = outer radius). A mesh line runs along every face
+between two parts; each part has vertices of its own there.
+
+Cells grow with the distance from the contact edge, and gmsh makes triangles as high as they are wide. In a part that is
+thin for its distance from the edge they would be as many as the part is long, although fields change slowly along it.
+Therefore each part is drawn with the thickness ``max(h, slope x distance)``, meshed, and its points are moved back.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import signal
+from dataclasses import dataclass
+from functools import cache, cached_property
+from itertools import pairwise
+from threading import current_thread, main_thread
+from typing import Any
+
+import numpy as np
+from skfem import MeshTri
+
+from contact.records.errors import NotConvergedError
+from contact.records.validation import FloatArray, IntArray
+from fem_reference.assembly import Face
+from fem_reference.materials import Parts
+
+MISSING_LIBRARIES = (
+    "gmsh could not be loaded ({reason}). On Debian or Ubuntu install its system libraries: "
+    "apt-get install libglu1-mesa libxcursor1 libxft2 libxinerama1"
+)
+# Longest line over its smallest cell; gmsh takes minutes for longer ones.
+LONGEST_LINE = 1e10
+# Share of a cell to which gmsh integrates cell sizes along lines. Its own 1e-9 takes three times as long; with 1e-7
+# cells in narrow rings are so uneven that slopes err by 7 %.
+LINE_PRECISION = 1e-8
+# Smallest cell over its distance from gmsh's origin: gmsh squares coordinates, and cells below 1.5e-8 degenerate.
+RESOLVED = 3e-8
+# Cells within the reach s of a graded point grow by (s/d)^NEARBY_POWER times the growth per distance d, at most by
+# NEARBY_GROWTH: the energy near the edge falls like d. Without it there are 1.7 times as many triangles.
+NEARBY_POWER, NEARBY_GROWTH = 0.06, 0.8
+# Thickness drawn over distance from the edge and growth of cells. Twice of it needs a tenth more unknowns, four times
+# of it errs three times as much.
+SLOPE_PER_GROWTH = 0.25
+# Two changes of the drawn thickness closer than this factor of their distance from the edge are drawn as one.
+LEAST_STEP = 1.5
+# Beyond a thickness from the edge, cells grow with this share of the growth, since waves of the layers continue there.
+# Twice of it errs four times as much on some stacks, half of it doubles the unknowns.
+FAR_GROWTH = 0.5
+# Distance from the base, over the last part's thickness, within which a vertex lies on it: above gmsh's roundings.
+ON_BASE = 1e-9
+
+# (radius, cell size) on the top, increasing.
+Graded = tuple[tuple[float, float], ...]
+
+
+@dataclass(frozen=True)
+class Section:
+    """A triangle mesh of the parts of a layer; vertices on the face of two parts are there twice.
+
+    Attributes:
+        mesh: points and triangles, with named boundaries.
+        part: index of the part of each triangle.
+        faces: where parts meet.
+        thickness: depth of the base.
+        outer_radius: end of the section.
+        fingerprint: identifies points and triangles.
+    """
+
+    mesh: MeshTri
+    part: IntArray
+    faces: tuple[Face, ...]
+    thickness: float
+    outer_radius: float
+    fingerprint: str
+
+
+def section_mesh(parts: Parts, outer_radius: float, points: Graded, growth: float, strip: float = 0.0) -> Section:
+    """Mesh of a layer's section, with vertices at the graded points of the top; lengths by the contact radius.
+
+    Args:
+        parts: thicknesses of the layer.
+        outer_radius: end of the section, beyond every graded point.
+        points: radii on the top that become vertices, with the cell size there.
+        growth: increase of the cell size per distance.
+        strip: radius within which the top has cells of the last point's size; zero for contacts of known radius.
+
+    Raises:
+        NotConvergedError: a triangle turned over when it was moved back, or has no area.
+    """
+    drawing = Drawing(parts, outer_radius, points, growth, strip)
+    drawn, regions = _triangulated(drawing)
+    owned = [np.unique(region) for region in regions]
+    where = np.hstack([_placed(drawing, drawn, owned, index) for index in range(len(owned))])
+    starts = np.cumsum([0, *(len(vertices) for vertices in owned)])
+    each = zip(starts, owned, regions, strict=False)
+    corners = np.hstack([start + np.searchsorted(vertices, region) for start, vertices, region in each])
+    if np.any(doubled_area(where, corners) * np.sign(doubled_area(drawn, np.hstack(regions))) <= 0):
+        raise NotConvergedError("a triangle of a thin part turned over or has no area; ask for smaller cells")
+    return named_section(where, corners, np.repeat(np.arange(len(regions)), [r.shape[1] for r in regions]), parts)
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """The section as gmsh draws it; arguments of `section_mesh`."""
+
+    parts: Parts
+    outer_radius: float
+    points: Graded
+    growth: float
+    strip: float
+
+    @cached_property
+    def origin(self) -> float:
+        """Radius that becomes gmsh's x = 0: the last graded point, whose cells need the most digits."""
+        return self.points[-1][0]
+
+    @cached_property
+    def radii(self) -> FloatArray:
+        """Radii of the graded points."""
+        return np.array([r for r, _ in self.points])
+
+    @cached_property
+    def cells(self) -> FloatArray:
+        """Cell sizes at the graded points that gmsh resolves so far from its origin."""
+        return np.maximum([cell for _, cell in self.points], RESOLVED * np.abs(self.radii - self.origin))
+
+    @cached_property
+    def stations(self) -> FloatArray:
+        """Radii at which lines may bend or are split."""
+        bends: list[float] = []
+        for bend in np.sort(self.parts.finite) / (SLOPE_PER_GROWTH * self.growth):
+            if not bends or bend > LEAST_STEP * bends[-1]:
+                bends.append(float(bend))
+        fine = self.radii
+        middles = (fine[:-1] + fine[1:])[np.diff(fine) / 2 > min(bends, default=np.inf)] / 2
+        beside = np.concatenate([fine + side * bend for bend in bends for side in (-1.0, 1.0)] or [np.empty(0)])
+        free = np.min(np.abs(beside[:, None] - fine), axis=1) >= 0.999 * np.repeat(bends, 2 * len(fine))
+        hundreds = 1.0 + max([1.0, *bends]) * 100.0 ** np.arange(1, 8)
+        every = np.concatenate([fine, middles, beside[free], hundreds])
+        every = np.unique(every[(every > 0) & (every < 0.3 * self.outer_radius)])
+        kept = [0.0]
+        for radius in (*every, self.outer_radius):
+            crowd = radius - kept[-1] <= 0.2 * float(self.distance(np.array([radius]))[0])
+            if radius in fine or radius == self.outer_radius or not crowd:
+                kept.append(float(radius))
+        return np.unique(kept + self._splits(kept))
+
+    def _splits(self, stations: list[float]) -> list[float]:
+        """Radii that split lines of more than `LONGEST_LINE` cells of one of their ends."""
+        cells, splits = dict(zip(self.radii, self.cells, strict=True)), []
+        for left, right in pairwise(stations):
+            for end, away in ((left, right - left), (right, left - right)):
+                if abs(away) > LONGEST_LINE * cells.get(end, np.inf):
+                    splits.append(float(end + np.copysign(np.sqrt(cells[end] * abs(away)), away)))
+        return splits
+
+    def distance(self, radius: FloatArray) -> FloatArray:
+        """Distance from the next graded point, or from the strip."""
+        if self.strip:
+            return np.asarray(np.maximum(radius - self.strip, 0.0))
+        return np.asarray(np.min(np.abs(radius[:, None] - self.radii), axis=1))
+
+    @cached_property
+    def drawn(self) -> FloatArray:
+        """Drawn thickness of each part at the stations, shape (part, station).
+
+        The end of an elastic base is straight: bends of the faces far above it are much smaller than its cells.
+        """
+        wedge = SLOPE_PER_GROWTH * self.growth * self.distance(self.stations)
+        drawn = np.maximum(self.parts.finite[:, None], wedge)
+        if not self.parts.has_base:
+            return drawn
+        top = drawn.sum(axis=0)
+        end = np.interp(self.stations, self.stations[[0, -1]], top[[0, -1]] + self.parts.thicknesses[-1])
+        return np.vstack([drawn, end - top])
+
+    @cached_property
+    def levels(self) -> FloatArray:
+        """Drawn depth of each mesh line at the stations, shape (line, station)."""
+        return np.vstack([np.zeros_like(self.stations), np.cumsum(self.drawn, axis=0)])
+
+    @property
+    def size_expression(self) -> str:
+        """Cell size as a function of gmsh's x = r - origin and y = z."""
+        x = [f"(x{self.origin - r:+.17g})" for r in self.radii]
+        distances = [f"Sqrt({each}*{each}+y*y)" for each in x]
+        gaps = np.diff([0.0 if self.radii[0] else -np.inf, *self.radii, np.inf])
+        reaches = [min(left, right, self.parts.parts[0].thickness) for left, right in pairwise(gaps)]
+        each = zip(self.cells, distances, reaches, strict=True)
+        sizes = [f"{cell:.17g}+{self._grown(away, reach)}" for cell, away, reach in each]
+        if self.strip:
+            beyond = f"(x{self.origin - self.strip:+.17g})"
+            distances.append(f"Sqrt(0.5*{beyond}*({beyond}+Abs{beyond})+y*y)")
+            sizes.append(f"{self.cells[-1]:.17g}+{self.growth:.17g}*{distances[-1]}")
+        if len(self.parts.finite):
+            widest = max(self.growth * float(self.parts.finite.sum()), self.cells[-1] if self.strip else 0.0)
+            sizes.append(f"Max({widest:.17g},{FAR_GROWTH * self.growth:.17g}*{distances[-1]})")
+        expression = sizes[-1]
+        for size in reversed(sizes[:-1]):
+            expression = f"Min({size},{expression})"
+        return expression
+
+    def _grown(self, away: str, reach: float) -> str:
+        """Increase of the cell size at a distance from a graded point of this reach."""
+        plain = f"{self.growth:.17g}*{away}"
+        if self.growth >= NEARBY_GROWTH:
+            return plain
+        nearby = f"{self.growth * reach**NEARBY_POWER:.17g}*{away}^{1 - NEARBY_POWER:.17g}"
+        return f"Max({plain},Min({NEARBY_GROWTH:.17g}*{away},{nearby}))"
+
+    def moved_back(self, points: FloatArray, part: int) -> FloatArray:
+        """(r, z) of points (2, n) of one part as drawn."""
+        x = self.stations - self.origin
+        share = (points[1] - np.interp(points[0], x, self.levels[part])) / np.interp(points[0], x, self.drawn[part])
+        top, bottom = self.parts.depths[part : part + 2]
+        return np.vstack([points[0] + self.origin, np.clip(top + share * (bottom - top), top, bottom)])
+
+
+@cache
+def _gmsh() -> Any:
+    """The gmsh module, initialised once per process."""
+    try:
+        import gmsh  # noqa: PLC0415 - a missing system library gives one clear message, at first use
+    except OSError as reason:
+        raise ImportError(MISSING_LIBRARIES.format(reason=reason)) from reason
+    # gmsh lets a broken pipe end the process, and with it a pool. Only the main thread may set signals, and Windows has
+    # no such signal.
+    pipe = getattr(signal, "SIGPIPE", None) if current_thread() is main_thread() else None
+    handler = pipe and signal.getsignal(pipe)
+    gmsh.initialize([], interruptible=False)
+    if pipe:
+        signal.signal(pipe, handler)
+    for option, value in {
+        "General.Terminal": 0,
+        "General.NumThreads": 1,
+        "Mesh.Algorithm": 6,
+        "Mesh.RandomSeed": 1,
+        "Mesh.MeshSizeExtendFromBoundary": 0,
+        "Mesh.MeshSizeFromPoints": 0,
+        "Mesh.MeshSizeFromCurvature": 0,
+        "Mesh.MeshSizeMin": 0,
+        "Mesh.LcIntegrationPrecision": LINE_PRECISION,
+    }.items():
+        gmsh.option.setNumber(option, value)
+    return gmsh
+
+
+def _triangulated(drawing: Drawing) -> tuple[FloatArray, list[IntArray]]:
+    """Points (2, n) as drawn, and the triangles (3, m) of each part."""
+    gmsh = _gmsh()
+    gmsh.model.add("layer")
+    try:
+        surfaces = _draw(gmsh.model.geo, drawing)
+        gmsh.model.geo.synchronize()
+        field, mesh = gmsh.model.mesh.field, gmsh.model.mesh
+        field.add("MathEval", 1)
+        field.setString(1, "F", drawing.size_expression)
+        field.setAsBackgroundMesh(1)
+        mesh.generate(2)
+        tags, coordinates, _ = mesh.getNodes()
+        position = np.empty(int(tags.max()) + 1, dtype=np.int64)
+        position[tags] = np.arange(len(tags))
+        points = np.ascontiguousarray(coordinates.reshape(-1, 3)[:, :2].T)
+        found = (mesh.getElementsByType(2, surface)[1] for surface in surfaces)
+        return points, [np.ascontiguousarray(position[nodes].reshape(-1, 3).T) for nodes in found]
+    finally:
+        gmsh.model.remove()
+
+
+def _draw(geo: Any, drawing: Drawing) -> list[int]:
+    """One surface between two mesh lines each; the end of a base is one line, and its axis is split in hundreds."""
+    x, lines = drawing.stations - drawing.origin, []
+    for index, level in enumerate(drawing.levels):
+        chosen = (
+            slice(None, None, len(x) - 1)
+            if drawing.parts.has_base and index == len(drawing.parts.parts)
+            else slice(None)
+        )
+        points = [geo.addPoint(place, depth, 0.0) for place, depth in zip(x[chosen], level[chosen], strict=True)]
+        lines.append((points, [geo.addLine(a, b) for a, b in pairwise(points)]))
+    surfaces = []
+    for (above, below), top, thickness in zip(pairwise(lines), drawing.levels[:, 0], drawing.drawn[:, 0], strict=False):
+        far = max(1.0, top) * 100.0 ** np.arange(7, 0, -1)
+        inner = [geo.addPoint(x[0], top + z, 0.0) for z in far[far < 0.1 * thickness]]
+        axis = [geo.addLine(a, b) for a, b in pairwise([below[0][0], *inner, above[0][0]])]
+        right = geo.addLine(above[0][-1], below[0][-1])
+        loop = [*above[1], right, *(-curve for curve in reversed(below[1])), *axis]
+        surfaces.append(int(geo.addPlaneSurface([geo.addCurveLoop(loop)])))
+    return surfaces
+
+
+def _placed(drawing: Drawing, drawn: FloatArray, owned: list[IntArray], part: int) -> FloatArray:
+    """(r, z) of the vertices of a part; those that it shares with a neighbour, or of an end, exactly on the face."""
+    vertices, (top, bottom) = owned[part], drawing.parts.depths[part : part + 2]
+    points = drawing.moved_back(drawn[:, vertices], part)
+    on_top = np.isin(vertices, owned[part - 1]) if part else drawn[1, vertices] == 0
+    is_last = part == len(owned) - 1
+    on_bottom = points[1] >= bottom - ON_BASE * (bottom - top) if is_last else np.isin(vertices, owned[part + 1])
+    points[1, on_top], points[1, on_bottom] = top, bottom
+    return points
+
+
+def doubled_area(points: FloatArray, triangles: IntArray) -> FloatArray:
+    """Twice the signed area of triangles (3, m) of points (2, n)."""
+    (r0, r1, r2), (z0, z1, z2) = points[:, triangles]
+    return np.asarray((r1 - r0) * (z2 - z0) - (r2 - r0) * (z1 - z0))
+
+
+def named_section(points: FloatArray, triangles: IntArray, part: IntArray, parts: Parts) -> Section:
+    """Section of points (2, n) and triangles (3, m), with the names of its boundaries and the faces of its parts.
+
+    Raises:
+        NotConvergedError: a triangle has no area.
+    """
+    mesh = MeshTri(points, triangles)
+    if np.any(doubled_area(mesh.p, mesh.t) == 0):
+        raise NotConvergedError("a triangle has no area: a kink lies closer to the contact's edge than cells resolve")
+    outer_radius, thickness = points.max(axis=1)
+    facets = mesh.boundary_facets()
+    r, z = mesh.p[:, mesh.facets[:, facets]]
+    sides = {"axis": r == 0, "top": z == 0, "base": z == thickness, "outer": r == outer_radius}
+    boundaries = {name: facets[side.all(axis=0)] for name, side in sides.items()}
+    owner, faces = part[mesh.f2t[0, facets]], []
+    for upper, depth in enumerate(parts.depths[1:-1]):
+        on_line = np.all(z == depth, axis=0)
+        above, below = (facets[on_line & (owner == side)] for side in (upper, upper + 1))
+        faces.append(Face(above, below, parts.parts[upper].slips))
+    digest = hashlib.sha256(mesh.p.tobytes() + mesh.t.tobytes()).hexdigest()
+    named = mesh.with_boundaries(boundaries)
+    return Section(named, part, tuple(faces), float(thickness), float(outer_radius), digest[:16])

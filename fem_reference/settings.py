@@ -1,0 +1,146 @@
+"""Numerical settings of one solve, and the mesh they make around a contact of radius one."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Self
+
+import numpy as np
+
+from contact import ElasticLayer, InvalidInput, Profile
+from fem_reference.assembly import ElementPair, taylor_hood
+from fem_reference.materials import Parts, parts_of
+from fem_reference.mesh import Graded, Section, section_mesh
+from fem_reference.profiles import ScaledIndenter
+
+# A ring between a kink and the contact's edge narrower than this times contact radius and thickness needs cells that
+# grow by at most NARROW_GROWTH: with 0.9 stiffness slopes err by 1e-3, with 0.7 by 1e-5.
+NARROW, NARROW_GROWTH = 0.1, 0.7
+# Growth of the companion over that of the answer: errors fall like its seventh power. With 1.25 two meshes agree by
+# accident, with 2 stated errors are a hundred times too large.
+COARSER = 1.5
+# Edge cell of the companion over that of the answer: its errors are proportional to it.
+COARSER_EDGE = 10.0
+# Narrowest meshed ring over flat radius and thickness; `PrescribedContact.narrowed` replaces narrower ones. In rings of
+# 1e-8 depths err by 2e-6, in those of 1e-7 by 2e-7.
+NARROWEST = 1e-7
+# Smallest cell over the radius: nodes nearer than a thousand roundings coincide.
+SMALLEST = 1e-13
+# Smallest edge cell before an upright end, over the radius: with 1e-13 one mesh in six is uneven, with 1e-11 one in 20.
+SMALLEST_BEFORE_END = 1e-11
+# Largest growth before an upright end that is nearer than NARROW: at 0.7 a sixth of depths err by a tenth.
+GROWTH_BEFORE_END = 0.5
+
+
+@dataclass(frozen=True, kw_only=True)
+class Discretisation:
+    """Everything that decides the mesh and its elements.
+
+    Attributes:
+        order: polynomial degree k of the displacement, 2, 3 or 4; the pressure has degree k - 1.
+        edge_cell: cell size at the contact edge, relative to the smallest of contact radius, thickness and the
+            distances from the edge to the next kink and to an upright end.
+        growth: increase of cell size per distance from a graded point; also the largest cell per thickness.
+        truncation: relative change of the stiffness allowed to the outer edge.
+        half_space_thickness: thickness, in contact radii, of the layer that stands for a half-space.
+        outer_distance: from contact edge to outer edge, in thicknesses; None for what ``truncation`` requires.
+        coarsening: growth over that of the answer; one except in a companion.
+    """
+
+    order: int = 4
+    edge_cell: float = 1e-7
+    growth: float = 0.5
+    truncation: float = 1e-8
+    half_space_thickness: float = 1e8
+    outer_distance: float | None = None
+    coarsening: float = 1.0
+
+    def __post_init__(self) -> None:
+        """Refuse settings outside their ranges."""
+        if self.order not in (2, 3, 4):
+            raise InvalidInput(f"order must be 2, 3 or 4, got {self.order}")
+        bounds = {
+            "edge_cell": (1e-12, 0.2),
+            "growth": (0.02, 2.0),
+            "truncation": (1e-14, 0.1),
+            "half_space_thickness": (10.0, 1e12),
+        }
+        for name, (low, high) in bounds.items() if self.coarsening == 1.0 else ():
+            if not low <= getattr(self, name) <= high:
+                raise InvalidInput(f"{name} must lie in [{low:g}, {high:g}], got {getattr(self, name)}")
+        if self.outer_distance is not None and not 1.0 <= self.outer_distance * self.coarsening <= 100.0:
+            raise InvalidInput(f"outer_distance must lie in [1, 100] thicknesses, got {self.outer_distance}")
+
+    @property
+    def pair(self) -> ElementPair:
+        """The element pair of the answer."""
+        return taylor_hood(self.order)
+
+    def refined(self) -> Self:
+        """Cells half as large; the edge cell shrinks like the error of the others, by 2^(2k)."""
+        return replace(
+            self,
+            growth=max(self.growth / 2, 0.02),
+            edge_cell=max(self.edge_cell / 4**self.order, 1e-12),
+            truncation=max(self.truncation / 4**self.order, 1e-14),
+            half_space_thickness=min(self.half_space_thickness * 4**self.order, 1e12),
+        )
+
+    def coarser(self) -> Self:
+        """Settings of the companion: every length and tolerance is coarser, so that each of them contributes."""
+        return replace(
+            self,
+            coarsening=COARSER * self.coarsening,
+            growth=COARSER * self.growth,
+            edge_cell=min(COARSER_EDGE * self.edge_cell, 0.3),
+            truncation=min(10 * self.truncation, 0.3),
+            half_space_thickness=max(self.half_space_thickness / 10, 3.0),
+            outer_distance=self.outer_distance and self.outer_distance / COARSER,
+        )
+
+    def outer_radius(self, parts: Parts) -> float:
+        """Radius at which a section ends, by the contact radius.
+
+        Disturbances die out exponentially, those of stiff parts on soft ones within the root of their ratio. A
+        half-space ends as far away as it is thick.
+        """
+        if parts.has_base:
+            return float(parts.thicknesses[-1])
+        distance = self.outer_distance or -np.log(self.truncation) * np.sqrt(parts.contrast)
+        return float(1 + parts.depths[-1] * distance)
+
+
+def contact_section(layer: ElasticLayer, indenter: ScaledIndenter, settings: Discretisation) -> tuple[Parts, Section]:
+    """The graded section of a contact of known radius, with vertices at the edge and at every kink and breakpoint."""
+    parts = parts_of(layer, indenter.contact_radius, settings.half_space_thickness)
+    near = NARROW * min(1.0, parts.parts[0].thickness)
+    limits = {NARROW_GROWTH: 1.0 - indenter.last_kink, GROWTH_BEFORE_END: indenter.left_to_upright_end}
+    slow = [growth * settings.coarsening for growth, distance in limits.items() if distance < near]
+    settings = replace(settings, growth=min([settings.growth, *slow]))
+    points = graded_points(parts.parts[0].thickness, indenter, settings)
+    return parts, section_mesh(parts, settings.outer_radius(parts), points, settings.growth)
+
+
+def graded_points(thickness: float, indenter: ScaledIndenter, settings: Discretisation) -> Graded:
+    """(radius, cell size) at the edge, the kinks, a sharp tip, and plain vertices at the other breakpoints.
+
+    At the edge the energy error of the last cell falls like its size; at a kink, where the stress is merely
+    logarithmic, like its square, but the L2 error of the pressure like its root.
+    """
+    before_end = settings.edge_cell * indenter.left_to_upright_end
+    before_end = max(before_end, SMALLEST_BEFORE_END * settings.coarsening**6)
+    edge_cell = min(settings.edge_cell * min(1.0, thickness, 1.0 - indenter.last_kink), before_end)
+    edge_cell = max(edge_cell, SMALLEST)
+    cells = {r: 0.5 * settings.growth * min(1.0, thickness) for r in indenter.breakpoints}
+    ends = (0.0, *sorted(indenter.kinks), 1.0)
+    for left, r, right in zip(ends, ends[1:], ends[2:], strict=False):
+        cells[r] = max(0.5 * settings.edge_cell * min(r - left, right - r, thickness), SMALLEST * r)
+    if indenter.has_sharp_tip:
+        cells[0.0] = edge_cell
+    return tuple(sorted((cells | {1.0: edge_cell}).items()))
+
+
+def narrowest_radius(layer: ElasticLayer, profile: Profile, coarsening: float = 1.0) -> float:
+    """The smallest contact radius [m] beyond a flat end whose ring is meshed; zero for profiles without a flat end."""
+    ring = NARROWEST * coarsening**6  # ten times wider in a companion
+    return profile.flat_radius + ring * min(profile.flat_radius, layer.surface.thickness)

@@ -1,0 +1,148 @@
+"""The layer condensed to its top: one factorisation, then contact problems of a few hundred unknowns.
+
+Tractions are continuous and piecewise linear on a strip of equal cells, with hat functions phi_i; displacements are of
+fourth degree, so that the mesh errs less than the contact set, which is found to a cell. For pressures p and tangential
+tractions q (positive outward) the moments ``int phi_i (u_z, u_r) 2 pi r dr`` are
+
+    C (p, q),    C = [[Z_p, Z_q], [Z_q^T, R_q]],
+
+symmetric by reciprocity. Units: lengths by the strip's radius, stresses by E*.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from contact import ElasticLayer, StageLog
+from contact.records.validation import FloatArray
+from fem_reference.assembly import taylor_hood
+from fem_reference.layer import DiscreteLayer
+from fem_reference.materials import Parts, parts_of
+from fem_reference.mesh import Section, section_mesh
+from fem_reference.settings import Discretisation
+from fem_reference.trace import TraceSpace
+
+# Degree of the displacements on a strip.
+STRIP_ORDER = 4
+# Displacement nodes from one vertex of the pressures to the next, without and with tangential tractions. With friction
+# each cell of the tractions is one of the mesh: kinks inside a cell make forces err like 1 / cells.
+STRIDE, RUBBED_STRIDE = 2, 4
+# Cells of a strip for which the growth of cells away from it is as given: more cells have a lower growth.
+STRIP_CELLS = 120
+# Cells from the axis below which a kink gets no vertex: narrow cells next to the axis make pressures there oscillate.
+NEAREST_KINK = 0.5
+
+
+@dataclass(frozen=True)
+class Surface:
+    """Compliance of the top within radius one.
+
+    Attributes:
+        tractions: piecewise linear functions; their nodes are the candidates for contact.
+        pressed: Z_p, moments of u_z under each pressure, shape (n, n).
+        coupled: Z_q, moments of u_z under each tangential traction, shape (n, n); empty without these.
+        rubbed: R_q, moments of u_r under each tangential traction, shape (n, n); empty without these.
+        resultants: ``w_i = int phi_i 2 pi r dr``, shape (n,).
+        base_forces: force on the base under each traction, shape (n,) or (2 n,).
+        top: polynomials on the whole top of the mesh.
+        top_displacements: u_z at its nodes under each traction, shape (t, n) or (t, 2 n).
+        unknowns: size of the linear system.
+        fingerprint: of the mesh.
+        poissons_ratio: nu at the surface.
+    """
+
+    tractions: TraceSpace
+    pressed: FloatArray
+    coupled: FloatArray
+    rubbed: FloatArray
+    resultants: FloatArray
+    base_forces: FloatArray
+    top: TraceSpace
+    top_displacements: FloatArray
+    unknowns: int
+    fingerprint: str
+    poissons_ratio: float
+
+    @property
+    def radii(self) -> FloatArray:
+        """Candidates for contact."""
+        return self.tractions.radii
+
+    def moments(self, values: FloatArray) -> FloatArray:
+        """``int phi_i f 2 pi r dr`` for f given at ``tractions.gauss(4)``."""
+        return self.tractions.moments(values, 4)
+
+
+def strip_section(
+    layer: ElasticLayer,
+    radius: float,
+    cells: int,
+    kinks: tuple[float, ...],
+    settings: Discretisation,
+    *,
+    outside: float = 1.0,
+    stride: int = STRIDE,
+) -> tuple[Parts, Section]:
+    """A section with ``cells`` equal traction cells on the strip of ``radius`` [m], lengths by that radius.
+
+    Away from the strip the mesh errs like growth^7, the contact set like 1 / cells^2: both shrink alike. The growth of
+    120 cells is ``outside``; ``stride`` counts displacement nodes from one traction vertex to the next.
+    """
+    cell = STRIP_ORDER / stride / cells
+    points = (*((r / radius, cell) for r in kinks if NEAREST_KINK * cell * radius <= r < radius), (1.0, cell))
+    growth = outside * (STRIP_CELLS / cells) ** (1 / 3)
+    parts = parts_of(layer, radius, settings.half_space_thickness)
+    return parts, section_mesh(parts, replace(settings, growth=growth).outer_radius(parts), points, growth, strip=1.0)
+
+
+def strip_loads(layer: DiscreteLayer, stride: int, *, tangential: bool = False) -> tuple[FloatArray, TraceSpace]:
+    """Loads of the hat functions, first as pressures, then as tangential tractions, shape (size, m); their space."""
+    nodes = layer.top_nodes(1.0)
+    radii = layer.space.positions[0, nodes]
+    moments = TraceSpace(radii, layer.pair.degree).hat_moments(stride)
+    n = moments.shape[1]
+    loads = np.zeros((layer.space.size, n * (1 + tangential)))
+    loads[2 * nodes + 1, :n] = moments
+    if tangential:
+        loads[2 * nodes, n:] = moments
+    return loads, TraceSpace(radii[::stride], 1)
+
+
+def condense(
+    parts: Parts,
+    section: Section,
+    backend: str,
+    log: StageLog,
+    *,
+    stride: int = STRIDE,
+    tangential: bool = False,
+) -> Surface:
+    """Factorise the layer once and load it by every traction of the strip of radius one."""
+    layer = DiscreteLayer(section, taylor_hood(STRIP_ORDER), parts, backend=backend)
+    with log.stage("assemble"):
+        log.hold(layer.elements.nbytes)
+    with log.stage("factor"):
+        solver = layer.solver(layer.supported_unknowns)
+    log.count("factorisations", solver.checked.factorisations)
+    with log.stage("condense"):
+        loads, tractions = strip_loads(layer, stride, tangential=tangential)
+        solution = solver.solve_loaded(loads, inside=False)
+        compliance = loads.T @ solution
+        compliance = (compliance + compliance.T) / 2
+        log.hold(solution.nbytes + compliance.nbytes)
+    n, top = len(tractions.radii), layer.top_nodes(np.inf)
+    return Surface(
+        tractions=tractions,
+        pressed=compliance[:n, :n],
+        coupled=compliance[:n, n:],
+        rubbed=compliance[n:, n:],
+        resultants=loads.sum(axis=0)[:n],
+        base_forces=-solver.reactions(solution, 2 * layer.nodes_on("base") + 1).sum(axis=0),
+        top=TraceSpace(layer.space.positions[0, top], STRIP_ORDER),
+        top_displacements=solution[2 * top + 1],
+        unknowns=layer.space.size,
+        fingerprint=section.fingerprint,
+        poissons_ratio=parts.poissons_ratio,
+    )

@@ -1,0 +1,290 @@
+"""Curves of withdrawal with adhesion: the branch of equilibria in contact, for any modulus and work of adhesion.
+
+At a contact radius a the springs at its edge are stretched by dl = sqrt(2 pi a w / c_N), Eq. (40), and then
+d = g(a) - dl and F = F_el(a) - k_N(a) dl. With c = c_N/E and rho = sqrt(w/E) the stretch is rho sqrt(2 pi a / c), so
+that F/E depends on the depth and rho alone. The data show which points are in contact: those from the jump at
+pull-off on. The model has no jump then.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from functools import lru_cache
+from typing import Final
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bem.flat_punch import IntegralEquation
+from contact import Adhesion, IndentationDepths, NotConvergedError, Paraboloid, Scene, Sphere
+from contact.records.validation import BoolArray, FloatArray
+from mdr.curves.contact_point import Data, Fitted, least_squares, modulus_and_residual, rough_indentation
+from mdr.curves.families import CurveShape
+from mdr.curves.force_curve import longest_curve
+from mdr.equilibria import solve_elastic
+from mdr.spring_bed import Springs
+
+# Radii of the table, evenly in the logarithm over three decades. The error of straight lines between them falls with
+# the square of their number, and is stated.
+_RADII: Final = 4001
+_DECADES: Final = 3.0
+# The table reaches this much deeper than the curve, for adhesion draws the contact out.
+_DEEPER: Final = 1.5
+# First guesses of the stretch over the way in contact. Half as many are 30 % apart, and some fits end elsewhere.
+_STRETCHES: Final = tuple(10.0 ** (k / 8) for k in range(-20, 11))
+# Trial depths of the deepest point beyond pull-off, over the way in contact. Half as many start 15 % off.
+_DEPTHS: Final = tuple(0.9 * 1.12**k for k in range(-1, 12))
+# Depth of the dip over the scatter of its neighbours from which it is one. At half of it noise makes dips.
+_DIP: Final = 6.0
+# Share of the dip that the force at pull-off has: 5/9 under a paraboloid. Points above this share are not in contact.
+_ATTACHED: Final = 0.3
+# Share of points in contact that may lie beyond the pull-off of the fit. At twice that wrong ends pass.
+_BEYOND: Final = 0.02
+# Share of the range of forces below which there is no pull-off. Twice passes dips of that size as scatter.
+_NO_PULL_OFF: Final = 1e-5
+# Relative difference of moduli in which two ends of least squares are the same one.
+_SAME: Final = 1e-2
+# Step of the slope over the length of the branch. At a tenth of it the straight pieces of the table show.
+_STEP: Final = 1e-4
+# Range of adhesive forces [m] in the Tabor parameter: 0.2 to 0.5 nm in the literature.
+RANGE_OF_FORCES: Final = 3e-10
+
+
+@dataclass(frozen=True, eq=False)
+class Table:
+    """The elastic contact at many radii, each array of shape (n,).
+
+    Attributes:
+        radius: a [m].
+        depth: g(a) [m].
+        force: F_el/E [m^2].
+        stiffness: k_N/E [m].
+        stretch: sqrt(2 pi a E/c_N) [m^(1/2)].
+    """
+
+    radius: FloatArray
+    depth: FloatArray
+    force: FloatArray
+    stiffness: FloatArray
+    stretch: FloatArray
+
+    def branch(self, root: float) -> tuple[FloatArray, FloatArray]:
+        """Depths [m] and F/E [m^2] of stable equilibria under control of the depth, for sqrt(w/E), from pull-off on."""
+        depths = self.depth - root * self.stretch
+        stable = slice(int(np.argmin(depths)), None)
+        return depths[stable], (self.force - self.stiffness * root * self.stretch)[stable]
+
+    def every_other(self) -> Table:
+        """The table with half as many radii."""
+        return Table(*(values[::2] for values in vars(self).values()))
+
+
+@lru_cache(maxsize=64)
+def table_of(scene: Scene) -> Table:
+    """The table of an elastic scene whose largest depth says how far it reaches; the last 64 are cached."""
+    assert isinstance(scene.loading, IndentationDepths)
+    # The elastic contact at the largest depth is the end of the table, and refuses what is no circle.
+    deeper = scene.replace(loading=IndentationDepths([_DEEPER * float(scene.loading.values.max())]))
+    largest = float(solve_elastic(deeper, IntegralEquation(), {}).contact_radius[0])
+    springs, flat = Springs.of(scene.layer, scene.indenter), scene.indenter.flat_radius
+    radius = flat + (largest - flat) * np.logspace(-_DECADES, 0.0, _RADII)
+    values, modulus = springs.at(radius), scene.layer.surface.youngs_modulus
+    state = springs.state(radius, values)
+    stretch = np.sqrt(2 * np.pi * radius * modulus / (springs.modulus * values.y1**2))
+    return Table(radius, state.depth, state.force / modulus, state.stiffness / modulus, stretch)
+
+
+@dataclass(frozen=True)
+class BranchShape:
+    """F/E on the branch at the points in contact, zero at all others."""
+
+    depths: FloatArray
+    forces: FloatArray
+    attached: BoolArray
+
+    def extended(self, depth: ArrayLike) -> FloatArray:
+        """phi [m^2]; points in contact beyond pull-off have the force of pull-off."""
+        return np.where(self.attached, np.interp(np.asarray(depth, dtype=np.float64), self.depths, self.forces), 0.0)
+
+    def with_slope(self, depth: ArrayLike) -> tuple[FloatArray, FloatArray]:
+        """phi [m^2] and d(phi)/d(depth) [m]."""
+        d, step = np.asarray(depth, dtype=np.float64), _STEP * float(self.depths[-1] - self.depths[0])
+        return self.extended(d), (self.extended(d + step) - self.extended(d - step)) / (2 * step)
+
+
+@dataclass(frozen=True)
+class Adhering:
+    """Curves of withdrawal over u: sqrt(w/E) with a free work of adhesion, ln E with a known one.
+
+    Attributes:
+        table: The elastic contact.
+        work: Work of adhesion [J/m^2] where it is known.
+        attached: Which points are in contact, shape (n,).
+        elastic_error: Relative error of the force without adhesion.
+        starts: First values of u.
+    """
+
+    table: Table
+    work: float | None
+    attached: BoolArray
+    elastic_error: float
+    starts: Sequence[float] = field(default=())
+
+    @property
+    def varied(self) -> str:
+        """What u stands for."""
+        return "work_of_adhesion" if self.work is None else "youngs_modulus"
+
+    @property
+    def is_scaled(self) -> bool:
+        """Whether the modulus is free beside u."""
+        return self.work is None
+
+    def root(self, u: float) -> float:
+        """sqrt(w/E) [m^(1/2)]."""
+        return u if self.work is None else math.sqrt(self.work / self.factor(u))
+
+    def at(self, u: float) -> CurveShape:
+        """phi of the branch."""
+        return BranchShape(*self.table.branch(self.root(u)), self.attached)
+
+    def factor(self, u: float) -> float:
+        """E [Pa], where the work is known."""
+        return math.exp(min(max(u, -300.0), 300.0))
+
+    def value(self, u: float, modulus: float) -> tuple[float, float, float]:
+        """The work of adhesion u^2 E, or the modulus exp(u)."""
+        if self.work is None:
+            return max(u, 0.0) ** 2 * modulus, 2 * max(u, 0.0) * modulus, max(u, 0.0) ** 2
+        return self.factor(u), self.factor(u), 0.0
+
+
+def fit_adhesive(scene: Scene, data: Data) -> Fitted:
+    """Values of least squares of a curve of withdrawal.
+
+    Raises:
+        InvalidInput: If the curve shows no contact.
+        NotConvergedError: If no values describe the curve, or several do equally well.
+    """
+    effect = scene.effect(Adhesion)
+    assert effect is not None
+    work = None if "work_of_adhesion" in data.names else effect.work_of_adhesion
+    ends: list[Fitted] = []
+    for attached in _hypotheses(data):
+        way = max(float(np.ptp(data.depth[attached])), 1e-3 * float(np.ptp(data.depth)))
+        reach = 4 * way if data.has_free_point else max(4 * way, 2 * data.deepest)
+        curve = longest_curve(scene, reach)
+        table = table_of(curve.scene)
+        family = Adhering(table, work, attached, curve.error, _first_values(table, work, data, way))
+        trials = {}
+        for u in family.starts:
+            first = float(table.branch(family.root(u))[0][0])
+            points = first + way * np.array(_DEPTHS) if data.has_free_point else np.array([data.deepest])
+            trials[u] = points[points < 0.9 * reach] if data.has_free_point else points
+        ends += least_squares(data, family, {u: points for u, points in trials.items() if points.size})
+    return _best(data, ends)
+
+
+def _first_values(table: Table, work: float | None, data: Data, way: float) -> list[float]:
+    """First values of u: stretches of the springs over the way in contact, or moduli about that without adhesion."""
+    stretch = float(np.interp(way, table.depth, table.stretch))
+    roots = [0.0, *(way * ratio / stretch for ratio in _STRETCHES)]
+    if work is None:
+        return roots
+    elastic = float(np.ptp(data.force)) / float(np.interp(way, table.depth, table.force))
+    return [math.log(elastic) + k / 4 for k in range(-20, 13)]
+
+
+def _hypotheses(data: Data) -> Iterator[BoolArray]:
+    """Which points are in contact: from the jump at pull-off on; and all, where the curve may end before it."""
+    order = np.argsort(data.depth, kind="stable")
+    force = data.force[order]
+    least = int(np.argmin(force))
+    before = force[: max(least // 2, 1)]
+    level = float(np.median(before)) if "baseline" in data.names else 0.0
+    scatter = 1.48 * float(np.median(np.abs(np.diff(before)))) if before.size > 2 else 0.0
+    dip = level - float(force[least])
+    if not dip > max(_DIP * scatter, 1e-9 * float(np.ptp(force))):
+        yield data.depth >= data.deepest - 1.2 * rough_indentation(data)
+        yield np.ones(data.depth.size, dtype=bool)
+        return
+    if float(force[-1]) < level - 0.9 * dip:
+        raise NotConvergedError("the withdrawal starts too close to pull-off for a modulus; press deeper before it")
+    apart = np.flatnonzero(force[: least + 1] > level - _ATTACHED * dip)
+    attached = np.zeros(data.depth.size, dtype=bool)
+    attached[order[(apart[-1] + 1 if apart.size else 0) :]] = True
+    yield attached
+    if apart.size <= 3:
+        yield np.ones(data.depth.size, dtype=bool)
+
+
+def points_beyond(data: Data, fitted: Fitted) -> int:
+    """Number of points in contact beyond the pull-off of the fit, where the force of pull-off stands above scatter."""
+    family = fitted.family
+    assert isinstance(family, Adhering)
+    depths, forces = family.table.branch(family.root(fitted.u))
+    modulus, residual = modulus_and_residual(data, family, fitted.indentation, fitted.u)
+    scatter = max(float(np.std(residual)), _NO_PULL_OFF * float(np.ptp(data.force)))
+    if abs(modulus * float(forces[0])) < 3 * scatter:
+        return 0
+    return int(np.sum(family.attached & (data.depth - data.deepest + fitted.indentation < depths[0])))
+
+
+def _best(data: Data, ends: Sequence[Fitted]) -> Fitted:
+    """The end of the smallest squares whose branch reaches the points in contact.
+
+    Raises:
+        NotConvergedError: If there is none, or another modulus fits as well.
+    """
+    possible = sorted(
+        (end for end in ends if points_beyond(data, end) <= 1 + _BEYOND * data.depth.size), key=lambda end: end.squares
+    )
+    moduli = [modulus_and_residual(data, end.family, end.indentation, end.u)[0] for end in possible]
+    if not possible or not moduli[0] > 0.0:
+        raise NotConvergedError(
+            "no values describe the curve of withdrawal; press deeper (the force has to rise above its minimum), or "
+            "check the tip of the scene and the sign of the force (pressing is positive)"
+        )
+    best = possible[0]
+    limit = best.squares * (1 + 3 / data.force.size) + 1e-12 * float(data.force @ data.force)
+    for end, modulus in zip(possible[1:], moduli[1:], strict=True):
+        if end.squares <= limit and abs(modulus / moduli[0] - 1) > _SAME:
+            change = modulus_and_residual(data, best.family, best.indentation, best.u)[1]
+            change = change - modulus_and_residual(data, end.family, end.indentation, end.u)[1]
+            if float(change @ change) > 9 * limit / data.force.size or modulus == 0.0:
+                raise NotConvergedError(
+                    f"two sets of values fit this curve equally well (E = {moduli[0]:.4g} and {modulus:.4g} Pa); "
+                    "include the baseline before pull-off, or fix the work of adhesion or the contact point"
+                )
+    return best
+
+
+def adhesive_error(family: Adhering, u: float, depth: FloatArray) -> float:
+    """Relative error of the force: of the elastic contact, and of the table by its change with every other radius."""
+    coarse = replace(family, table=family.table.every_other()).at(u).extended(depth)
+    fine = family.at(u).extended(depth)
+    largest = float(np.abs(fine).max(initial=1e-300))
+    return family.elastic_error + float(np.abs(coarse - fine)[family.attached].max(initial=0.0)) / (3 * largest)
+
+
+def tabor_sentence(scene: Scene, modulus: float, work: float) -> str:
+    """The Tabor parameter mu = (R w^2/(E*^2 z_0^3))^(1/3) in words, of round tips."""
+    match scene.indenter:
+        case Paraboloid(radius_of_curvature=radius) | Sphere(radius=radius):
+            pass
+        case _:
+            return ""
+    reduced = modulus / (1 - scene.layer.surface.poissons_ratio**2)
+    mu = (radius * work**2 / reduced**2) ** (1 / 3) / RANGE_OF_FORCES
+    if work == 0.0:
+        return ""
+    meaning = (
+        "above 5, so that adhesion acts at the edge only, as this fit assumes (JKR)"
+        if mu > 5
+        else "below 0.1, where DMT is valid and this fit is not"
+        if mu < 0.1
+        else "between 0.1 and 5, where Maugis' model is valid and this fit is approximate"
+    )
+    return f"Tabor parameter {mu:.2g} for a range of forces of 0.3 nm: {meaning}"

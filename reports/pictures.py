@@ -1,0 +1,126 @@
+"""Pictures of one answer and of answers over a range of a number."""
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from cases.measurements.sweep import Sweep
+from contact import (
+    ContactRadii,
+    DepthHistory,
+    ForceHistory,
+    FrictionHistory,
+    HistoryPath,
+    ImpactHistory,
+    IndentationDepths,
+    NormalForces,
+    Scene,
+    Solution,
+)
+from contact.records.units import prefix_for
+from contact.records.validation import FloatArray
+from reports.style import BLACK, line_with_band, look_of, panels
+from reports.words import display_name
+
+# Points of a line, about: half as many show corners in a printed figure.
+POINTS = 240
+# Points on each part of a history, at least: half as many show corners.
+FEWEST = 8
+# Histories of more instants are drawn as symbols: solving between them would take longer than the answer.
+MOST_INSTANTS = 2000
+# A panel [inches]; one that stands alone is larger by this factor.
+SIZE, ALONE = (4.0, 2.9), 1.4
+
+
+def solution_figure(solution: Solution, curve: Solution | None = None) -> Figure:
+    """Force and contact radius over depth, or histories; bands and bars where the method states an error.
+
+    Args:
+        solution: Answer whose states are drawn: symbols at prescribed ones, a line through steps that the method chose
+            itself, as in an impact.
+        curve: The same scene with states between the prescribed ones, drawn as a line; None where there is none.
+    """
+    in_time = isinstance(solution, HistoryPath | FrictionHistory | ImpactHistory)
+    x = "time" if in_time else "indentation_depth"
+    shown = ("normal_force", "indentation_depth", "contact_radius") if in_time else ("normal_force", "contact_radius")
+    drawing, all_axes = panels(len(shown), size=SIZE)
+    for axes, y in zip(all_axes, shown, strict=True):
+        axes.set(xlabel=solution.label(x), ylabel=solution.label(y))
+        _draw_answer(axes, solution, curve, (x, y))
+    drawing.legend(handles=all_axes[0].get_legend_handles_labels()[0], loc="outside lower center", ncols=2)
+    return drawing
+
+
+def _draw_answer(axes: Axes, solution: Solution, curve: Solution | None, names: tuple[str, str]) -> None:
+    prescribed = getattr(solution.scene.loading, "time", None)
+    is_curve = solution.CURVE_ALONE or (prescribed is not None and len(solution) > prescribed.size)
+    look, method = look_of(solution.method), display_name(solution.method)
+    for drawn in ([] if curve is None else [curve]) + ([solution] if is_curve else []):
+        x, y, error = _in_units(drawn, solution, names)
+        line_with_band(axes, x, y, error, color=look.colour, label=method)
+    if not is_curve:
+        x, y, error = _in_units(solution, solution, names)
+        label = method if curve is None else "prescribed states"
+        colour = look.colour if curve is None else BLACK
+        axes.errorbar(
+            x, y, yerr=error, fmt=look.marker, color=colour, markerfacecolor="white", capsize=2.0, zorder=3, label=label
+        )
+
+
+def _in_units(
+    drawn: Solution, answer: Solution, names: tuple[str, str]
+) -> tuple[FloatArray, FloatArray, FloatArray | None]:
+    """States of `drawn` and the stated error of the second quantity, in the units of the axes of `answer`."""
+    x, y = (getattr(drawn, name) * answer.factor(name) for name in names)
+    stated = drawn.stated_error(names[1])
+    return x, y, None if stated is None else stated * answer.factor(names[1])
+
+
+def between(scene: Scene) -> Scene | None:
+    """The scene with further states between the prescribed ones; None where an answer would depend on them.
+
+    Instants lie closer behind each prescribed one, where relaxation is fastest.
+    """
+    loading = scene.loading
+    match loading:
+        case DepthHistory(time=time) | ForceHistory(time=time) if time.size <= MOST_INSTANTS:
+            parts = np.linspace(0.0, 1.0, max(FEWEST, POINTS // time.size), endpoint=False) ** 3
+            finer = np.append((time[:-1, None] + np.diff(time)[:, None] * parts).ravel(), time[-1])
+            finer = np.unique(finer)
+            name = "depth" if isinstance(loading, DepthHistory) else "force"
+            values = np.interp(finer, time, getattr(loading, name))
+            return scene.replace(loading=loading.replace(time=finer, **{name: values}))
+        case IndentationDepths(values=values) | NormalForces(values=values) | ContactRadii(values=values):
+            if scene.effects or values.size == 1 or np.ptp(values) == 0.0:
+                return None
+            finer = np.union1d(values, np.linspace(values.min(), values.max(), POINTS))
+            return scene.replace(loading=loading.replace(values=finer))
+    return None
+
+
+def sweep_figure(found: Sweep) -> Figure:
+    """Each quantity that is not constant over the varied number, a line for each state."""
+    columns = found.columns
+    x_head, *heads = (head for head in columns if "_uncertainty" not in head)
+    states = len(columns[x_head]) // len(np.unique(columns[x_head]))
+    varied = [head for head in heads if np.ptp(columns[head][states - 1 :: states]) > 0.0] or heads
+    size = (ALONE * SIZE[0], ALONE * SIZE[1]) if len(varied) == 1 else SIZE
+    drawing, all_axes = panels(len(varied), size=size)
+    for axes, head in zip(all_axes, varied, strict=True):
+        (x, x_label), (y, y_label) = (_scaled(columns[name], name) for name in (x_head, head))
+        axes.set(xlabel=x_label, ylabel=y_label)
+        for state in range(states):
+            axes.plot(x[state::states], y[state::states], label=f"state {state + 1}")
+    if states > 1:
+        drawing.legend(handles=all_axes[0].lines, loc="outside lower center", ncols=min(states, 4))
+    return drawing
+
+
+def _scaled(values: FloatArray, head: str) -> tuple[FloatArray, str]:
+    """Values in a unit with a fitting prefix, and their label."""
+    name, bracket, unit = head.partition(" [")
+    words = name.replace("_", " ")
+    if not bracket:
+        return values, words
+    factor, prefix = prefix_for(values.tolist())
+    return values / factor, f"{words} [{prefix}{unit}"

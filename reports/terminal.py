@@ -1,0 +1,72 @@
+"""The terminal: tables, facts and bars; characters that steer a terminal are shown as escapes."""
+
+import os
+import sys
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from typing import Any
+
+from rich.console import Console
+from rich.table import Table as RichTable
+from rich.text import Text
+
+from contact.records.errors import printable
+from reports.words import Table
+
+WIDTH_WITHOUT_TERMINAL = 160
+STYLES = {"bad": "bold white on red", "warn": "black on yellow", "skip": "dim", "good": "green"}
+
+
+class Terminal(Console):
+    """A console that shows characters which would steer it as escapes."""
+
+    def print(self, *objects: Any, **options: Any) -> None:
+        """Print; a text that holds such a character loses its styles."""
+        super().print(*(_plain(item) for item in objects), **options)
+
+
+def _plain(item: Any) -> Any:
+    """A text without control characters; anything else as it is."""
+    text = item.plain if isinstance(item, Text) else item
+    if not isinstance(text, str):
+        return item
+    plain = printable(text, keep="\n")
+    return item if plain == text else Text(plain)
+
+
+def console(*, stderr: bool = False) -> Terminal:
+    """The terminal; a pipe or a log file gets wide plain lines that nothing wraps in the middle of a number."""
+    stream = sys.stderr if stderr else sys.stdout
+    width = None if stream.isatty() or "COLUMNS" in os.environ else WIDTH_WITHOUT_TERMINAL
+    return Terminal(stderr=stderr, width=width, highlight=False, markup=False)
+
+
+def show_table(table: Table, *, on: Console) -> None:
+    """A table with its title above and its note below; numbers flush right."""
+    rich = RichTable(box=None)
+    for place, head in enumerate(table.heads):
+        number = place >= table.words
+        rich.add_column(Text(printable(head)), justify="right" if number else "left", no_wrap=number, overflow="fold")
+    for row in table.rows:
+        rich.add_row(*(Text(printable(cell, keep="\n")) for cell in row))
+    for part in (Text(table.title, style="bold"), rich, Text(table.note, style="dim")):
+        if part:
+            on.print(part)
+
+
+def show_facts(facts: Iterable[tuple[str, str]], *, on: Console) -> None:
+    """One fact a line, its name dim before it."""
+    for name, fact in facts:
+        on.print(Text.assemble((f"{name}: ", "dim"), fact))
+
+
+@contextmanager
+def progress_bar(what: str) -> Iterator[Callable[[int, int], None]]:
+    """A bar on a terminal, nothing in a pipe or a log; yields what takes the number done and the total."""
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn  # noqa: PLC0415
+
+    terminal = console(stderr=True)
+    columns = TextColumn(what), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn()
+    with Progress(*columns, console=terminal, disable=not terminal.is_terminal, transient=True) as bar:
+        task = bar.add_task(what, total=None)
+        yield lambda done, total: bar.update(task, completed=done, total=total)

@@ -1,0 +1,164 @@
+"""Words of reports: numbers with units and no digit beyond their uncertainty, names of methods and files, tables.
+
+A number with its uncertainty is written as CODATA does: `1.480210(21)` means 1.480210 with an uncertainty of 0.000021.
+"""
+
+import math
+import re
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from typing import TypeVar
+
+from contact.records.units import prefix_for
+
+R = TypeVar("R")
+
+NAMES: Mapping[str, str] = {
+    "mdr": "MDR",
+    "fem": "FEM",
+    "bem": "BEM",
+    "integral_equation": "integral equation",
+    "mdr_table": "MDR (FFT table)",
+    "calculix": "CalculiX",
+    "contact_mechanics": "ContactMechanics",
+    "tamaas": "Tamaas",
+}
+
+# What stands where a number should be and is none; the letters of a floating point NaN never reach a page.
+NOT_FINITE = "not finite"
+
+# Magnitudes outside these are written with a power of ten.
+LARGEST_PLAIN, SMALLEST_PLAIN = 1e5, 1e-3
+
+# A double carries so many significant digits.
+DOUBLE_DIGITS = 16
+
+
+def measured(value: float, uncertainty: float) -> str:
+    """A value with its absolute uncertainty in the same unit, two digits of it in brackets.
+
+    An uncertainty of zero means an exact number; "(?)" stands where it is not known.
+    """
+    if not math.isfinite(value):
+        return NOT_FINITE
+    if not math.isfinite(uncertainty):
+        return f"{value:.3g}(?)"
+    if uncertainty == 0.0:
+        return f"{value:.12g}"
+    exponent = _leading_power(max(abs(value), uncertainty))
+    if SMALLEST_PLAIN <= max(abs(value), uncertainty) < LARGEST_PLAIN and uncertainty < 10.0:
+        return _bracketed(value, uncertainty, exponent)
+    scale = 10.0**exponent
+    return f"{_bracketed(value / scale, uncertainty / scale, 0)}e{exponent}"
+
+
+def _bracketed(value: float, uncertainty: float, exponent: int) -> str:
+    """Both numbers to the second digit of the uncertainty, but never past the digits a double carries."""
+    decimals = max(0, min(1 - _leading_power(uncertainty), DOUBLE_DIGITS - 1 - exponent))
+    # The uncertainty is rounded up: never less than it is.
+    digits = max(1, math.ceil(round(uncertainty * 10.0**decimals, 6)))
+    shown = f"{digits}" if uncertainty < 1.0 else f"{digits / 10.0**decimals:.{decimals}f}"
+    return f"{value:.{decimals}f}({shown})"
+
+
+def _leading_power(value: float) -> int:
+    """Power of ten of the first digit, 3 for 1234."""
+    return math.floor(math.log10(value))
+
+
+def small(value: float) -> str:
+    """An error, a tolerance or a ratio of errors to two digits: 3.2e-6."""
+    if not math.isfinite(value):
+        return NOT_FINITE
+    if value == 0.0:
+        return "0"
+    if 1e-2 <= abs(value) < 1e3:
+        return f"{value:.2g}" if abs(value) < 100.0 else f"{value:.0f}"
+    mantissa, exponent = f"{value:.1e}".split("e")
+    return f"{mantissa}e{int(exponent)}"
+
+
+def duration(seconds: float) -> str:
+    """Seconds in the unit that fits: 4.2 ms, 1.3 s, 2 min 05 s."""
+    if not math.isfinite(seconds):
+        return NOT_FINITE
+    if seconds >= 119.5:
+        minutes, rest = divmod(round(seconds), 60)
+        return f"{minutes} min {rest:02d} s"
+    return with_prefix(seconds, "s")
+
+
+def memory(size: float) -> str:
+    """Bytes as 52 MB."""
+    return with_prefix(size, "B")
+
+
+def with_prefix(value: float, unit: str) -> str:
+    """Three digits and a unit with a fitting prefix: 12.3 mN."""
+    if not math.isfinite(value):
+        return NOT_FINITE
+    factor, prefix = prefix_for([value])
+    return f"{_three_digits(value / factor)} {prefix}{unit}"
+
+
+def scaled_unit(value: float, unit: str) -> tuple[float, str]:
+    """Factor and unit with a fitting prefix; a ratio has neither."""
+    if unit == "1":
+        return 1.0, ""
+    factor, prefix = prefix_for([value])
+    return factor, f"{prefix}{unit}"
+
+
+def _three_digits(value: float) -> str:
+    """Three significant digits without a power of ten, for values in [0, 1000)."""
+    if value == 0.0:
+        return "0"
+    rounded = float(f"{value:.2e}")  # 0.9999 becomes 1.00, not 1.000
+    return f"{rounded:.{max(0, 2 - _leading_power(abs(rounded)))}f}"
+
+
+def base_of(method: str) -> str:
+    """The method of a label: "mdr" of "mdr", of "mdr fft" and of "mdr[fft]"."""
+    return re.split(r"[\s\[(,:]", method, maxsplit=1)[0]
+
+
+def display_name(method: str) -> str:
+    """The label with its method as readers know it, "MDR fft"; a method from elsewhere keeps its own name."""
+    base = base_of(method)
+    return NAMES.get(base, base) + method[len(base) :]
+
+
+def file_name(*parts: str) -> str:
+    """The parts in lower case, joined by dashes, without what a file system or an address could misread."""
+    words = (re.sub(r"[^\w.]+", "-", part).strip("-") for part in parts)
+    return "-".join(words).lower()
+
+
+@dataclass(frozen=True, kw_only=True)
+class Table:
+    """A table ready to print; the first `words` columns are words, the others numbers.
+
+    A row of a single cell is a heading over the rows that follow it.
+    """
+
+    title: str
+    note: str
+    heads: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+    words: int = 1
+
+
+def tabulated(
+    records: Iterable[R], columns: Mapping[str, Callable[[R], str]], *, title: str, note: str = "", words: int = 1
+) -> Table | None:
+    """A table of one row a record; None without records.
+
+    Args:
+        records: in the order of the rows.
+        columns: what each column shows of a record, by its head.
+        title: over the table.
+        note: below it.
+        words: how many of the first columns are words.
+    """
+    rows = tuple(tuple(cell(record) for cell in columns.values()) for record in records)
+    return Table(title=title, note=note, heads=tuple(columns), rows=rows, words=words) if rows else None
