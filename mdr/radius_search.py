@@ -32,6 +32,9 @@ _WITHIN_LAYER = -5.0
 _AROUND_TOP = 41
 # Breaks of a profile between which a table is refined; more are measured points, whose steps are small.
 _PER_BREAK = 4
+# Loads from which starts are interpolated between knots, and the number of these: with half of them a million loads
+# take one evaluation more.
+_MANY, _KNOTS = 20_000, 4096
 
 
 class SeveralContacts(UnsupportedSceneError):
@@ -232,7 +235,12 @@ class RadiusSearch:
             elif fall is not None:
                 return self._beyond_falls(quantity, y, (z, table), is_contact, SeveralContacts(fall))
         table = np.maximum.accumulate(table)
-        return self.refined(quantity, y, np.interp(y, table, z), np.interp(y, table, np.gradient(table, z)))
+        slope = np.gradient(table, z)
+        if y.size <= _MANY:
+            return self.refined(quantity, y, np.interp(y, table, z), np.interp(y, table, slope))
+        knots = np.linspace(y.min(), y.max(), _KNOTS)
+        inner = self.refined(quantity, knots, np.interp(knots, table, z), np.interp(knots, table, slope))
+        return self.refined(quantity, y, *_between(knots, self.scale(inner), y))
 
     def _beyond_falls(
         self,
@@ -285,8 +293,17 @@ class RadiusSearch:
                     secant = np.nan_to_num((f - f_old) / (new - old), nan=1.0)
                 slope = np.where(np.abs(new - old) > 1e-8, np.clip(secant, least, most), slope)
             old, f_old, new = new, f, new - f / slope
-            if worst < 16 * EPS or (worst < 1e-12 and worst > 0.5 * missed):
+            if worst < 1e-13 or (worst < 1e-12 and worst > 0.5 * missed):
                 break
             missed = worst
         found = self.place(new)  # what doubles cannot tell from the flat end is put there
         return np.where(found - tip.flat < 8 * EPS * tip.flat, tip.flat, found)
+
+
+def _between(knots: FloatArray, z: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """z at y by cubics with mean slopes between equidistant knots, and dy/dz."""
+    step, pace = knots[1] - knots[0], np.gradient(z)
+    i = np.minimum(((y - knots[0]) / step).astype(int), knots.size - 2)
+    s, rise = (y - knots[i]) / step, z[i + 1] - z[i]
+    bend = s * (1 - s) * ((1 - s) * (pace[i] - rise) - s * (pace[i + 1] - rise))
+    return z[i] + s * rise + bend, step / np.maximum((1 - s) * pace[i] + s * pace[i + 1], 1e-300)

@@ -46,9 +46,9 @@ _TOLERANCE, _ACCEPTABLE = 1e-13, 1e-5
 _AMONG, _ROUNDS = 41, 4
 # Share of all springs whose stiffness starts a substep in which hardly any touch.
 _LEAST = 1e-3
-# Shares of an interval before its end at which substeps begin while a force fades to zero: nothing presses in the last
-# one. With half as many 1e-6 is left.
-_FADES = 0.5 * 0.35 ** np.arange(1, 9)
+# Ratio of neighbouring substeps while a force fades to zero, twice the degree of them beyond half of its interval.
+# Nothing presses in the last one. With half as many 1e-4 is left.
+_SHORTER = 0.35
 
 
 class Steps(NamedTuple):
@@ -105,7 +105,11 @@ def steps_of(law: SpringLaw, loading: ForceHistory, substeps: int, degree: int) 
         s = np.arange(1, count + 1) / count
         way = s**2 if min(load[k], force[k]) > 0 else s**4
         if force[k + 1] <= 0:
-            way = np.concatenate([way / 2, 1 - _FADES, [1.0]]) if force[k] > 0 else np.ones(1)
+            way = (
+                np.concatenate([way / 2, 1 - 0.5 * _SHORTER ** np.arange(1, 2 * degree), [1.0]])
+                if force[k] > 0
+                else np.ones(1)
+            )
         time.append(np.append(ends[k] + durations[k] * way[:-1], ends[k + 1]))
     every = np.concatenate(time)
     nodes = (1 - np.cos(np.pi * np.arange(1, degree + 1) / degree)) / 2
@@ -198,7 +202,7 @@ class March:
                 ways[k], bed, touching = self._met(bed, float(depth[k]), k, span)
             pressed = steps.force[k + 1] > 0 or self.known[k]
             depth[k + 1] = ways[k].sum() if pressed else np.min(bed.surface + bed.g)
-            self.depth[k] = np.vander(steps.nodes, degree + 1, increasing=True) @ ways[k]
+            self.depth[k] = np.vander(steps.nodes, degree + 1, increasing=True) @ ways[k] if pressed else depth[k + 1]
             trace.instants.append(steps.instants[k])
             trace.first.append(np.argmin(np.pad(touching, ((0, 0), (0, 1))), axis=1))
             trace.times += [steps.time[k] + span * share for share, _ in bed.events]
@@ -297,13 +301,16 @@ class Trace:
         recedes = last[1] > last[0]
         passed, coming = (outer, inner) if recedes else (inner, outer)
         before, after = max(last), later[0 if recedes else 1]
+        if not np.isfinite(before):
+            return float((self.radius[inner] + self.radius[outer]) / 2)
         way = self.radius[coming] - self.radius[passed]
         if after < later[1 if recedes else 0]:
             return float(self.radius[passed] + way * (t - before) / (after - before))
         beyond = min(max(2 * passed - coming, 0), self.radius.size - 1)
         earlier = time[(spring == beyond) & (time < before)].max(initial=-np.inf)
-        pace = (self.radius[passed] - self.radius[beyond]) / (before - earlier)
-        share = pace * (t - before) / way if np.isfinite(pace) and way else 0.5
+        if not (np.isfinite(earlier) and way):
+            return float(self.radius[passed] + way / 2)
+        share = (self.radius[passed] - self.radius[beyond]) / (before - earlier) * (t - before) / way
         return float(self.radius[passed] + way * min(max(share, 0.0), 1.0))
 
 
