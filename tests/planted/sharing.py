@@ -273,13 +273,13 @@ FAULTS = (
     SharedFault(
         "laws and points of fields inside",
         "points",
-        swap("cases.run.inside.points:fields_at", shrunk_points),
+        swap("cases.recording:fields_at", shrunk_points),
         ("inside half-space",),
     ),
     SharedFault(
         "laws and points of fields inside",
         "weights of the laws",
-        swap("cases.run.inside.laws:_disc", heavier),
+        swap("cases.inside_laws:_disc", heavier),
         ("inside half-space",),
     ),
     SharedFault(
@@ -350,7 +350,7 @@ FAULTS = (
         )
         for end in ("surface", "base")
     ),
-    SharedFault("record of an answer", "values", swap("cases.run.recording:_quantity", misread), ELASTIC),
+    SharedFault("record of an answer", "values", swap("cases.recording:_quantity", misread), ELASTIC),
     SharedFault(
         "rings on which pressures are compared",
         "places of the samples",
