@@ -28,6 +28,8 @@ LARGEST_CHANGE, WANTED_CHANGE = 0.2, 0.05
 MOST = 16
 # Least restitution. Below, contact ends after its force has fallen under its roundings.
 LEAST_LEFT = 3e-8
+# Share of the peak below which a force may be roundings: the time that contact still lasts is stated of its end.
+ROUNDING_FORCE = 1e-12
 # A channel counts as near its peak from this share of it on: the largest change there is stated of the peak.
 NEAR_PEAK = 0.9
 # The channel of each peak.
@@ -153,6 +155,7 @@ class ImpactSolver:
         for name in (*answer.SCALARS, "coefficient_of_restitution", "contact_time"):
             errors[name] = np.array([SAFETY * sum(_scalar_change(*pair, name) for pair in pairs) + FLOOR])
         errors["coefficient_of_restitution"] += _energy_lost(answer)
+        errors["contact_time"] += _end_by_roundings(answer)
         reading = self._reading(answer, setup)
         for name in ("contact_radius", "peak_contact_radius"):
             errors[name] = errors[name] + reading
@@ -172,6 +175,13 @@ def _energy_lost(answer: ImpactHistory) -> float:
         return 0.0  # a dashpot's dissipation is summed to first order in the steps
     total = answer.kinetic_energy + answer.stored_energy + answer.dissipated_energy
     return float(abs(total[-1] - total[0]) / (2.0 * answer.kinetic_energy[-1]))
+
+
+def _end_by_roundings(answer: ImpactHistory) -> float:
+    """Share of the contact time in which the force is roundings: a strong dashpot lets it fade like e^-st."""
+    presses = np.flatnonzero(answer.normal_force > ROUNDING_FORCE * answer.peak_force)
+    following = answer.time[min(presses[-1] + 1, len(answer) - 1)]
+    return float(1.0 - following / answer.time[-1])
 
 
 def _scalar_change(answer: ImpactHistory, companion: ImpactHistory, name: str) -> float:

@@ -19,6 +19,7 @@ for name in ("resource", "fcntl", "termios", "pwd", "grp", "syslog"):
 sys.meta_path.insert(0, Blocked())
 for name in ("SIGALRM", "SIGPIPE", "SIGKILL", "SIGHUP", "ITIMER_REAL", "setitimer", "alarm", "pause"):
     delattr(signal, name)
+subprocess.Popen.kill = subprocess.Popen.terminate  # as on Windows
 """
 IMPORT_ALL = """
 import importlib, pkgutil
