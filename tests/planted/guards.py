@@ -2,6 +2,7 @@
 
 import dataclasses
 import importlib
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import pytest
@@ -51,6 +52,8 @@ class Claims:
 
     def _narrowed(self, claim):
         own = {} if isinstance(claim, Agree | Order) else {"methods": self.methods}
+        if isinstance(expected := getattr(claim, "to", None), Mapping):
+            own["to"] = {name: values for name, values in expected.items() if name in self.scenes}
         return dataclasses.replace(claim, scenes=self.scenes, **own)
 
 
