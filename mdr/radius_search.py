@@ -302,8 +302,10 @@ class RadiusSearch:
 
 def _between(knots: FloatArray, z: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
     """z at y by cubics with mean slopes between equidistant knots, and dy/dz."""
-    step, pace = knots[1] - knots[0], np.gradient(z)
-    i = np.minimum(((y - knots[0]) / step).astype(int), knots.size - 2)
-    s, rise = (y - knots[i]) / step, z[i + 1] - z[i]
-    bend = s * (1 - s) * ((1 - s) * (pace[i] - rise) - s * (pace[i + 1] - rise))
-    return z[i] + s * rise + bend, step / np.maximum((1 - s) * pace[i] + s * pace[i + 1], 1e-300)
+    step, rise, pace = knots[1] - knots[0], np.diff(z), np.gradient(z)
+    before, after = pace[:-1] - rise, pace[1:] - rise
+    s = (y - knots[0]) / step
+    i = np.minimum(s.astype(int), rise.size - 1)
+    s -= i
+    found = z[i] + s * (pace[i] - s * ((2 * before + after)[i] - s * (before + after)[i]))
+    return found, step / np.maximum(pace[i] + s * (after - before)[i], 1e-300)
