@@ -75,7 +75,7 @@ def solve_elastic(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
         values = springs.at(radius)
         state = _states(scene, springs, radius, values)
         _refuse_inadmissible(scene, springs, state)
-        errors = ElasticErrors(scene, springs, state, values).stated()
+        errors = StatedErrors(ElasticErrors(scene, springs, state, values).stated(), "mdr")
     return ContactPath(
         scene=scene,
         method="mdr",
@@ -84,7 +84,7 @@ def solve_elastic(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
         indentation_depth=state.depth,
         normal_force=state.force,
         contact_stiffness=state.stiffness,
-        error_estimate=StatedErrors(errors, "mdr"),
+        error_estimate=errors,
         cost=log.cost(unknowns=springs.punches.unknowns(float(radius.max()) / springs.unit)),
         stages=log.records,
         notes=told_of_friction(scene.layer, state.radius),
