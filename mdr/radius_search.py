@@ -14,7 +14,7 @@ from typing import Literal
 import numpy as np
 
 from bem.numerics import EPS
-from contact import InvalidInput, Profile, UnsupportedSceneError
+from contact import InvalidInput, NotConvergedError, Profile, UnsupportedSceneError
 from contact.records.validation import FloatArray
 from mdr.spring_bed import Springs
 
@@ -25,7 +25,9 @@ _NEAR_END, _CLOSER = 0.7, (0.2, 0.05, 0.01, 1e-3, 1e-6)
 # Radii per e-fold of the rough table. Half as many cost one more secant step.
 _DENSITY = 6
 # Secant steps before a search gives up; four are usual.
-_MOST_STEPS = 12
+_MOST_STEPS = 24
+# Largest miss of the logarithm of a load, over that of the radius, with which a search ends; a hundredth is usual.
+_MISSED = 1e-11
 # ln(a/h) below which the layers under the first change g too little to let it fall.
 _WITHIN_LAYER = -5.0
 # Places around each maximum of g. Half as many miss depths within 0.3 % of the maximum.
@@ -283,7 +285,7 @@ class RadiusSearch:
         """Radii [m] with these logarithms by secants from a start and its slope."""
         tip = self.springs.tip
         slope = np.maximum(slope, 1e-3)
-        least, most, missed = 0.5 * slope, 2 * slope, np.inf
+        least, most, missed = slope / 8, 8 * slope, np.inf
         new, old, f_old = z, z, z
         for number in range(_MOST_STEPS):
             f = self.logarithm(self.springs, quantity, new) - y
@@ -297,7 +299,11 @@ class RadiusSearch:
                 break
             missed = worst
         found = self.place(new)  # what doubles cannot tell from the flat end is put there
-        return np.where(found - tip.flat < 8 * EPS * tip.flat, tip.flat, found)
+        found = np.where(found - tip.flat < 8 * EPS * tip.flat, tip.flat, found)
+        missed = float((np.abs(f) * (found - tip.flat) / np.maximum(found, 1e-300)).max(initial=0.0))
+        if missed > _MISSED:
+            raise NotConvergedError("the contact radius was not found", {"missed": missed})
+        return found
 
 
 def _between(knots: FloatArray, z: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
