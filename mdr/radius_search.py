@@ -25,9 +25,9 @@ _NEAR_END, _CLOSER = 0.7, (0.2, 0.05, 0.01, 1e-3, 1e-6)
 # Radii per e-fold of the rough table. Half as many cost one more secant step.
 _DENSITY = 6
 # Secant steps before a search gives up; four are usual.
-_MOST_STEPS = 24
-# Largest miss of the logarithm of a load, over that of the radius, with which a search ends; a hundredth is usual.
-_MISSED = 1e-11
+_MOST_STEPS = 40
+# Largest last step over the radius with which a search ends; a thousandth of it is usual.
+_MOVED = 1e-10
 # ln(a/h) below which the layers under the first change g too little to let it fall.
 _WITHIN_LAYER = -5.0
 # Places around each maximum of g. Half as many miss depths within 0.3 % of the maximum.
@@ -285,7 +285,7 @@ class RadiusSearch:
         """Radii [m] with these logarithms by secants from a start and its slope."""
         tip = self.springs.tip
         slope = np.maximum(slope, 1e-3)
-        least, most, missed = slope / 8, 8 * slope, np.inf
+        least, most, missed = 0.5 * slope, 2 * slope, np.inf
         new, old, f_old = z, z, z
         for number in range(_MOST_STEPS):
             f = self.logarithm(self.springs, quantity, new) - y
@@ -298,12 +298,12 @@ class RadiusSearch:
             if worst < 1e-13 or (worst < 1e-12 and worst > 0.5 * missed):
                 break
             missed = worst
-        found = self.place(new)  # what doubles cannot tell from the flat end is put there
-        found = np.where(found - tip.flat < 8 * EPS * tip.flat, tip.flat, found)
-        missed = float((np.abs(f) * (found - tip.flat) / np.maximum(found, 1e-300)).max(initial=0.0))
-        if missed > _MISSED:
-            raise NotConvergedError("the contact radius was not found", {"missed": missed})
-        return found
+        found = self.place(new)
+        moved = float((np.abs(found - self.place(old)) / np.maximum(found, 1e-300)).max(initial=0.0))
+        if moved > _MOVED:
+            raise NotConvergedError("the contact radius was not found", {"last step over the radius": moved})
+        # What doubles cannot tell from the flat end is put there.
+        return np.where(found - tip.flat < 8 * EPS * tip.flat, tip.flat, found)
 
 
 def _between(knots: FloatArray, z: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -240,7 +240,7 @@ def test_a_table_that_begins_flat_is_refused_by_name():
 
 
 def test_a_single_depth_whose_search_starts_with_a_wrong_slope_is_found():
-    """Twelve secant steps left the radius 5e-11 off where 7e-15 was stated: slopes were held to half the first."""
+    """Twelve secant steps left the radius 5e-11 off where 7e-15 was stated: slopes are held to half the first."""
     radii, heights = [0.0, 0.2, 0.45, 0.6, 0.9, 1.3, 1.5], 0.05 * np.array([0.0, 0.03, 0.2, 0.4, 0.85, 1.8, 2.4])
     layer = Layer.half_space(youngs_modulus=3.0, poissons_ratio=0.5)
     table = Tabulated(radii=radii, heights=heights)
