@@ -60,7 +60,7 @@ sphinx_gallery_conf = {
     "examples_dirs": ["tutorials", "gallery"],
     "gallery_dirs": ["start", "figures"],
     "filename_pattern": r"\.py$",
-    "ignore_pattern": r"/_",
+    "ignore_pattern": r"^_",
     "abort_on_example_error": True,
     "download_all_examples": False,
     "show_memory": False,
