@@ -23,7 +23,7 @@ from contact.answer.small_strains import depth_note, depths_of
 from contact.answer.solution import scene_line
 from contact.records.units import prefix_for
 from contact.records.validation import FloatArray
-from reports.words import Table, display_name, duration, measured, memory, scaled_unit, small
+from reports.words import Table, display_name, duration, measured, memory, quantity_words, scaled_unit, small
 
 if TYPE_CHECKING:
     from cases.measurements.sweep import Sweep
@@ -116,7 +116,7 @@ def difference_table(solution: Solution, other: Solution) -> Table:
         scale = float(np.max(np.abs(values))) or 1.0
         stated = np.hypot(_uncertainty(solution, name), _uncertainty(other, name))[step] / scale
         difference = float(abs(values[step] - others[step])) / scale
-        rows.append((name.replace("_", " "), small(difference), small(stated) if np.isfinite(stated) else "(?)"))
+        rows.append((quantity_words(name), small(difference), small(stated) if np.isfinite(stated) else "(?)"))
     return Table(
         title=f"{display_name(solution.method)} against {display_name(other.method)}",
         note="Largest difference over all states, over the largest value; stated: by both methods together, there.",
@@ -128,9 +128,9 @@ def difference_table(solution: Solution, other: Solution) -> Table:
 def solution_facts(solution: Solution) -> list[tuple[str, str]]:
     """What is said once of an answer: critical values, cost, own error estimate, notes but that on the depth."""
     # Pull-off of a detachment, restitution and peaks of an impact; nothing for a plain path.
-    facts = [(name.replace("_", " "), _critical_value(solution, name)) for name in single_numbers(solution)]
+    facts = [(quantity_words(name), _critical_value(solution, name)) for name in single_numbers(solution)]
     worst = {name: float(np.max(error)) for name, error in solution.error_estimate.items() if np.size(error)}
-    estimates = ", ".join(f"{name.replace('_', ' ')} {small(error)}" for name, error in worst.items())
+    estimates = ", ".join(f"{quantity_words(name)} {small(error)}" for name, error in worst.items())
     facts += [("relative error estimate", estimates)] if estimates else []
     facts += [("cost", f"{duration(solution.cost.wall_seconds)}, {solution.cost.unknowns} unknowns")]
     facts += [("stages", ", ".join(map(_stage, solution.stages)))] if solution.stages else []
@@ -162,7 +162,7 @@ def _stage(stage: StageRecord) -> str:
     """The effect ledger in words: what ran, how long, how often, and the bytes it declared."""
     times = "" if stage.calls == 1 else f" in {stage.calls} calls"
     size = f", {memory(stage.bytes)}" if stage.bytes else ""
-    return f"{stage.name.replace('_', ' ')} {duration(stage.wall_seconds)}{times}{size}"
+    return f"{quantity_words(stage.name)} {duration(stage.wall_seconds)}{times}{size}"
 
 
 # Pairs of quantities are listed where they move together at least so much.
@@ -172,7 +172,7 @@ TOGETHER = 0.5
 def propagated_table(found: "Propagated") -> Table:
     """Value, numerical error, uncertainty by the inputs and what each input contributes, of the last step."""
     names = list(found.quantities[0].by_input) if found.quantities else []
-    words = [one.name.replace("_", " ") for one in found.quantities]
+    words = [quantity_words(one.name) for one in found.quantities]
     note = "Standard uncertainty by the inputs at the last step, beside the error of the method; "
     note += f"{found.solved} scenes solved{'' if names else ', by samples'}."
     if bent := [word for word, one in zip(words, found.quantities, strict=True) if one.bends]:
@@ -190,7 +190,7 @@ def _row(one: "PropagatedQuantity", names: list[str]) -> tuple[str, ...]:
     factor, unit = scaled_unit(value, one.unit)
     size = abs(value) or 1.0
     return (
-        one.name.replace("_", " "),
+        quantity_words(one.name),
         f"{measured(value / factor, spread / factor) if spread else f'{value / factor:.6g}'} {unit}".strip(),
         "(?)" if one.numerical is None else small(float(one.numerical[-1]) / size),
         f"{small(spread / factor)} {unit}".strip(),

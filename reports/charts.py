@@ -1,7 +1,8 @@
 """Pictures of a run and of its cases, drawn from verdicts, answers and studies; one colour per method."""
 
 import math
-from collections.abc import Iterable, Sequence
+import re
+from collections.abc import Iterable, Mapping, Sequence
 from functools import partial
 from textwrap import shorten
 
@@ -12,11 +13,11 @@ from cases.cost import pareto_front
 from cases.runs import CaseText, Run
 from cases.studies import CostOfAccuracy, StressTest
 from cases.verdicts import Status, Verdict
-from reports.findings import grouped, quantity_words, who
+from reports.findings import grouped, who
 from reports.study_charts import SMALLEST, Picture, finished, logarithmic, study_pictures
 from reports.style import GREY, TINT, VERMILLION, look_of, mark_decades
 from reports.tables import compared, completed, difference, end_of, fewest_digits, timed_methods
-from reports.words import display_name, file_name
+from reports.words import display_name, file_name, quantity_words
 
 # The worst comparisons of a case that are drawn; its table holds the rest.
 WORST_DRAWN = 12
@@ -26,12 +27,13 @@ FRONT = (4.7, 3.9)
 MOST_CURVES = 8
 # The quantity that stands for an answer: the first of these that it has.
 SHOWN_QUANTITIES = (
-    "normal_force",
     "pull_off_force",
     "coefficient_of_restitution",
+    "normal_force",
     "contact_stiffness",
     "indentation_depth",
 )
+UNITS_OF_PARAMETERS = {"thickness": " [m]"}
 # Letters of a scene beside a row: more leave no room for the axes.
 LONGEST = 40
 Place = tuple[float, float]
@@ -81,7 +83,7 @@ def _stated(verdict: Verdict) -> float:
 
 
 def _draw_costs(costs: Sequence[CostOfAccuracy]) -> Figure:
-    drawing, axes = logarithmic(FRONT, "seconds", "bound of the relative error")
+    drawing, axes = logarithmic(FRONT, "median time [s]", "bound of the relative error")
     fronts = [pareto_front(points, 0.0) for cost in costs for points in timed_methods(cost).values()]
     for method, points in grouped((p for front in fronts for p in front), lambda p: p.method).items():
         _symbols(axes, [(p.seconds, p.bound or SMALLEST) for p in points], (method,))
@@ -126,7 +128,7 @@ def _draw_agreement(found: Sequence[Verdict]) -> Figure:
 
 
 def _over_parameter(run: Run, case: CaseText) -> Picture | None:
-    """The answers over the parameter of the scenes with most numbers; None without a parameter of three numbers."""
+    """The answers over the parameter with most numbers; None where no line joins three scenes."""
     numbers: dict[str, set[float]] = {}
     for parameters in case.scenes.values():
         for name, value in parameters.items():
@@ -137,18 +139,29 @@ def _over_parameter(run: Run, case: CaseText) -> Picture | None:
     curves: dict[tuple[str, str], list[Place]] = {}
     for answer in (one for one in answers if quantity in one.quantities):
         parameters = case.scenes.get(answer.scene, {})
-        group = ", ".join(f"{value}" for other, value in parameters.items() if other != name)
+        group = _group(answer.scene, {other: value for other, value in parameters.items() if other != name})
         for x in _positive(parameters.get(name, "")):
             for y in _positive(abs(answer.quantities[quantity].values[-1])):
                 curves.setdefault((group, answer.method), []).append((x, y))
-    if not curves or len(numbers[name]) < 3:
+    if max(map(len, curves.values()), default=0) < 3:
         return None
     groups = sorted(dict.fromkeys(group for group, _ in curves), key=lambda g: -len(curves.get((g, "mdr"), ())))
     shown = {place: curve for place, curve in curves.items() if place[0] in groups[:MOST_CURVES]}
     unit = next(a.quantities[quantity].unit for a in answers if quantity in a.quantities)
-    label = name.replace("_over_", "/")
-    draw = partial(_draw_over, shown, label, f"{quantity_words(quantity)} [{unit}]")
-    return Picture(file_name(case.name, "answers"), f"{quantity_words(quantity).capitalize()} over {label}", draw)
+    label, words = _parameter_words(name), quantity_words(quantity)
+    draw = partial(_draw_over, shown, label + UNITS_OF_PARAMETERS.get(name, ""), words + f" [{unit}]" * (unit != "1"))
+    return Picture(file_name(case.name, "answers"), f"{words.capitalize()} over {label}", draw)
+
+
+def _group(scene: str, others: Mapping[str, object]) -> str:
+    """What the scenes of a line share: the other parameters, and the words of the scene's name without its numbers."""
+    shared = ", ".join(v if isinstance(v, str) else f"{_parameter_words(name)} = {v}" for name, v in others.items())
+    words = re.sub(r"\S+=\S+( [mun]m\b)?", "", scene).replace(",", " ").split()
+    return ", ".join(filter(None, (" ".join(word for word in words if word not in shared), shared)))
+
+
+def _parameter_words(name: str) -> str:
+    return quantity_words(name.replace("_over_", "/"))
 
 
 def _positive(value: object) -> tuple[float, ...]:

@@ -20,7 +20,7 @@ from contact import (
 from contact.records.units import prefix_for
 from contact.records.validation import FloatArray
 from reports.style import BLACK, line_with_band, look_of, panels
-from reports.words import display_name
+from reports.words import display_name, quantity_words
 
 # Points of a line, about: half as many show corners in a printed figure.
 POINTS = 240
@@ -121,7 +121,7 @@ def sweep_figure(found: Sweep) -> Figure:
 def _scaled(values: FloatArray, head: str) -> tuple[FloatArray, str]:
     """Values in a unit with a fitting prefix, and their label."""
     name, bracket, unit = head.partition(" [")
-    words = name.replace("_", " ")
+    words = quantity_words(name)
     if not bracket:
         return values, words
     factor, prefix = prefix_for(values.tolist())

@@ -7,13 +7,14 @@ from typing import Any, NamedTuple
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from cases.runs import Run
 from cases.studies import Convergence, CostOfAccuracy, Grid, StressTest
-from reports.findings import grouped, quantity_words
+from reports.findings import grouped
 from reports.style import BLACK, GREY, look_of, mark_decades, panels
 from reports.tables import observed_order, timed_methods
-from reports.words import display_name, file_name
+from reports.words import display_name, file_name, quantity_words
 
 # Errors below this are roundings and are drawn at it.
 SMALLEST = 1e-17
@@ -38,7 +39,7 @@ def study_pictures(run: Run, case: str) -> list[Picture]:
     orders, digits = "Convergence: error under refinement", "Stress tests: digits left as a parameter gets hard"
     return [
         *_in_panels(case, "convergence", orders, list(studies.values()), _draw_convergence),
-        *(_cost(cost) for cost in run.judged.costs if cost.case == case),
+        *(_cost(cost) for cost in run.judged.costs if cost.case == case and len(cost.points) > 1),
         *_in_panels(case, "stress-tests", digits, list(tests.values()), _draw_stress_test),
     ]
 
@@ -89,6 +90,8 @@ def _draw_convergence(axes: Axes, studies: Sequence[Convergence]) -> None:
     bottom, top = axes.get_ylim()
     axes.set_ylim(bottom, top * (top / bottom) ** (0.1 * len(studies)))
     mark_decades(axes.yaxis, *([] if exponential else [axes.xaxis]))
+    if exponential:
+        axes.xaxis.set_major_locator(MaxNLocator(integer=True))
     axes.legend(loc="upper left")
 
 
@@ -163,10 +166,9 @@ def _draw_stress_test(axes: Axes, tests: Sequence[StressTest]) -> None:
         look = look_of(test.method)
         done = [(step.value, step.digits) for step in test.steps if step.digits is not None]
         axes.plot(*zip(*done, strict=True), color=look.colour, marker=look.marker, label=display_name(test.method))
-        stopped = [step.value for step in test.steps if step.digits is None]
-        axes.plot(
-            stopped, [0.0] * len(stopped), "x", color=look.colour, markersize=8, markeredgewidth=2.0, clip_on=False
-        )
+        # One line per symbol: an empty line that is not clipped has no extent, and the layout would fail.
+        for value in (step.value for step in test.steps if step.digits is None):
+            axes.plot([value], [0.0], "x", color=look.colour, markersize=8, markeredgewidth=2.0, clip_on=False)
     if first.steps[-1].value < first.steps[0].value:
         axes.invert_xaxis()
     mark_decades(axes.xaxis)

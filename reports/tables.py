@@ -11,8 +11,18 @@ from cases.runs import Run
 from cases.studies import Convergence, CostOfAccuracy, Effect, Point, StressTest
 from cases.verdicts import Kind, Status, Verdict
 from contact import UNITS
-from reports.findings import grouped, quantity_words, severity, tone_of, who, word_of
-from reports.words import Table, display_name, duration, measured, memory, scaled_unit, small, tabulated
+from reports.findings import grouped, severity, tone_of, who, word_of
+from reports.words import (
+    Table,
+    display_name,
+    duration,
+    measured,
+    memory,
+    quantity_words,
+    scaled_unit,
+    small,
+    tabulated,
+)
 
 # Accuracies that tables of costs show.
 SHOWN = (1e-2, 1e-4, 1e-6, 1e-8)

@@ -78,6 +78,21 @@ def small(value: float) -> str:
     return f"{mantissa}e{int(exponent)}"
 
 
+def signed(value: float) -> str:
+    """A relative error to two digits with its sign: +3.2e-6."""
+    return f"{'+' * (value > 0.0)}{small(value)}"
+
+
+def short_exponents(text: str) -> str:
+    """The text with its powers of ten as `small` writes them: 1e-6 for 1e-06, 1e5 for 1e+05."""
+    return re.sub(r"(?<=\d)e(?:\+|(-))0?(\d+)\b", lambda found: f"e{found[1] or ''}{found[2]}", text)
+
+
+def quantity_words(name: str) -> str:
+    """The name of a quantity or parameter as words: pull-off force, Poisson's ratio."""
+    return name.replace("_", " ").replace("pull off", "pull-off").replace("poissons", "Poisson's")
+
+
 def duration(seconds: float) -> str:
     """Seconds in the unit that fits: 4.2 ms, 1.3 s, 2 min 05 s."""
     if not math.isfinite(seconds):
