@@ -124,7 +124,9 @@ def relative_distance(study: Convergence, grid: Grid) -> float:
 
 
 def _cost(cost: CostOfAccuracy) -> Picture:
-    title = f"Error against seconds: {quantity_words(cost.quantity)}, {cost.scene}, against {cost.reference}"
+    title = (
+        f"Error against seconds: {quantity_words(cost.quantity)}, {cost.scene}, against {display_name(cost.reference)}"
+    )
     return Picture(file_name(cost.case, "cost", cost.scene, cost.quantity), title, partial(_draw_cost, cost))
 
 

@@ -290,15 +290,15 @@ def stress_tests(tests: Sequence[StressTest]) -> Table | None:
             "test": lambda test: test.name,
             "method": lambda test: display_name(test.method),
             "parameter": lambda test: test.parameter,
-            "why it stopped": _why_stopped,
             "end": end_of,
+            "why it stopped": _why_stopped,
             "fewest digits": fewest_digits,
             "residual": lambda test: small(max((r for s in test.steps for r in s.residuals.values()), default=0.0)),
         },
         title="Stress tests",
         note="Digits: those that perturbed repeats share at the worst completed step. Residual: the largest of any law "
         "of mechanics there, independent answers and stated errors included.",
-        words=4,
+        words=5,
     )
 
 

@@ -28,7 +28,7 @@ method. A step may be refused with a named error. A number beyond its stated err
 WHY = Why(
     Origin.INDEPENDENT_METHOD,
     "laws of mechanics, repeats, and the fast method",
-    "a method may refuse a scene by name, but a number it gives has to lie within the error it states",
+    "a method may refuse a scene with a reason, but a number it gives has to lie within the error it states",
     "half a step: not one may fail",
 )
 
@@ -105,7 +105,7 @@ def worse_than(test: StressTest, accepted: StressTest) -> list[str]:
 
 
 def no_silent_failure(test: StressTest) -> Verdict:
-    """Return the verdict that every step was answered or refused by name; its error is the number that was not."""
+    """Return the verdict that every step was answered or refused with a reason; its error counts the others."""
     failed = [step for step in test.steps if step.status == Status.FAIL]
     worst = f"; {test.parameter} = {failed[0].value:g}: {failed[0].reason}" if failed else ""
     judged = judge_residual(float(len(failed)), tolerance=0.5)
