@@ -161,9 +161,9 @@ class Effect:
 
     @property
     def line(self) -> str:
-        """In words: "viscosity: 61 % of the time, changes peak force by 0.02 %"."""
+        """In words: "without it peak force changes by 0.02 %. It takes 61 % of the run time."."""
         if not self.changes:
-            return f"{self.part}: {self.remark}"
+            return self.remark
         quantity = max(self.changes, key=lambda name: self.changes[name])
-        changed = f"changes {quantity.replace('_', ' ')} by {100 * self.changes[quantity]:.2g} %"
-        return f"{self.part}: {100 * self.share_of_time:.0f} % of the time, {changed}"
+        changed = f"without it {quantity.replace('_', ' ')} changes by {100 * self.changes[quantity]:.2g} %"
+        return f"{changed}. It takes {100 * self.share_of_time:.0f} % of the run time."

@@ -15,15 +15,27 @@ from contact import (
     HistoryPath,
     ImpactHistory,
     InvalidInput,
+    Layer,
     Solution,
     StageRecord,
 )
 from contact.answer.evidence import SYMBOLS
+from contact.answer.friction import told_of_friction
 from contact.answer.small_strains import depth_note, depths_of
 from contact.answer.solution import scene_line
 from contact.records.units import prefix_for
 from contact.records.validation import FloatArray
-from reports.words import Table, display_name, duration, measured, memory, quantity_words, scaled_unit, small
+from reports.words import (
+    Table,
+    display_name,
+    duration,
+    measured,
+    memory,
+    quantity_words,
+    scaled_column,
+    scaled_unit,
+    small,
+)
 
 if TYPE_CHECKING:
     from cases.measurements.sweep import Sweep
@@ -125,18 +137,23 @@ def difference_table(solution: Solution, other: Solution) -> Table:
     )
 
 
+def critical_facts(solution: Solution) -> list[tuple[str, str]]:
+    """Pull-off of a detachment, restitution and peaks of an impact; nothing for a plain path."""
+    return [(quantity_words(name), _critical_value(solution, name)) for name in single_numbers(solution)]
+
+
 def solution_facts(solution: Solution) -> list[tuple[str, str]]:
-    """What is said once of an answer: critical values, cost, own error estimate, notes but that on the depth."""
-    # Pull-off of a detachment, restitution and peaks of an impact; nothing for a plain path.
-    facts = [(quantity_words(name), _critical_value(solution, name)) for name in single_numbers(solution)]
+    """Error estimate, cost, scene and notes of an answer, without the notes that the command prints more closely."""
     worst = {name: float(np.max(error)) for name, error in solution.error_estimate.items() if np.size(error)}
     estimates = ", ".join(f"{quantity_words(name)} {small(error)}" for name, error in worst.items())
-    facts += [("relative error estimate", estimates)] if estimates else []
+    facts = [("relative error estimate", estimates)] if estimates else []
     facts += [("cost", f"{duration(solution.cost.wall_seconds)}, {solution.cost.unknowns} unknowns")]
     facts += [("stages", ", ".join(map(_stage, solution.stages)))] if solution.stages else []
     facts += [("scene", scene_line(solution.scene))]
-    above = depth_note(solution.scene, depths_of(solution))
-    return facts + [("note", note) for note in solution.notes if note != above]
+    elsewhere = [depth_note(solution.scene, depths_of(solution))]
+    if isinstance(solution.scene.layer, Layer) and isinstance(solution, ContactPath):
+        elsewhere += told_of_friction(solution.scene.layer, solution.contact_radius)
+    return facts + [("note", note) for note in solution.notes if note not in elsewhere]
 
 
 def _critical_value(solution: Solution, name: str) -> str:
@@ -165,7 +182,7 @@ def _stage(stage: StageRecord) -> str:
     return f"{quantity_words(stage.name)} {duration(stage.wall_seconds)}{times}{size}"
 
 
-# Pairs of quantities are listed where they move together at least so much.
+# Pairs of quantities are listed from this correlation on.
 TOGETHER = 0.5
 
 
@@ -179,7 +196,7 @@ def propagated_table(found: "Propagated") -> Table:
         note += f" Not linear over these uncertainties: {', '.join(bent)}; --samples takes the whole of it."
     pairs = [(words[i], words[j], float(found.correlation[i, j])) for j in range(len(words)) for i in range(j)]
     if together := [f"{a} and {b} ({share:+.2f})" for a, b, share in pairs if abs(share) >= TOGETHER]:
-        note += f" Moving together: {', '.join(together)}."
+        note += f" Correlated: {', '.join(together)}."
     heads = ("quantity", "value", "numerical error", "by inputs", "relative", *names)
     rows = tuple(_row(one, names) for one in found.quantities)
     return Table(title="Uncertain inputs", note=note, heads=heads, rows=rows)
@@ -207,8 +224,9 @@ def sweep_table(found: "Sweep") -> Table:
             name, bracket, unit = head.partition(" [")
             errors = columns.get(f"{name}_uncertainty{bracket}{unit}", np.zeros_like(values))
             exact = ~np.isfinite(errors) | (values == 0.0)
-            numbers = zip(values.tolist(), np.where(exact, 0.0, errors).tolist(), strict=True)
-            texts[head] = [f"{value:.6g}" if error == 0.0 else _readable(value, error) for value, error in numbers]
+            factor, words = scaled_column(head, values.tolist())
+            numbers = zip((values / factor).tolist(), (np.where(exact, 0.0, errors) / factor).tolist(), strict=True)
+            texts[words] = [f"{value:.6g}" if error == 0.0 else _readable(value, error) for value, error in numbers]
     note = "Digits in brackets: uncertainty of the last digits. A number without brackets is right to the digits shown."
     rows = tuple(zip(*texts.values(), strict=True))
-    return Table(title=f"Over {found.swept.name}", note=note, heads=tuple(texts), rows=rows, words=0)
+    return Table(title=f"Over {quantity_words(found.swept.name)}", note=note, heads=tuple(texts), rows=rows, words=0)

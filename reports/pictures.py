@@ -17,10 +17,9 @@ from contact import (
     Scene,
     Solution,
 )
-from contact.records.units import prefix_for
 from contact.records.validation import FloatArray
 from reports.style import BLACK, line_with_band, look_of, panels
-from reports.words import display_name, quantity_words
+from reports.words import display_name, scaled_column
 
 # Points of a line, about: half as many show corners in a printed figure.
 POINTS = 240
@@ -109,20 +108,13 @@ def sweep_figure(found: Sweep) -> Figure:
     size = (ALONE * SIZE[0], ALONE * SIZE[1]) if len(varied) == 1 else SIZE
     drawing, all_axes = panels(len(varied), size=size)
     for axes, head in zip(all_axes, varied, strict=True):
-        (x, x_label), (y, y_label) = (_scaled(columns[name], name) for name in (x_head, head))
+        (x_factor, x_label), (y_factor, y_label) = (
+            scaled_column(name, columns[name].tolist()) for name in (x_head, head)
+        )
         axes.set(xlabel=x_label, ylabel=y_label)
+        x, y = columns[x_head] / x_factor, columns[head] / y_factor
         for state in range(states):
             axes.plot(x[state::states], y[state::states], label=f"state {state + 1}")
     if 1 < states <= MOST_NAMED:
         drawing.legend(handles=all_axes[0].lines, loc="outside lower center", ncols=min(states, 4))
     return drawing
-
-
-def _scaled(values: FloatArray, head: str) -> tuple[FloatArray, str]:
-    """Values in a unit with a fitting prefix, and their label."""
-    name, bracket, unit = head.partition(" [")
-    words = quantity_words(name)
-    if not bracket:
-        return values, words
-    factor, prefix = prefix_for(values.tolist())
-    return values / factor, f"{words} [{prefix}{unit}"

@@ -46,7 +46,7 @@ def measured(value: float, uncertainty: float) -> str:
     if uncertainty == 0.0:
         return f"{value:.12g}"
     exponent = _leading_power(max(abs(value), uncertainty))
-    if SMALLEST_PLAIN <= max(abs(value), uncertainty) < LARGEST_PLAIN and uncertainty < 10.0:
+    if SMALLEST_PLAIN <= max(abs(value), uncertainty) < LARGEST_PLAIN and uncertainty <= 99.0:
         return _bracketed(value, uncertainty, exponent)
     scale = 10.0**exponent
     return f"{_bracketed(value / scale, uncertainty / scale, 0)}e{exponent}"
@@ -90,7 +90,12 @@ def short_exponents(text: str) -> str:
 
 def quantity_words(name: str) -> str:
     """The name of a quantity or parameter as words: pull-off force, Poisson's ratio."""
-    return name.replace("_", " ").replace("pull off", "pull-off").replace("poissons", "Poisson's")
+    return (
+        name.replace("_", " ")
+        .replace("pull off", "pull-off")
+        .replace("poissons", "Poisson's")
+        .replace("youngs", "Young's")
+    )
 
 
 def duration(seconds: float) -> str:
@@ -122,6 +127,13 @@ def scaled_unit(value: float, unit: str) -> tuple[float, str]:
         return 1.0, ""
     factor, prefix = prefix_for([value])
     return factor, f"{prefix}{unit}"
+
+
+def scaled_column(head: str, values: Iterable[float]) -> tuple[float, str]:
+    """Factor and head with a fitting prefix of a column "name [unit]"; a ratio has neither."""
+    name, _, unit = head.partition(" [")
+    factor, prefix = prefix_for(values) if unit and not unit.startswith(("1", "kg")) else (1.0, "")
+    return factor, quantity_words(name) + (f" [{prefix}{unit}" if unit and unit != "1]" else "")
 
 
 def _three_digits(value: float) -> str:

@@ -341,6 +341,7 @@ def _value(value: object, unit: str | None) -> str:
     if not isinstance(value, np.ndarray | float):
         return shown(value)
     numbers = np.atleast_1d(np.asarray(value, dtype=np.float64))
+    numbers, unit = (1e3 * numbers, "g") if unit == "kg" else (numbers, unit)
     factor, prefix = prefix_for(numbers.tolist()) if unit else (1.0, "")
     text = _ends(numbers / factor, "{:.6g}")
     text = f"[{text}]" if isinstance(value, np.ndarray) else text

@@ -176,9 +176,8 @@ def cost(names: list[str], options: RunOptions, *, methods: list[str], settings:
         with RunDisplay(terminal, quiet=quiet) as display:
             result = run_cases(timed, dataclasses.replace(options, only_costs=True, progress=display))
         write_pages(result, options.out)
-    for table in (shortest_times(result),):
-        if table is not None:
-            show_table(table, on=terminal)
+    if (table := shortest_times(result)) is not None:
+        show_table(table, on=terminal)
     terminal.print(f"report: {options.out / 'report.html'}")
     missing = {case.name for case in result.judged.cases} - {cost.case for cost in result.judged.costs}
     return ExitCode.GATE_FAILED if missing or any(s is Status.INVALID for s in result.statuses) else 0

@@ -22,10 +22,18 @@ from contact import (
 from contact.answer.accuracy import shortfalls, told_where_less
 from contact.answer.small_strains import depth_note, depth_share, depths_of
 from contact.files.scene_file import scene_notes, uses_units
-from reports.answer import difference_table, propagated_table, solution_csv, solution_facts, solution_table, sweep_table
+from reports.answer import (
+    critical_facts,
+    difference_table,
+    propagated_table,
+    solution_csv,
+    solution_facts,
+    solution_table,
+    sweep_table,
+)
 from reports.files import PICTURES, check_outputs, write_picture
 from reports.terminal import console, show_facts, show_table
-from reports.words import with_prefix
+from reports.words import small, with_prefix
 
 MESHES = {".vtu": "VTU for ParaView", ".xdmf": "XDMF for ParaView"}
 ENDINGS = {".csv": "CSV", ".h5": "HDF5", **PICTURES, **MESHES}
@@ -120,7 +128,7 @@ def _answer(scene: Scene, scene_file: Path, request: Request) -> Solution:
 
         found = solve_to_accuracy(scene, accuracy=request.accuracy, pressure_accuracy=request.pressure_accuracy)
         solution: Solution = found.answer
-        stated = f"stated error {found.stated_error:.1e}, asked for {request.accuracy:g}, by {found.method}"
+        stated = f"stated error {small(found.stated_error)}, asked for {small(request.accuracy)}, by {found.method}"
         facts = [("achieved", stated)]
     else:
         solution = request.solver().solve(scene)
@@ -136,9 +144,10 @@ def _answer(scene: Scene, scene_file: Path, request: Request) -> Solution:
 
 
 def _show_answer(solution: Solution) -> None:
-    """The table, below a warning where the layer is pressed deeper than small strains allow."""
+    """A warning where the layer is pressed deeper than small strains allow, critical numbers, and the table."""
     warning = depth_note(solution.scene, depths_of(solution))
     show_facts([("warning", warning)] if warning else [], on=console())
+    show_facts(critical_facts(solution), on=console())
     show_table(solution_table(solution), on=console())
 
 
@@ -151,7 +160,7 @@ def _notes(scene_file: Path, solution: Solution) -> list[tuple[str, str]]:
     if isinstance(indenter, Tabulated) and indenter.smoothing and isinstance(solution, ContactPath):
         moved = float(solution.contact_stiffness.max()) * indenter.smoothing
         lines.append(
-            f"smoothing moved the tip by at most {with_prefix(indenter.smoothing, 'm')}, and so the force by at most "
+            f"smoothing changed the tip by at most {with_prefix(indenter.smoothing, 'm')}, and so the force by at most "
             f"about {with_prefix(moved, 'N')}"
         )
     told = [("note", line) for line in lines]

@@ -236,6 +236,19 @@ def test_solve_prints_numbers_with_error_bars_and_writes_files(hertz, tmp_path, 
     assert (tmp_path / "answer.svg").read_text(encoding="utf-8").startswith("<svg")
 
 
+def test_critical_numbers_stand_above_the_table_and_masses_in_grams(capsys):
+    """The restitution came below forty states of the impact, and 4 g were 4 mkg."""
+    assert run(["solve", "examples/tasks/impact.toml"]) == 0
+    out = capsys.readouterr().out
+    assert out.index("warning: ") < out.index("coefficient of restitution: ") < out.index("MDR: ")
+    assert "Impact(mass=4 g, " in out
+
+
+def test_a_range_is_printed_in_units_with_a_prefix(capsys):
+    assert run(["solve", "examples/tasks/sphere_on_a_gel.toml", "--over", "thickness=2um..50um:2:log"]) == 0
+    assert "thickness [µm]  contact radius [µm]" in capsys.readouterr().out
+
+
 def test_solve_refuses_an_answer_less_accurate_than_asked(hertz, capsys, monkeypatch):
     assert run(["solve", hertz, "--method", "fake", "--accuracy", "1e-3"]) == 0
     monkeypatch.setattr(solve_command, "build_guarded", lambda *_: FakeHertz(stated=1e-2))
@@ -294,7 +307,7 @@ def test_the_layer_inside_as_a_picture_and_for_paraview(punch, tmp_path, capsys)
 
 def test_an_accuracy_is_reached_by_the_first_method_that_states_it(hertz, capsys):
     assert run(["solve", hertz, "--accuracy", "1e-4"]) == 0
-    assert re.search(r"achieved: stated error \S+, asked for 0.0001, by mdr", capsys.readouterr().out)
+    assert re.search(r"achieved: stated error \S+, asked for 1.0e-4, by mdr", capsys.readouterr().out)
 
 
 @pytest.mark.parametrize("name", GONE)

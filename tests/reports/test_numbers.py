@@ -19,6 +19,7 @@ from reports.words import NOT_FINITE, duration, measured, memory, small, with_pr
         (12345.67, 2.1, "12345.7(2.1)"),  # an uncertainty across the decimal point keeps its point
         (6.62607015e-34, 1.2e-42, "6.626070150(12)e-34"),
         (0.3, 2.0, "0.3(2.0)"),
+        (272.4, 11.3, "272(12)"),
         (0.5, 0.0, "0.5"),
         (math.pi, 1e-18, "3.141592653589793(1)"),  # no digit beyond a double's sixteen
         (2.0, math.inf, "2(?)"),

@@ -1,8 +1,10 @@
-"""Only what a scene calls for: what each effect costs and moves, and which could be dropped at a wanted accuracy.
+"""What each effect of a scene costs and changes, and which may be left out at a wanted accuracy.
 
 - ``ablation``: one solution without each effect, and without the finite thickness
-- ``numbers``: dimensionless numbers with their meaning and limit
-- ``advise``: both, as advice
+- ``dimensionless_numbers``: dimensionless numbers with their meaning and limit
+- ``effects``: the same as a study of a case
+- ``simpler_layers``: layers without one of their parts
+- ``advise``: all of it as sentences
 """
 
 from cases.measurements.advice.ablation import ablations

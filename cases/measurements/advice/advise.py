@@ -19,7 +19,7 @@ class Advice:
 
     Attributes:
         accuracy: Wanted relative accuracy.
-        needed: Parts of the scene that move a quantity by more than that.
+        needed: Parts of the scene without which a quantity changes by more than that.
         droppable: Parts that may be left out, each by itself.
         together: Largest relative change with all droppable parts left out at once; zero if there are none.
         numbers: Dimensionless numbers of the scene, with their meaning.
@@ -34,12 +34,14 @@ class Advice:
     @property
     def lines(self) -> list[str]:
         """The advice in sentences."""
-        found = [f"needed at {self.accuracy:g}: {part.line}" for part in self.needed]
-        found += [f"may be dropped at {self.accuracy:g}: {part.line}" for part in self.droppable]
+        found = [
+            f"{part.part[:1].upper()}{part.part[1:]} {verdict} at {100 * self.accuracy:g} %: {part.line}"
+            for verdict, parts in (("matters", self.needed), ("may be left out", self.droppable))
+            for part in parts
+        ]
         if len(self.droppable) > 1:
-            found.append(f"all of these dropped at once move a quantity by {100 * self.together:.2g} %")
-        found += [f"{number.name} = {number.value:.3g}: {number.meaning}" for number in self.numbers]
-        return found
+            found.append(f"Without all of these at once a quantity changes by {100 * self.together:.2g} %.")
+        return [*found, *(number.line for number in self.numbers)]
 
 
 def advise(method: Method, scene: Scene, accuracy: float) -> Advice:

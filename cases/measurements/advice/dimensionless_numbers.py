@@ -1,8 +1,8 @@
 """Dimensionless numbers that say beforehand which effects a scene calls for; estimates, each with its limit.
 
-Each is told against the accuracy wanted by what it moves while it is small. Measured with punches, cones, paraboloids,
-truncated ones and r^6: a half-space in place of a layer moves depth or force by 0.4 to 1.2 times a/h, adhesion by at
-most 2 times dl/delta, and a dashpot by at most 6.5 times tau/T.
+Each bounds a relative change of depth, force or restitution while it is small, for punches, cones, paraboloids,
+truncated ones and r^6. A half-space in place of a layer changes them by 0.4 to 1.2 times a/h, neglected adhesion by at
+most 2 times dl/delta, and a neglected dashpot by at most 6.5 times tau/T.
 """
 
 import math
@@ -35,6 +35,8 @@ from mdr.friction.statement import friction_effect
 # That of soft layers [kg/m^3]; a scene knows none.
 TYPICAL_DENSITY = 1000.0
 ATOMIC_RANGE = 0.3e-9  # m
+# From this multiple of the accuracy on, an error of a half-space is much larger.
+_MUCH = 10.0
 _HALF_SPACE_MOVES = (0.4, 1.2)  # times a/h
 _ADHESION_MOVES = 2.0  # times dl/delta
 _DASHPOT_MOVES = 6.5  # times tau/T
@@ -43,10 +45,13 @@ _JKR_HOLDS = 20.0
 _SMALL_INERTIA = 0.1
 # Coefficient of friction between wet soft layers and smooth indenters, as an order of magnitude.
 _TYPICAL_FRICTION = 0.1
-# Relative accuracy that notes beside an answer are told for: that of careful indentation tests.
+# Relative accuracy of the notes beside an answer: that of careful indentation tests.
 _USUAL_ACCURACY = 0.01
-# Shares of the force for which the coefficient is told up to which friction moves less.
+# Shares of the force for which notes state the largest coefficient of friction that changes less.
 _GOOD_TO = (0.01, 0.05)
+
+
+FRICTION = "friction"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -63,6 +68,11 @@ class Number:
     value: float
     meaning: str
 
+    @property
+    def line(self) -> str:
+        """Name, value and meaning; of friction the meaning alone, which states the value."""
+        return self.meaning if self.name == FRICTION else f"{self.name} = {self.value:.3g}: {self.meaning}"
+
 
 def validity_lines(scene: Scene, answer: Solution) -> list[str]:
     """How far the theory of an answer reaches, in sentences; none for other layers than a plain one, or no contact."""
@@ -73,7 +83,7 @@ def validity_lines(scene: Scene, answer: Solution) -> list[str]:
         found += numbers(scene, answer, _USUAL_ACCURACY)
     except (UnsupportedSceneError, NotConvergedError) as error:
         return [f"how far the theory reaches is not known: {error}"]
-    return [f"{number.name} = {number.value:.3g}: {number.meaning}" for number in found if number is not None]
+    return [number.line for number in found if number is not None]
 
 
 def numbers(scene: Scene, answer: Solution, accuracy: float) -> list[Number]:
@@ -93,15 +103,16 @@ def _thickness(scene: Scene, answer: Solution, accuracy: float) -> Number | None
     if not ratio or not scene.layer.is_uniform:
         return None
     low, high = (share * ratio for share in _HALF_SPACE_MOVES)
-    verdict = "may do" if high <= accuracy else "will not do" if low > accuracy else "is near its limit"
-    meaning = f"a half-space {verdict} at {accuracy:g}: it moves a quantity by 0.4 to 1.2 times this while it is small"
-    return Number(name="a/h", value=ratio, meaning=meaning)
+    wrong = "are wrong by less than" if high <= accuracy else "are wrong by about"
+    if low > accuracy:
+        wrong = f"would be wrong by {'much ' * (low > _MUCH * accuracy)}more than"
+    return Number(name="a/h", value=ratio, meaning=f"half-space formulas {wrong} {100 * accuracy:g} %.")
 
 
 def _strain(scene: Scene, answer: Solution) -> Number:
     depth, radius = _largest(answer, "indentation_depth"), _largest(answer, "contact_radius")
     strain = depth / min(radius, scene.layer.thickness)
-    meaning = "typical strain; linear elasticity is an approximation beyond about 0.1, whatever the digits"
+    meaning = "typical strain. Beyond about 0.1 linear elasticity is an approximation."
     return Number(name="delta/min(a, h)", value=strain, meaning=meaning)
 
 
@@ -109,31 +120,32 @@ def _tip_share(scene: Scene, answer: Solution) -> Number | None:
     """For round tips: where a paraboloid no longer is a sphere, or a sphere comes near its equator."""
     match scene.indenter:
         case Paraboloid(radius_of_curvature=radius):
-            remedy = "contact over tip radius; at 0.4 a sphere is 4 % higher than the paraboloid, and has its own kind"
+            remedy = "contact radius over tip radius. At 0.4 a Sphere is 4 % higher than the Paraboloid."
         case Sphere(radius=radius):
-            remedy = "contact over tip radius; small slopes are assumed, and at 1 the sphere has sunk to its equator"
+            remedy = (
+                "contact radius over tip radius. Small slopes are assumed, and at 1 the contact reaches the equator."
+            )
         case _:
             return None
     return Number(name="a/R", value=_largest(answer, "contact_radius") / radius, meaning=remedy)
 
 
 def _friction(scene: Scene, answer: Solution) -> Number | None:
-    """What dry friction would move of the force at the largest depth, from the frictionless answer alone."""
+    """Change of the force at the largest depth by dry friction, bounded from the frictionless answer."""
     if scene.effects or not isinstance(answer, ContactPath) or not isinstance(scene.layer, Layer | LayerStack):
         return None
     path = Mdr().solve(scene.replace(loading=IndentationDepths([_largest(answer, "indentation_depth")])))
     effect = friction_effect(path, _TYPICAL_FRICTION)
     low, high = float(effect.lower[0]), float(effect.upper[0])
-    order = f", by {100 * effect.first_order[0]:.2g} % to first order" if effect.one_direction[0] else ""
+    order = f", to first order by {100 * effect.first_order[0]:+.2g} %" if effect.one_direction[0] else ""
     # The bound at a coefficient mu is mu U/(1 - mu U).
     slip = high / (1 + high) / _TYPICAL_FRICTION if math.isfinite(high) else 1 / _TYPICAL_FRICTION
-    below = " and ".join(f"{100 * share:g} % below {share / (1 + share) / slip:.2g}" for share in _GOOD_TO)
+    below = " and ".join(f"less than {100 * s:g} % if mu < {s / (1 + s) / slip:.2g}" for s in _GOOD_TO)
     meaning = (
-        f"dry friction of {_TYPICAL_FRICTION:g} moves the force at this depth by {100 * low:.2g} to {100 * high:.2g} %"
-        f"{order}; frictionless is good to {below}; finite elements solve Friction(coefficient=..), and "
-        "Friction(coefficient=inf) tells what full stick moves"
+        f"Friction with mu = {_TYPICAL_FRICTION:g} changes the force at this depth by {100 * low:.2g} to "
+        f"{100 * high:+.2g} %{order}. Neglecting friction costs {below}. Finite elements solve the effect Friction."
     )
-    return Number(name="friction", value=max(-low, high), meaning=meaning)
+    return Number(name=FRICTION, value=max(-low, high), meaning=meaning)
 
 
 def _adhesion(scene: Scene, answer: Solution, accuracy: float) -> list[Number]:
@@ -144,21 +156,26 @@ def _adhesion(scene: Scene, answer: Solution, accuracy: float) -> list[Number]:
     # Eq. (40) with c_N = E*.
     elongation = math.sqrt(2 * math.pi * work * radius / scene.layer.contact_modulus)
     share, range_ = elongation / depth if depth else math.inf, elongation / ATOMIC_RANGE
-    verdict = "may be left out" if _ADHESION_MOVES * share <= accuracy else "may count"
-    holds = "JKR holds" if range_ >= _JKR_HOLDS else "JKR is in doubt, adhesion acts at a distance"
+    holds = "JKR is valid" if range_ >= _JKR_HOLDS else "JKR is in doubt, adhesion acts at a distance"
     return [
         Number(
             name="JKR number dl/delta",
             value=share,
-            meaning=f"adhesion {verdict} at {accuracy:g}: it moves a quantity by at most twice this while it is small",
+            meaning=_neglected("adhesion", _ADHESION_MOVES * share, accuracy),
         ),
         Number(
             name="Tabor-like number dl/z0",
             value=range_,
-            meaning=f"{holds}: elongation over 0.3 nm, the range of atomic forces; JKR needs about {_JKR_HOLDS:g}, "
-            "a Tabor parameter of 5 (Johnson, Greenwood 1997)",
+            meaning=f"{holds}. dl is the elongation at the edge, z0 = 0.3 nm the range of atomic forces. JKR needs "
+            f"about {_JKR_HOLDS:g}, a Tabor parameter of 5 (Johnson, Greenwood 1997).",
         ),
     ]
+
+
+def _neglected(effect: str, change: float, accuracy: float) -> str:
+    """What leaving an effect out changes, from the bound of the relative change."""
+    verdict = "changes no quantity" if change <= accuracy else "may change a quantity"
+    return f"leaving {effect} out {verdict} by more than {100 * accuracy:g} %."
 
 
 def _duration(answer: Solution) -> float:
@@ -175,9 +192,7 @@ def _relaxation(scene: Scene, duration: float, accuracy: float) -> list[Number]:
     if model is None or not model.relaxation.viscosity:
         return []
     share = model.relaxation.viscosity / model.relaxation.instantaneous_modulus / duration
-    verdict = "may be left out" if _DASHPOT_MOVES * share <= accuracy else "may count"
-    meaning = f"the dashpot {verdict} at {accuracy:g}: it moves a quantity by at most 6.5 times this while it is small"
-    return [Number(name="tau/T", value=share, meaning=meaning)]
+    return [Number(name="tau/T", value=share, meaning=_neglected("the dashpot", _DASHPOT_MOVES * share, accuracy))]
 
 
 def _inertia(scene: Scene, answer: ImpactHistory) -> Number:
@@ -185,10 +200,10 @@ def _inertia(scene: Scene, answer: ImpactHistory) -> Number:
     wave = math.sqrt(scene.layer.shear_modulus / TYPICAL_DENSITY)
     depth = min(scene.layer.thickness, answer.peak_contact_radius)
     value = depth / (wave * answer.contact_time)
-    verdict = "small enough" if value <= _SMALL_INERTIA else "not small: the answer leaves out waves that count"
+    verdict = "small enough to neglect" if value <= _SMALL_INERTIA else "not small, and neglected all the same"
     meaning = (
-        f"{verdict}; time of a shear wave through what moves over the contact time, at {TYPICAL_DENSITY:g} kg/m^3: the "
-        "layer's inertia is left out everywhere here; an estimate, for no scene knows a density"
+        f"{verdict}. Estimate: time of a shear wave through the deformed depth over the contact time, for a density of "
+        f"{TYPICAL_DENSITY:g} kg/m^3."
     )
     return Number(name="inertia of the layer", value=value, meaning=meaning)
 
