@@ -1,4 +1,4 @@
-"""A fit of a force curve whose tip or layer is known to a tolerance only: the tolerances join the intervals.
+"""A fit of a force curve with an uncertain tip or layer. Their effect is added to the confidence intervals.
 
 The curve is fitted anew with each input one standard deviation up and down. With D the changes of a parameter and R the
 correlation of the inputs its variance grows by D R D^T (the law of propagation, GUM 5.2).

@@ -5,7 +5,7 @@ upper layer to contacts five times as wide as both. MDR solves one equation for 
 one for each; they share the kernel, so the contact's pressure is also put back on the body by a kernel that is written
 separately: inside the contact it must press the shape of the indenter into the surface. Two equal layers are one. Two
 thin incompressible ones flow between base and punch: a force of delta pi a^4/(8 C), with C the integral of s^2/G over
-the depth s. Where a stiff layer lies on a soft one, flat ends would pull and are refused by name; no such scene stands
+the depth s. Where a stiff layer lies on a soft one, flat ends would pull and are refused; no such scene stands
 here. The figure shows what bodies made simpler err by, also one on an elastic base and a graded one.
 """
 
