@@ -98,32 +98,16 @@ class Claim(ABC):
 
     def tasks(self, case: Case) -> Iterator[Task]:
         """Yield what must be solved beside the case's own scenes."""
-        yield from ()
-
-    def judge(self, case: Case, answers: Table) -> Iterator[Verdict]:
-        """Judge each scene and method whose answers are there."""
         for scene, use in self.places(case):
-            answer = answers.get(case.task(scene, use).identity)
-            others = [answers.get(task.identity) for task in self.needed(case, scene, use)]
-            if answer is not None and None not in others:
-                present = [other for other in others if other is not None]
-                judged = self._judged(scene, use, answer, present)
-                yield self.verdict(case, scene, use, answer, judged=judged, others=present)
+            yield from self.needed(case, scene, use)
 
     def needed(self, case: Case, scene: CaseScene, use: MethodUse) -> Iterator[Task]:
         """Yield the other tasks whose answers one verdict needs."""
         yield from ()
 
-    def _judged(self, scene: CaseScene, use: MethodUse, answer: Answer, others: list[Answer]) -> Judgement:
-        absent = first_missing(answer, *others, quantity=self.quantity if self.needs_quantity else "")
-        return absent or self.judged(scene, use.label, answer, others)
-
-    # Whether answers without the quantity cannot be compared.
-    needs_quantity: ClassVar[bool] = True
-
     @abstractmethod
-    def judged(self, scene: CaseScene, label: str, answer: Answer, others: list[Answer]) -> Judgement:
-        """Judge one answer, and those of the needed tasks, which all have numbers."""
+    def judge(self, case: Case, answers: Table) -> Iterator[Verdict]:
+        """Yield the verdicts whose answers are there."""
 
     def tolerance_of(self, label: str) -> float:
         """Return the tolerance of one method."""
@@ -193,7 +177,33 @@ def first_missing(*answers: Answer, quantity: str = "") -> Judgement | None:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Equal(Claim):
+class PerScene(Claim, ABC):
+    """A claim that judges the answer of each method on each scene by itself, with those of its needed tasks."""
+
+    # Whether answers without the quantity cannot be compared.
+    needs_quantity: ClassVar[bool] = True
+
+    def judge(self, case: Case, answers: Table) -> Iterator[Verdict]:
+        """Judge each scene and method whose answers are there."""
+        for scene, use in self.places(case):
+            answer = answers.get(case.task(scene, use).identity)
+            others = [answers.get(task.identity) for task in self.needed(case, scene, use)]
+            if answer is not None and None not in others:
+                present = [other for other in others if other is not None]
+                judged = self._judged(scene, use, answer, present)
+                yield self.verdict(case, scene, use, answer, judged=judged, others=present)
+
+    def _judged(self, scene: CaseScene, use: MethodUse, answer: Answer, others: list[Answer]) -> Judgement:
+        absent = first_missing(answer, *others, quantity=self.quantity if self.needs_quantity else "")
+        return absent or self.judged(scene, use.label, answer, others)
+
+    @abstractmethod
+    def judged(self, scene: CaseScene, label: str, answer: Answer, others: list[Answer]) -> Judgement:
+        """Judge one answer, and those of the needed tasks, which all have numbers."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Equal(PerScene):
     """The values along the steps equal expected ones, of a closed form or the literature.
 
     Attributes:
@@ -227,13 +237,8 @@ class Equal(Claim):
             raise InvalidInput(f"claim {self.name!r}: no expected value for scene {scene.name!r}")
         return list(self.to[scene.name])
 
-    def tasks(self, case: Case) -> Iterator[Task]:
-        """Yield the scenes with each uncertain input one standard deviation up and down."""
-        for scene, use in self.places(case):
-            yield from self.needed(case, scene, use)
-
     def needed(self, case: Case, scene: CaseScene, use: MethodUse) -> Iterator[Task]:
-        """Yield them for one scene."""
+        """Yield the scene with each uncertain input one standard deviation up and down."""
         if not self.uncertain:
             return
         inputs, task = read_inputs(self.uncertain), case.task(scene, use)
@@ -285,7 +290,7 @@ class Equal(Claim):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Agree(Claim):
+class Agree(PerScene):
     """Two methods give the same values, or the same field in a norm, their stated errors counted.
 
     Attributes:
@@ -319,15 +324,16 @@ class Agree(Claim):
     def tasks(self, case: Case) -> Iterator[Task]:
         """Yield the refined solutions that stand for a missing error."""
         for scene, _ in self.places(case):
-            yield from (self._finer(case, scene, label) for label in self.refined)
+            yield from self._refined(case, scene)
 
     def needed(self, case: Case, scene: CaseScene, use: MethodUse) -> Iterator[Task]:
         """Yield the reference's task, then the refined ones."""
         yield case.task(scene, case.use(scene, self.reference))
-        yield from (self._finer(case, scene, label) for label in self.refined)
+        yield from self._refined(case, scene)
 
-    def _finer(self, case: Case, scene: CaseScene, label: str) -> Task:
-        return case.task(scene, case.use(scene, label)).changed("refined", refined=1)
+    def _refined(self, case: Case, scene: CaseScene) -> Iterator[Task]:
+        for label in self.refined:
+            yield case.task(scene, case.use(scene, label)).changed("refined", refined=1)
 
     def _judged(self, scene: CaseScene, use: MethodUse, answer: Answer, others: list[Answer]) -> Judgement:
         # A refined solution that failed leaves its method without a stated error.
@@ -402,7 +408,7 @@ class Agree(Claim):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Changed(Claim, ABC):
+class Changed(PerScene, ABC):
     """A claim on an answer and on that of a changed scene.
 
     Attributes:
@@ -412,11 +418,6 @@ class Changed(Claim, ABC):
     kind: ClassVar[Kind] = Kind.INVARIANT
 
     change: Callable[[Scene], Scene]
-
-    def tasks(self, case: Case) -> Iterator[Task]:
-        """Yield the changed scenes to solve."""
-        for scene, use in self.places(case):
-            yield from self.needed(case, scene, use)
 
     def needed(self, case: Case, scene: CaseScene, use: MethodUse) -> Iterator[Task]:
         """Yield the changed scene of one place."""
@@ -470,7 +471,7 @@ class Bound(Changed):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Zero(Claim):
+class Zero(PerScene):
     """A residual vanishes: one that the answers carry as a quantity, or one that is derived from an answer.
 
     Attributes:
@@ -516,7 +517,6 @@ class Approach(Claim):
     limit: Callable[[Scene], float]
     formal_order: float = 1.0
     largest: float
-    needs_quantity: ClassVar[bool] = False
 
     def places(self, case: Case) -> Iterator[tuple[CaseScene, MethodUse]]:
         """Yield the last scene with each method that solves it and the one before."""
@@ -527,11 +527,6 @@ class Approach(Claim):
                 if scene is scenes[-1] and use.label in before:
                     yield scene, use
 
-    def needed(self, case: Case, scene: CaseScene, use: MethodUse) -> Iterator[Task]:
-        """Yield the scene before the last."""
-        before = self.scenes_of(case)[-2]
-        yield case.task(before, case.use(before, use.label))
-
     def judge(self, case: Case, answers: Table) -> Iterator[Verdict]:
         """Judge the sequence once for each method."""
         for scene, use in self.places(case):
@@ -540,10 +535,6 @@ class Approach(Claim):
             if near is not None and far is not None:
                 judged = first_missing(far, near) or self._limit((before, scene), (far, near))
                 yield self.verdict(case, scene, use, near, judged=judged)
-
-    def judged(self, scene: CaseScene, label: str, answer: Answer, others: list[Answer]) -> Judgement:
-        """Judge nothing: two scenes are judged at once."""
-        raise NotImplementedError
 
     def expected(self, scene: CaseScene) -> float | None:
         """Return the formal order."""
