@@ -42,6 +42,11 @@ class _Apart:
         self.results.get(timeout=STARTS)
 
     def call(self, function: Callable[..., Any], arguments: tuple[Any, ...], seconds: float) -> Any:
+        """Return ``function(*arguments)``, computed by the process; None if the process ended without a result.
+
+        Raises:
+            Empty: after so many seconds.
+        """
         assert self.process.stdin is not None
         pickle.dump((function, arguments), self.process.stdin)
         self.process.stdin.flush()
