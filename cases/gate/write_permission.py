@@ -1,10 +1,9 @@
-"""Where and when a baseline would be written: commit, uncommitted changes, continuous integration, date."""
+"""Where a baseline would be written: commit, uncommitted changes, continuous integration."""
 
 import os
 import subprocess
 from collections.abc import Mapping
 from dataclasses import dataclass
-from datetime import UTC, datetime
 from pathlib import Path
 
 from cases.run import stamp
@@ -22,13 +21,11 @@ class WriteConditions:
         revision: commit of the source; "unknown" outside a repository.
         changed: files that differ from it, baselines apart: those are what is being written.
         in_ci: whether a continuous integration job asks.
-        date: UTC, ISO 8601.
     """
 
     revision: str
     changed: tuple[str, ...]
     in_ci: bool
-    date: str
 
 
 def write_conditions(repository: Path, baselines: Path, environment: Mapping[str, str] = os.environ) -> WriteConditions:
@@ -37,7 +34,6 @@ def write_conditions(repository: Path, baselines: Path, environment: Mapping[str
         revision=stamp.revision(repository),
         changed=_changed_files(repository, baselines),
         in_ci=environment.get("CI", "").lower() not in ("", "0", "false"),
-        date=datetime.now(UTC).strftime("%Y-%m-%d"),
     )
 
 
