@@ -1,12 +1,12 @@
-"""Only what a scene calls for: what each effect costs and moves, and which could be dropped at a wanted accuracy.
+"""Which parts of a scene matter at a wanted accuracy: what each costs, and how much the answer changes without it.
 
 - ``ablation``: one solution without each effect, and without the finite thickness
-- ``numbers``: dimensionless numbers with their meaning and limit
+- ``dimensionless_numbers``: a/h, strain, friction, .. with their meaning and limit
 - ``advise``: both, as advice
+- ``effects``: the same of a scene of a case, for its page
 """
 
-from cases.measurements.advice.ablation import ablations
 from cases.measurements.advice.advise import Advice, advise
 from cases.measurements.advice.dimensionless_numbers import Number, numbers, validity_lines
 
-__all__ = ["Advice", "Number", "ablations", "advise", "numbers", "validity_lines"]
+__all__ = ["Advice", "Number", "advise", "numbers", "validity_lines"]
