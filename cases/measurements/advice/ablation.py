@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 # A solution of more seconds than this hides the imports.
 _IMPORTS_COUNT = 2.0
-NOTHING_PULLS = "without it nothing pulls: the whole detachment is its work"
+NOTHING_PULLS = "without it nothing pulls, and there is no detachment"
 STATIC = ("contact_radius", "indentation_depth", "normal_force")
 
 

@@ -15,11 +15,11 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class Advice:
-    """What matters.
+    """Which parts of a scene matter.
 
     Attributes:
         accuracy: Wanted relative accuracy.
-        needed: Parts of the scene that move a quantity by more than that.
+        needed: Parts of the scene that change a quantity by more than that.
         droppable: Parts that may be left out, each by itself.
         together: Largest relative change with all droppable parts left out at once; zero if there are none.
         numbers: Dimensionless numbers of the scene, with their meaning.
@@ -34,10 +34,11 @@ class Advice:
     @property
     def lines(self) -> list[str]:
         """The advice in sentences."""
-        found = [f"needed at {self.accuracy:g}: {part.line}" for part in self.needed]
-        found += [f"may be dropped at {self.accuracy:g}: {part.line}" for part in self.droppable]
+        percent = f"{100 * self.accuracy:g} %"
+        found = [f"{part.part} matters at {percent}: {part.line}" for part in self.needed]
+        found += [f"{part.part} does not matter at {percent}: {part.line}" for part in self.droppable]
         if len(self.droppable) > 1:
-            found.append(f"all of these dropped at once move a quantity by {100 * self.together:.2g} %")
+            found.append(f"without all of these at once a quantity changes by {100 * self.together:.2g} %")
         found += [f"{number.name} = {number.value:.3g}: {number.meaning}" for number in self.numbers]
         return found
 
@@ -68,7 +69,7 @@ def advise(method: Method, scene: Scene, accuracy: float) -> Advice:
 def _together(
     method: Method, whole: Solution, droppable: tuple[Effect, ...], accuracy: float
 ) -> tuple[float, tuple[Effect, ...]]:
-    """Small changes may add up: as long as they do, the part that moves most is needed after all."""
+    """Largest change without all droppable parts at once, and these; while it is too large, the largest is needed."""
     while len(droppable) > 1:
         change = change_without(method, whole, [part.part for part in droppable])
         if change <= accuracy:

@@ -1,8 +1,8 @@
-"""Dimensionless numbers that say beforehand which effects a scene calls for; estimates, each with its limit.
+"""Dimensionless numbers of a solved scene: estimates of which effects matter, each with its limit.
 
-Each is told against the accuracy wanted by what it moves while it is small. Measured with punches, cones, paraboloids,
-truncated ones and r^6: a half-space in place of a layer moves depth or force by 0.4 to 1.2 times a/h, adhesion by at
-most 2 times dl/delta, and a dashpot by at most 6.5 times tau/T.
+While a number is small, the change that it estimates is proportional to it. On punches, cones, paraboloids, truncated
+ones and r^6, a half-space in place of a layer changes depth or force by 0.4 to 1.2 times a/h, adhesion changes them by
+at most 2 times dl/delta, and a dashpot by at most 6.5 times tau/T.
 """
 
 import math
@@ -32,21 +32,21 @@ from contact.records.validation import FloatArray
 from mdr import Mdr
 from mdr.friction.statement import friction_effect
 
-# That of soft layers [kg/m^3]; a scene knows none.
+# Density of soft layers [kg/m^3], which scenes do not have.
 TYPICAL_DENSITY = 1000.0
 ATOMIC_RANGE = 0.3e-9  # m
-_HALF_SPACE_MOVES = (0.4, 1.2)  # times a/h
-_ADHESION_MOVES = 2.0  # times dl/delta
-_DASHPOT_MOVES = 6.5  # times tau/T
+_HALF_SPACE_CHANGES = (0.4, 1.2)  # times a/h
+_ADHESION_CHANGES = 2.0  # times dl/delta
+_DASHPOT_CHANGES = 6.5  # times tau/T
 # dl/z0 at a Tabor parameter of 5, with the contact radius at no load.
-_JKR_HOLDS = 20.0
+_JKR_VALID = 20.0
 _SMALL_INERTIA = 0.1
 # Coefficient of friction between wet soft layers and smooth indenters, as an order of magnitude.
 _TYPICAL_FRICTION = 0.1
-# Relative accuracy that notes beside an answer are told for: that of careful indentation tests.
+# Relative accuracy of careful indentation tests, for notes beside an answer.
 _USUAL_ACCURACY = 0.01
-# Shares of the force for which the coefficient is told up to which friction moves less.
-_GOOD_TO = (0.01, 0.05)
+# Relative changes of the force for which the largest negligible coefficient of friction is given.
+_NEGLIGIBLE = (0.01, 0.05)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -54,9 +54,9 @@ class Number:
     """One dimensionless number.
 
     Attributes:
-        name: What it compares.
+        name: Ratio, such as "a/h".
         value: Its value.
-        meaning: What it says at the accuracy wanted, and where the estimate ends.
+        meaning: Consequence at the wanted accuracy, and limit of the estimate.
     """
 
     name: str
@@ -65,14 +65,14 @@ class Number:
 
 
 def validity_lines(scene: Scene, answer: Solution) -> list[str]:
-    """How far the theory of an answer reaches, in sentences; none for other layers than a plain one, or no contact."""
+    """Limits of the theory of an answer, in sentences; none for other layers than a plain one, or without contact."""
     if not isinstance(scene.layer, Layer) or not _largest(answer, "contact_radius"):
         return []
     found = [_tip_share(scene, answer)]
     try:
         found += numbers(scene, answer, _USUAL_ACCURACY)
     except (UnsupportedSceneError, NotConvergedError) as error:
-        return [f"how far the theory reaches is not known: {error}"]
+        return [f"limits of the theory are unknown: {error}"]
     return [f"{number.name} = {number.value:.3g}: {number.meaning}" for number in found if number is not None]
 
 
@@ -92,46 +92,48 @@ def _thickness(scene: Scene, answer: Solution, accuracy: float) -> Number | None
     ratio = _largest(answer, "contact_radius") / scene.layer.thickness
     if not ratio or not scene.layer.is_uniform:
         return None
-    low, high = (share * ratio for share in _HALF_SPACE_MOVES)
-    verdict = "may do" if high <= accuracy else "will not do" if low > accuracy else "is near its limit"
-    meaning = f"a half-space {verdict} at {accuracy:g}: it moves a quantity by 0.4 to 1.2 times this while it is small"
+    low, high = (share * ratio for share in _HALF_SPACE_CHANGES)
+    size = "less than" if high <= accuracy else "more than" if low > accuracy else "about"
+    meaning = (
+        f"half-space formulas would be wrong by {size} {100 * accuracy:g} % (0.4 to 1.2 times a/h while it is small)"
+    )
     return Number(name="a/h", value=ratio, meaning=meaning)
 
 
 def _strain(scene: Scene, answer: Solution) -> Number:
     depth, radius = _largest(answer, "indentation_depth"), _largest(answer, "contact_radius")
     strain = depth / min(radius, scene.layer.thickness)
-    meaning = "typical strain; linear elasticity is an approximation beyond about 0.1, whatever the digits"
+    meaning = "typical strain. Linear elasticity is an approximation beyond about 0.1"
     return Number(name="delta/min(a, h)", value=strain, meaning=meaning)
 
 
 def _tip_share(scene: Scene, answer: Solution) -> Number | None:
-    """For round tips: where a paraboloid no longer is a sphere, or a sphere comes near its equator."""
+    """a/R of round tips, with the limits of a paraboloid in place of a sphere and of a sphere."""
     match scene.indenter:
         case Paraboloid(radius_of_curvature=radius):
-            remedy = "contact over tip radius; at 0.4 a sphere is 4 % higher than the paraboloid, and has its own kind"
+            remedy = 'contact radius over tip radius. At 0.4 a sphere is 4 % higher than the paraboloid: use "sphere"'
         case Sphere(radius=radius):
-            remedy = "contact over tip radius; small slopes are assumed, and at 1 the sphere has sunk to its equator"
+            remedy = "contact radius over tip radius. Slopes are assumed small. At 1 the contact reaches the equator"
         case _:
             return None
     return Number(name="a/R", value=_largest(answer, "contact_radius") / radius, meaning=remedy)
 
 
 def _friction(scene: Scene, answer: Solution) -> Number | None:
-    """What dry friction would move of the force at the largest depth, from the frictionless answer alone."""
+    """Relative change of the force by dry friction at the largest depth, from the frictionless answer alone."""
     if scene.effects or not isinstance(answer, ContactPath) or not isinstance(scene.layer, Layer | LayerStack):
         return None
     path = Mdr().solve(scene.replace(loading=IndentationDepths([_largest(answer, "indentation_depth")])))
     effect = friction_effect(path, _TYPICAL_FRICTION)
     low, high = float(effect.lower[0]), float(effect.upper[0])
-    order = f", by {100 * effect.first_order[0]:.2g} % to first order" if effect.one_direction[0] else ""
+    order = f" ({100 * effect.first_order[0]:.2g} % to first order)" if effect.one_direction[0] else ""
     # The bound at a coefficient mu is mu U/(1 - mu U).
     slip = high / (1 + high) / _TYPICAL_FRICTION if math.isfinite(high) else 1 / _TYPICAL_FRICTION
-    below = " and ".join(f"{100 * share:g} % below {share / (1 + share) / slip:.2g}" for share in _GOOD_TO)
+    below = " and ".join(f"{100 * share:g} % if mu < {share / (1 + share) / slip:.2g}" for share in _NEGLIGIBLE)
     meaning = (
-        f"dry friction of {_TYPICAL_FRICTION:g} moves the force at this depth by {100 * low:.2g} to {100 * high:.2g} %"
-        f"{order}; frictionless is good to {below}; finite elements solve Friction(coefficient=..), and "
-        "Friction(coefficient=inf) tells what full stick moves"
+        f"dry friction with mu = {_TYPICAL_FRICTION:g} changes the force at this depth by {100 * low:+.2g} to "
+        f"{100 * high:+.2g} %{order}. Neglecting friction costs less than {below}. Finite elements solve "
+        "Friction(coefficient=..), and full stick with Friction(coefficient=inf)"
     )
     return Number(name="friction", value=max(-low, high), meaning=meaning)
 
@@ -144,21 +146,27 @@ def _adhesion(scene: Scene, answer: Solution, accuracy: float) -> list[Number]:
     # Eq. (40) with c_N = E*.
     elongation = math.sqrt(2 * math.pi * work * radius / scene.layer.contact_modulus)
     share, range_ = elongation / depth if depth else math.inf, elongation / ATOMIC_RANGE
-    verdict = "may be left out" if _ADHESION_MOVES * share <= accuracy else "may count"
-    holds = "JKR holds" if range_ >= _JKR_HOLDS else "JKR is in doubt, adhesion acts at a distance"
+    valid = "JKR is valid" if range_ >= _JKR_VALID else "JKR is doubtful, since adhesion acts at a distance"
     return [
         Number(
             name="JKR number dl/delta",
             value=share,
-            meaning=f"adhesion {verdict} at {accuracy:g}: it moves a quantity by at most twice this while it is small",
+            meaning=_without("adhesion", share, _ADHESION_CHANGES, accuracy),
         ),
         Number(
             name="Tabor-like number dl/z0",
             value=range_,
-            meaning=f"{holds}: elongation over 0.3 nm, the range of atomic forces; JKR needs about {_JKR_HOLDS:g}, "
-            "a Tabor parameter of 5 (Johnson, Greenwood 1997)",
+            meaning=f"{valid}. Elongation over 0.3 nm, the range of atomic forces. JKR needs about {_JKR_VALID:g}, a "
+            "Tabor parameter of 5 (Johnson, Greenwood 1997)",
         ),
     ]
+
+
+def _without(part: str, number: float, factor: float, accuracy: float) -> str:
+    """Change of quantities without a part, which is at most a factor times a number while that is small."""
+    size = "by less" if factor * number <= accuracy else "possibly by more"
+    change = f"without {part} quantities change {size} than {100 * accuracy:g} %"
+    return f"{change} (by at most {factor:g} times this number while it is small)"
 
 
 def _duration(answer: Solution) -> float:
@@ -170,25 +178,23 @@ def _duration(answer: Solution) -> float:
 
 
 def _relaxation(scene: Scene, duration: float, accuracy: float) -> list[Number]:
-    """Whether a dashpot counts; branches are judged by `advise`, which solves without them."""
+    """tau/T of a dashpot. For relaxing branches `advise` solves without them."""
     model = scene.effect(Viscoelasticity)
     if model is None or not model.relaxation.viscosity:
         return []
     share = model.relaxation.viscosity / model.relaxation.instantaneous_modulus / duration
-    verdict = "may be left out" if _DASHPOT_MOVES * share <= accuracy else "may count"
-    meaning = f"the dashpot {verdict} at {accuracy:g}: it moves a quantity by at most 6.5 times this while it is small"
-    return [Number(name="tau/T", value=share, meaning=meaning)]
+    return [Number(name="tau/T", value=share, meaning=_without("the dashpot", share, _DASHPOT_CHANGES, accuracy))]
 
 
 def _inertia(scene: Scene, answer: ImpactHistory) -> Number:
-    """Over the contact radius or the thickness, whichever is less: that is as deep as the layer moves."""
+    """Time of a shear wave through min(a, h), as deep as the layer deforms, over the contact time."""
     wave = math.sqrt(scene.layer.shear_modulus / TYPICAL_DENSITY)
     depth = min(scene.layer.thickness, answer.peak_contact_radius)
     value = depth / (wave * answer.contact_time)
-    verdict = "small enough" if value <= _SMALL_INERTIA else "not small: the answer leaves out waves that count"
+    verdict = "negligible" if value <= _SMALL_INERTIA else "not negligible: waves in the layer change the answer"
     meaning = (
-        f"{verdict}; time of a shear wave through what moves over the contact time, at {TYPICAL_DENSITY:g} kg/m^3: the "
-        "layer's inertia is left out everywhere here; an estimate, for no scene knows a density"
+        f"{verdict}. Time of a shear wave through the deformed depth over the contact time, at an assumed density of "
+        f"{TYPICAL_DENSITY:g} kg/m^3. No method models the inertia of the layer"
     )
     return Number(name="inertia of the layer", value=value, meaning=meaning)
 
