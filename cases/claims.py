@@ -1,4 +1,4 @@
-"""What a case may claim. Each kind yields the tasks it needs beside the case's own and judges their answers."""
+"""Claims of a case. Each kind yields the tasks it needs in addition to the case's own, and judges the answers."""
 
 import math
 from abc import ABC, abstractmethod
@@ -32,7 +32,7 @@ from contact.records.validation import FloatArray
 Expected: TypeAlias = Mapping[str, Sequence[float]] | Callable[[Scene], Sequence[float]]
 Norm: TypeAlias = Literal["", "weighted L2", "ring loads", "largest", "root mean square"]
 
-# On the half-space MDR on a table reads no table: it is MDR itself, by construction.
+# On the half-space, MDR on a table uses no table and equals MDR by construction.
 TABLE, NO_TABLE = "mdr_table", "on the half-space no table is read"
 # Twice the standard uncertainty of printed inputs covers 95 % (GUM 6.3.3); once it would fail every third number.
 COVERAGE = 2.0
@@ -40,7 +40,7 @@ COVERAGE = 2.0
 
 @dataclass(frozen=True, kw_only=True)
 class Claim(ABC):
-    """What every claim states before anything is computed.
+    """Base of all claims, which are stated before anything is computed.
 
     Attributes:
         name: unique within the case.
@@ -86,18 +86,18 @@ class Claim(ABC):
                 case.use(scenes[0], label)
 
     def scenes_of(self, case: Case) -> tuple[CaseScene, ...]:
-        """Return the scenes of the case that this claim speaks about."""
+        """Return the scenes of the case that this claim is about."""
         return tuple(case.by_name[name] for name in self.scenes if name in case.by_name) if self.scenes else case.scenes
 
     def places(self, case: Case) -> Iterator[tuple[CaseScene, MethodUse]]:
-        """Yield each scene with each method that solves it and is spoken about."""
+        """Yield each scene of the claim with each method of the claim that solves it."""
         for scene in self.scenes_of(case):
             for use in case.methods_of(scene):
                 if not self.methods or use.label in self.methods:
                     yield scene, use
 
     def tasks(self, case: Case) -> Iterator[Task]:
-        """Yield what must be solved beside the case's own scenes."""
+        """Yield the tasks that the verdicts need in addition to the case's own."""
         for scene, use in self.places(case):
             yield from self.needed(case, scene, use)
 
@@ -114,7 +114,7 @@ class Claim(ABC):
         return self.tolerances.get(label, self.tolerance)
 
     def labels(self, use: MethodUse) -> tuple[str, ...]:
-        """Return the labels of the methods that a verdict speaks about."""
+        """Return the labels of the methods of a verdict."""
         return (use.label,)
 
     def expected(self, scene: CaseScene) -> float | None:
@@ -545,7 +545,7 @@ class Approach(Claim):
         return ""
 
     def _limit(self, scenes: tuple[CaseScene, CaseScene], answers: tuple[Answer, Answer]) -> Judgement:
-        """Judge the rate; what fails inside the method's stated error stays open."""
+        """Judge the rate; a failure that the stated error explains is inconclusive."""
         pairs = [
             (answer.quantities[self.quantity], self.limit(scene.scene))
             for scene, answer in zip(scenes, answers, strict=True)

@@ -211,7 +211,7 @@ def _grid(case: Case, scene: CaseScene, use: MethodUse) -> Task:
 
 
 def _last(answer: Answer, name: str) -> Values:
-    """The last value of a quantity alone, or a field at points, which is kept over its scale."""
+    """The last value of a quantity along the steps, or a whole field at points."""
     q = answer.quantities[name]
     return q if q.at else replace(q, values=q.values[-1:], error=q.error[-1:])
 

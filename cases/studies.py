@@ -1,4 +1,4 @@
-"""What some claims show beside their verdicts: convergence, cost of accuracy, stress tests, effects of a scene."""
+"""Records of studies: convergence, cost of accuracy, stress tests, effects of the parts of a scene."""
 
 from dataclasses import field
 
@@ -125,7 +125,7 @@ class StressTest:
 
 @dataclass(frozen=True, kw_only=True, config=RECORD)
 class Effect:
-    """What a part of a scene ("Adhesion", "finite thickness") costs and changes: solved with it and without.
+    """Cost of a part of a scene ("Adhesion", "finite thickness"), and change of the answer without it.
 
     Attributes:
         seconds: processor time of a first solution of the whole scene [s].

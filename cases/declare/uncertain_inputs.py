@@ -61,7 +61,7 @@ class UncertainInput:
 
 @dataclass(frozen=True, kw_only=True)
 class UncertainInputs:
-    """What is uncertain about a scene.
+    """Uncertain numbers of a scene.
 
     Attributes:
         inputs: each of them.

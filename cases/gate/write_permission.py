@@ -15,7 +15,7 @@ SOURCE = Path(__file__).resolve().parents[2]
 
 @dataclass(frozen=True, kw_only=True)
 class WriteConditions:
-    """What decides whether a baseline may be written at all.
+    """Conditions under which a baseline may be written.
 
     Attributes:
         revision: commit of the source; "unknown" outside a repository.
@@ -38,7 +38,7 @@ def write_conditions(repository: Path, baselines: Path, environment: Mapping[str
 
 
 def _changed_files(repository: Path, baselines: Path) -> tuple[str, ...]:
-    """Tracked files that changed and new ones that nobody ignores."""
+    """Changed tracked files, and untracked files that are not ignored."""
     outside = f":(exclude){baselines.resolve()}" if baselines.resolve().is_relative_to(repository.resolve()) else "."
     listed = git(repository, "status", "--porcelain", "--", ".", outside)
     return tuple(line[3:] for line in listed.splitlines())

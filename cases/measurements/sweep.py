@@ -139,7 +139,7 @@ def _changed(scene: Scene, name: str, value: float) -> Scene:
 
 
 def _rows(swept: Swept, value: float, answer: Solution) -> Iterator[dict[str, float]]:
-    """What sums an answer up in one row, or else a row for each of its states."""
+    """Rows of an answer: one of its single numbers, or else one per state."""
     names = list(single_numbers(answer)) or list(answer.ARRAYS)
     states = {name: np.atleast_1d(getattr(answer, name)) for name in names}
     for step in range(len(states[names[0]])):

@@ -1,4 +1,4 @@
-"""A fit of a force curve whose tip or layer is known to a tolerance only: the tolerances join the intervals.
+"""Fits of force curves with uncertain inputs, whose effect is added to the confidence intervals.
 
 The curve is fitted anew with each input one standard deviation up and down. With D the changes of a parameter and R the
 correlation of the inputs its variance grows by D R D^T (the law of propagation, GUM 5.2).
@@ -40,7 +40,7 @@ def fit_uncertain(
     parameters: Sequence[str] = DEFAULT_PARAMETERS,
     confidence: float = 0.95,
 ) -> UncertainFit:
-    """Fit as `mdr.curves.fit_curve` does, with intervals that hold the uncertain inputs too.
+    """Fit as `mdr.curves.fit_curve` does, with the effect of uncertain inputs added to the intervals.
 
     Args:
         scene: tip and layer; uncertain ranges are replaced by their middles.

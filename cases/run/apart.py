@@ -1,4 +1,4 @@
-"""A solution in a process of its own that is killed at the time limit: nobody knows whether a foreign method ends.
+"""Solutions in a separate process that is killed at the time limit, since methods of others may not end.
 
 One such process serves one process of this program, task after task, until a task does not end in time. Run as a
 module this file is that process: it reads pickled calls from its input and writes pickled results.

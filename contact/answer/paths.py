@@ -361,7 +361,7 @@ class HistoryPath(Solution):
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class FrictionHistory(HistoryPath):
-    """Response to a prescribed history of depth or force, at its own instants: dry friction knows no time.
+    """Response to a prescribed history of depth or force, at its own instants; dry friction does not depend on time.
 
     Attributes:
         stick_radius: Radius of the outermost point that sticks [m], shape (n,).

@@ -28,7 +28,7 @@ method. A step may be refused with a named error. A number beyond its stated err
 WHY = Why(
     Origin.INDEPENDENT_METHOD,
     "laws of mechanics, repeats, and the fast method",
-    "a method may refuse a scene by name, but a number it gives has to lie within the error it states",
+    "a method may refuse a scene with an error, but its numbers have to lie within its stated errors",
     "half a step: not one may fail",
 )
 
@@ -87,7 +87,7 @@ def refusals(test: StressTest) -> list[str]:
 
 
 def worse_than(test: StressTest, accepted: StressTest) -> list[str]:
-    """Return what is worse than accepted: an earlier breakdown, a digit lost on a step, or a step not taken."""
+    """Return the steps that are worse than accepted: refused, not solved, or with one correct digit less."""
     taken = {step.value: step for step in test.steps}
     found = []
     for before in accepted.steps:
@@ -105,7 +105,7 @@ def worse_than(test: StressTest, accepted: StressTest) -> list[str]:
 
 
 def no_silent_failure(test: StressTest) -> Verdict:
-    """Return the verdict that every step was answered or refused by name; its error is the number that was not."""
+    """Return the verdict that no step failed; its error is the number of failed steps."""
     failed = [step for step in test.steps if step.status == Status.FAIL]
     worst = f"; {test.parameter} = {failed[0].value:g}: {failed[0].reason}" if failed else ""
     judged = judge_residual(float(len(failed)), tolerance=0.5)
