@@ -18,7 +18,7 @@ SUITES = (*USUAL_SUITES, "referees")
 
 @dataclass(frozen=True, kw_only=True)
 class Sampling:
-    """What is kept of an answer beside its quantities.
+    """Fields that a run keeps of an answer beside its quantities.
 
     Attributes:
         ring_edges: the pressure of the last step is kept at the Gauss nodes of the rings between these radii [m];
@@ -137,7 +137,7 @@ class Case:
     restricted: bool = False
 
     def __post_init__(self) -> None:
-        """Refuse what would silently check less than it says."""
+        """Refuse a case that would check less than it states."""
         if not self.name.replace("_", "").isalnum():
             raise InvalidInput(f"case name {self.name!r}: use letters, digits and underscores")
         if unknown := set(self.suites) - set(SUITES):
@@ -196,7 +196,7 @@ class Case:
         return Task(case=self.name, scene=scene.name, use=use, problem=scene.scene, sampling=scene.sampling)
 
     def tasks(self) -> Iterator[Task]:
-        """Yield all tasks: every scene by every method, then what claims and studies need beside."""
+        """Yield all tasks: every scene by every method, then those that claims and studies need in addition."""
         for scene in self.scenes:
             yield from (self.task(scene, use) for use in self.methods_of(scene))
         for part in (*self.claims, *self.ablations):

@@ -35,7 +35,7 @@ class WorkStudy:
         """Return the study as a suite carries it out: nightly all settings, otherwise the cheap ones."""
         return self if suite == "nightly" or not self.cheap else replace(self, ladder=self.cheap)
 
-    def of_methods(self, methods: Collection[str], foreign: Iterable[MethodUse] = ()) -> "WorkStudy":
+    def of_methods(self, methods: Collection[str], foreign: Iterable[MethodUse]) -> "WorkStudy":
         """Return the study of these methods' settings, and of those of ``foreign`` ones."""
         own = tuple(use for use in self.ladder if use.method in methods)
         return replace(self, ladder=(*own, *foreign), cheap=())

@@ -96,7 +96,7 @@ class Judged:
 
 @plain(frozen=True, kw_only=True)
 class Part:
-    """What a study that is no case of the library adds to a run."""
+    """Text, verdicts and records of a study that is no case of the library."""
 
     text: CaseText
     verdicts: tuple[Verdict, ...]

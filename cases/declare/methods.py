@@ -82,10 +82,7 @@ def registered() -> dict[str, EntryPoint]:
 
 @cache
 def _entries(read: Callable[..., Iterable[EntryPoint]], _path: tuple[str, ...]) -> tuple[EntryPoint, ...]:
-    """What installed packages register; asked twice for every task, and read once for each path of packages.
-
-    Reading takes 4 ms among a hundred packages, a third of what the run adds to a solution of milliseconds.
-    """
+    """Entry points of installed packages, cached per search path: reading those of a hundred packages takes 4 ms."""
     return tuple(read(group=ENTRY_POINT_GROUP))
 
 

@@ -130,9 +130,9 @@ def propose(
 
 
 def _with_spreads(answer: Answer, old: Answer | None, spreads: Spreads) -> Answer:
-    """What is kept of an answer; the widest spread measured so far counts.
+    """The answer as the baseline keeps it, with the widest spread measured so far.
 
-    A repetition that agrees by chance tightens nothing.
+    A repetition that agrees by chance does not reduce the tolerance.
     """
     before: Mapping[str, Values] = old.quantities if old is not None else {}
     quantities = {}

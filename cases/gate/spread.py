@@ -1,4 +1,4 @@
-"""How much an answer moves when nothing has changed: the spread that sets the tolerance of a baseline.
+"""Spread of repeated answers, which sets the tolerance of a baseline.
 
 Every accepted solution is repeated twice: with all its inputs one unit in the last place larger, and with them one unit
 smaller by the plain kernels of OpenBLAS, those of another processor.  What differs then is rounding, and another

@@ -1,10 +1,9 @@
-"""Where and when a baseline would be written: commit, uncommitted changes, continuous integration, date."""
+"""Where a baseline would be written: commit, uncommitted changes, continuous integration."""
 
 import os
 import subprocess
 from collections.abc import Mapping
 from dataclasses import dataclass
-from datetime import UTC, datetime
 from pathlib import Path
 
 from cases.run import stamp
@@ -16,19 +15,17 @@ SOURCE = Path(__file__).resolve().parents[2]
 
 @dataclass(frozen=True, kw_only=True)
 class WriteConditions:
-    """What decides whether a baseline may be written at all.
+    """Conditions under which a baseline may be written.
 
     Attributes:
         revision: commit of the source; "unknown" outside a repository.
         changed: files that differ from it, baselines apart: those are what is being written.
         in_ci: whether a continuous integration job asks.
-        date: UTC, ISO 8601.
     """
 
     revision: str
     changed: tuple[str, ...]
     in_ci: bool
-    date: str
 
 
 def write_conditions(repository: Path, baselines: Path, environment: Mapping[str, str] = os.environ) -> WriteConditions:
@@ -37,12 +34,11 @@ def write_conditions(repository: Path, baselines: Path, environment: Mapping[str
         revision=stamp.revision(repository),
         changed=_changed_files(repository, baselines),
         in_ci=environment.get("CI", "").lower() not in ("", "0", "false"),
-        date=datetime.now(UTC).strftime("%Y-%m-%d"),
     )
 
 
 def _changed_files(repository: Path, baselines: Path) -> tuple[str, ...]:
-    """Tracked files that changed and new ones that nobody ignores."""
+    """Changed tracked files, and untracked files that are not ignored."""
     outside = f":(exclude){baselines.resolve()}" if baselines.resolve().is_relative_to(repository.resolve()) else "."
     listed = git(repository, "status", "--porcelain", "--", ".", outside)
     return tuple(line[3:] for line in listed.splitlines())

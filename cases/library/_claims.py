@@ -99,6 +99,27 @@ def lacking_force(scene: CaseScene, answer: Answer) -> list[float]:
     return [load / answer.quantities["normal_force"].values[-1] - 1]
 
 
+def laws(
+    scenes: Iterable[CaseScene],
+    named: Mapping[str, tuple[str, float]],
+    why: Why,
+    *,
+    tolerance: float,
+    methods: tuple[str, ...] = (),
+) -> Iterator[Zero]:
+    """Yield the claim that each residual of a law vanishes: by name of the law, its residual and tolerance of fem."""
+    for name, (quantity, of_mesh) in named.items():
+        yield Zero(
+            name=name,
+            quantity=quantity,
+            scenes=names_of(scenes),
+            methods=methods,
+            tolerance=tolerance,
+            tolerances={"fem": of_mesh},
+            why=why,
+        )
+
+
 def incremental_stiffness(scene: CaseScene, answer: Answer) -> FloatArray:
     """Return dF/(k_N d delta) - 1 along a loading path: one more step presses like a flat punch, whatever the profile.
 

@@ -43,7 +43,7 @@ class SuiteStudies:
         self._futures: list[Future[Part]] = []
 
     def begin(self) -> None:
-        """Hand them over; in this process they would not let anything else be done, so they wait until `join`."""
+        """Start the studies in other processes; with the executor ``serial`` they start in `join`."""
         if self._executor is not serial:
             self._hand_over()
 
@@ -72,7 +72,7 @@ class SuiteStudies:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """Leave no process behind where the run ended before they were joined."""
+        """Stop the processes where the run ended before `join`."""
         self._begun.__exit__(kind, error, trace)
 
 

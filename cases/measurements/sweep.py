@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from cases.declare.quantities import single_numbers
-from cases.declare.uncertain_inputs import part_of, place_of, range_ends
+from cases.declare.uncertain_inputs import part_of, place_of, range_ends, with_part
 from cases.files import csv_text
 from contact import UNITS, ContactError, InvalidInput, Method, Scene, Solution
 from contact.records.errors import shown
@@ -135,15 +135,11 @@ def _end(text: str) -> object:
 
 def _changed(scene: Scene, name: str, value: float) -> Scene:
     part, field = place_of(scene, name, "over")
-    record = part_of(scene, part).replace(**{field: value})
-    if not part.startswith("effects"):
-        return scene.replace(**{part: record})
-    number = int(part.removeprefix("effects"))
-    return scene.replace(effects=(*scene.effects[:number], record, *scene.effects[number + 1 :]))
+    return with_part(scene, part, part_of(scene, part).replace(**{field: value}))
 
 
 def _rows(swept: Swept, value: float, answer: Solution) -> Iterator[dict[str, float]]:
-    """What sums an answer up in one row, or else a row for each of its states."""
+    """Rows of an answer: one of its single numbers, or else one per state."""
     names = list(single_numbers(answer)) or list(answer.ARRAYS)
     states = {name: np.atleast_1d(getattr(answer, name)) for name in names}
     for step in range(len(states[names[0]])):

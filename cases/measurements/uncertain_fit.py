@@ -40,7 +40,7 @@ def fit_uncertain(
     parameters: Sequence[str] = DEFAULT_PARAMETERS,
     confidence: float = 0.95,
 ) -> UncertainFit:
-    """Fit as `mdr.curves.fit_curve` does, with intervals that hold the uncertain inputs too.
+    """Fit as `mdr.curves.fit_curve` does, with the effect of uncertain inputs added to the intervals.
 
     Args:
         scene: tip and layer; uncertain ranges are replaced by their middles.

@@ -1,4 +1,4 @@
-"""What a run tells while it goes on; drawing it is somebody else's work."""
+"""Events of a run under way."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -9,7 +9,7 @@ from cases.verdicts import Status
 
 @dataclass(frozen=True, kw_only=True)
 class ProgressEvent:
-    """One thing that happened.
+    """One event of a run.
 
     Attributes:
         kind: "planned" once, then "finished" or "reused" for each task, "judged" for each case; "refused" before
@@ -33,4 +33,4 @@ Progress = Callable[[ProgressEvent], None]
 
 
 def silent(event: ProgressEvent) -> None:
-    """Tell nobody."""
+    """Ignore the event."""

@@ -28,8 +28,8 @@ from cases.runs import CaseText, Judged, Run, Stamp, write_run
 from cases.verdicts import Status, worst
 from contact import InvalidInput
 
-# Seconds that one solution by a method of an installed package may take unless another limit is given: nobody here
-# knows whether it ends. Half would kill honest three-dimensional meshes, twice only lets a hang wait.
+# Default time limit of one solution by a method of an installed package [s]. Half of it stops three-dimensional meshes,
+# twice of it only waits longer for methods that hang.
 FOREIGN_TIME_LIMIT = 300.0
 
 
@@ -149,7 +149,7 @@ def plan(cases: Iterable[Case], *, timing: bool = True, only_costs: bool = False
 
 
 def judge(cases: Iterable[Case], answers: Table, made: Stamp, *, claims: bool = True) -> Judged:
-    """Return what the answers that are there say of the claims and studies of cases.
+    """Return the verdicts and studies of cases from the answers present.
 
     Args:
         cases: as they were run.

@@ -61,5 +61,5 @@ class Window(Generic[A, T]):
             self.broken.append(argument)
             return
         self._under_way[future] = argument
-        # A finished call tells of itself: nobody looks through all that are under way.
+        # Finished calls are delivered by a queue, without a search through all calls under way.
         future.add_done_callback(self._finished.put)

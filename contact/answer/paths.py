@@ -137,7 +137,7 @@ class ContactPath(Solution):
             return self.scale("indentation_depth")
         if self._adheres or not hasattr(self, quantity):
             return super().scale(quantity)
-        return np.abs(np.asarray(getattr(self, quantity), dtype=np.float64))
+        return self._magnitude(quantity)
 
     def _mean_pressure(self) -> FloatArray:
         force, area = np.abs(self.normal_force), np.pi * self.contact_radius**2
@@ -226,8 +226,7 @@ class FrictionPath(ContactPath):
             return np.abs(self.normal_force * self.indentation_depth)
         if quantity in ("pressure", "tangential_traction"):
             return np.asarray(np.abs(self.normal_force) / (np.pi * self.contact_radius**2))
-        values = self.contact_radius if quantity == "stick_radius" else getattr(self, quantity, np.ones(len(self)))
-        return np.abs(np.asarray(values, dtype=np.float64))
+        return self._magnitude("contact_radius" if quantity == "stick_radius" else quantity)
 
     def tangential_traction(self, radius: ArrayLike, step: int = 0) -> FloatArray:
         """Traction q(r) [Pa] of one step at radii [m], positive where it pushes the layer outward, zero outside."""
@@ -256,7 +255,7 @@ class ForcePath(Solution):
 
     def scale(self, quantity: str) -> FloatArray:
         """The quantity's own magnitude."""
-        return np.abs(np.asarray(getattr(self, quantity, 1.0), dtype=np.float64))
+        return self._magnitude(quantity)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -362,7 +361,7 @@ class HistoryPath(Solution):
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class FrictionHistory(HistoryPath):
-    """Response to a prescribed history of depth or force, at its own instants: dry friction knows no time.
+    """Response to a prescribed history of depth or force, at its own instants; dry friction does not depend on time.
 
     Attributes:
         stick_radius: Radius of the outermost point that sticks [m], shape (n,).

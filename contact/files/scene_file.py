@@ -91,7 +91,7 @@ def _with_modulus(mapping: Mapping[str, Any], reading: Reading) -> Mapping[str, 
 
 
 def scene_notes(path: str | Path) -> list[str]:
-    """What a reader should know about how a scene file was read."""
+    """Notes on the conversion of a scene file, such as of a pyramid to a cone."""
     return [PYRAMID_NOTE] if _tables(Path(path)).get("indenter", {}).get("kind") == "pyramid" else []
 
 

@@ -8,7 +8,6 @@ import inspect
 import re
 from abc import ABCMeta
 from collections.abc import Iterable, Mapping, Sequence
-from difflib import get_close_matches
 from typing import (
     TYPE_CHECKING,
     Annotated,
@@ -266,6 +265,8 @@ def _lines(place: str, detail: dict[str, Any], *, in_file: bool, is_whole: bool)
 
 def _no_such(written: object, names: list[str]) -> str:
     """The remedy for a name that no field has: the closest name, if one is close."""
+    from difflib import get_close_matches  # noqa: PLC0415  # records without errors do not pay for it
+
     close = get_close_matches(written, names, n=1) if isinstance(written, str) else []
     meant = [name for name in (_SYNONYMS.get(str(written)), *close) if name in names]
     return f"no such field; {f'write {meant[0]} instead' if meant else 'remove it or correct its spelling'}"

@@ -94,7 +94,7 @@ def _is_number(value: object) -> bool:
     return isinstance(value, Real) and not isinstance(value, bool | np.bool_)
 
 
-def read_number(value: object, remedy: str, unit: str | None, reading: Reading | None = None) -> float:
+def read_number(value: object, remedy: str, unit: str | None, reading: Reading | None) -> float:
     """A number, or a text with a number and its unit, in SI.
 
     Raises:
@@ -248,7 +248,7 @@ def _end(value: object, unit: str | None, name: str, reading: Reading | None) ->
 
 def vector(
     remedy: str,
-    unit: str | None = None,
+    unit: str | None,
     *,
     least: float = -math.inf,
     above: float = -math.inf,

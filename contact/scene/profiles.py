@@ -44,7 +44,7 @@ _FEWEST_TO_SMOOTH = 8
 
 
 class Profile(Record, ABC):
-    """What every indenter of revolution answers. Radii r [m] may be arrays of any shape."""
+    """Base of all indenters of revolution. Radii r [m] may be arrays of any shape."""
 
     NAMED: ClassVar[bool] = True
 
@@ -83,7 +83,7 @@ class Profile(Record, ABC):
 
     @property
     def is_convex(self) -> bool:
-        """Whether f' never falls; then the indenter cannot touch beside its circle of contact (`one_circle`)."""
+        """Whether f' never decreases; then the indenter cannot touch outside its circle of contact (`one_circle`)."""
         return isinstance(self, CONVEX)
 
     # At run time a property here would hide the fields of that name below.

@@ -1,4 +1,4 @@
-"""The scene: a layer, an indenter, what is prescribed, and the effects that matter. It knows no mesh and no method."""
+"""The scene: a layer, an indenter, what is prescribed, and the effects that matter. Without meshes and methods."""
 
 from __future__ import annotations
 

@@ -19,7 +19,7 @@ from cases.measurements.ladders.ladder_table import LADDERS
 from cases.measurements.suites import SuiteStudies, run_of
 from cases.run.executors import by_name
 from cases.run.lock import locked
-from cases.run.runner import RunOptions, run_cases
+from cases.run.runner import RunOptions, plan, run_cases
 from cases.runs import Run, read_run
 from cases.verdicts import ExitCode, Status, exit_code
 from contact import InvalidInput
@@ -126,7 +126,7 @@ def list_cases(names: list[str], suite: str) -> None:
     if len(names) == 1:
         _show_case(*cases)
         return
-    tasks = sum(1 for case in cases for _ in case.tasks())
+    tasks = len(plan(cases))
     claims = sum(len(case.claims) for case in cases)
     table = Table(
         title="",

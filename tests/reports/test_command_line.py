@@ -14,6 +14,8 @@ from typer.main import get_command
 from vtkmodules.vtkIOXdmf2 import vtkXdmfReader
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 
+from cases.declare.registry import load_cases
+from cases.run.runner import plan
 from contact import load_scene
 from reports import command_line
 from reports.command_line import GONE, run
@@ -169,6 +171,12 @@ def test_github_gets_annotations_and_nobody_else(library, tmp_path, capsys, monk
     run_here(tmp_path)
     lines = [line for line in capsys.readouterr().out.splitlines() if line.startswith("::error")]
     assert 1 <= len(lines) <= 9
+
+
+def test_the_list_counts_a_solution_that_several_claims_need_once(capsys):
+    assert run(["run", "--list"]) == 0
+    solutions = len(plan(case.in_suite("") for case in load_cases().values()))
+    assert f", {solutions} solutions: all valid" in capsys.readouterr().out
 
 
 @pytest.mark.usefixtures("library")

@@ -17,7 +17,7 @@ from reports.commands import baselines
 from tests.cases.fake_case import FAST, SLOW, fake_case, spoiled
 from tests.cases.fake_method import FakeHertz
 
-CLEAN = WriteConditions(revision=revision(), changed=(), in_ci=False, date="2026-01-01")
+CLEAN = WriteConditions(revision=revision(), changed=(), in_ci=False)
 
 
 @pytest.fixture

@@ -25,7 +25,7 @@ MIXED: Final = ("P2P1", "P3P2", "P4P3")
 ALONE: Final = ("P2", "P3", "P4")
 UNSTABLE: Final = ("P1P1", "P1P0")
 # Cells along a side of the manufactured problems by degree, finest first. On coarse ones the pressure of P2-P1 at
-# nu = 1/2 is more exact than theory promises: its order falls from 2.9 to 2.6 and 2.3 (2026-11-22).
+# nu = 1/2 is more exact than theory promises: its order falls from 2.9 to 2.6 and 2.3.
 CELLS: Final = {2: (32, 16, 8), 3: (16, 8, 4), 4: (16, 8, 4)}
 # Cells across the thickness on which inf-sup constants are measured: a dense eigenvalue problem limits them.
 INF_SUP_CELLS: Final = (1, 2, 4)

@@ -12,9 +12,8 @@ import math
 import numpy as np
 
 from cases.case import Case, CaseScene, Sampling, text_of
-from cases.claims import Zero
 from cases.declare.methods import MethodUse
-from cases.library._claims import exact
+from cases.library._claims import exact, laws
 from cases.library._layers import contact_modulus, half_space
 from cases.library._methods import MDR
 from cases.library._reasons import reasons
@@ -138,17 +137,6 @@ CASE = Case(
             tolerance=1e-11,
             tolerances=MESH_TOLERANCE,
         ),
-        *(
-            Zero(
-                name=name,
-                quantity=quantity,
-                scenes=tuple(scene.name for scene in HERTZ),
-                methods=("mdr", "fem"),
-                tolerance=1e-11,
-                tolerances={"fem": tolerance},
-                why=WHY["laws"],
-            )
-            for name, (quantity, tolerance) in LAWS.items()
-        ),
+        *laws(HERTZ, LAWS, WHY["laws"], tolerance=1e-11, methods=("mdr", "fem")),
     ),
 )

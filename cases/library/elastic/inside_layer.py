@@ -18,10 +18,10 @@ from dataclasses import replace
 import numpy as np
 
 from cases.case import Case, CaseScene, Sampling, text_of
-from cases.claims import Agree, Approach, Norm, Zero
+from cases.claims import Agree, Approach, Norm
 from cases.cost_settings import inside_costs
 from cases.declare.methods import MethodUse
-from cases.library._claims import names_of
+from cases.library._claims import laws, names_of
 from cases.library._convergence import ROOT_TWO, Refinement, neighbours, studies
 from cases.library._layers import LAYERS, THICKNESS, layer, scene_name
 from cases.library._methods import MDR
@@ -178,17 +178,7 @@ CASE = Case(
             )
             for quantity, (norm, tolerance) in FIELDS.items()
         ),
-        *(
-            Zero(
-                name=name,
-                quantity=quantity,
-                scenes=tuple(scene.name for scene in COMPARED),
-                tolerance=2e-10,
-                tolerances={"fem": tolerance},
-                why=WHY["laws"],
-            )
-            for name, (quantity, tolerance) in LAWS.items()
-        ),
+        *laws(COMPARED, LAWS, WHY["laws"], tolerance=2e-10),
         *studies(REFINED, CELLS, ORDERS, against="mdr", nightly=True),
         Approach(
             name="thin limit of the pressure inside",

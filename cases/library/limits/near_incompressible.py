@@ -12,7 +12,7 @@ from typing import ClassVar
 
 from cases.answers import Answer
 from cases.case import Case, CaseScene, Task, text_of
-from cases.claims import Approach, Claim
+from cases.claims import Approach, PerScene
 from cases.cost_settings import elastic_costs
 from cases.declare.methods import MethodUse
 from cases.library._claims import agreements, exact
@@ -79,7 +79,7 @@ ORDERS = (
 
 
 @dataclass(frozen=True, kw_only=True)
-class EvenAccuracy(Claim):
+class EvenAccuracy(PerScene):
     """On one and the same mesh the error exceeds that of the first scene by no more than the fraction ``tolerance``."""
 
     kind: ClassVar[Kind] = Kind.INVARIANT

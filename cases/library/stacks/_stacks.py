@@ -127,19 +127,17 @@ def two_methods(scenes: Iterable[CaseScene], required: Mapping[str, float] = REQ
 
 def pressed_shape(
     scenes: Iterable[CaseScene],
-    tolerance: float = 1e-9,
     *,
     compliance: Compliance = surface_compliance,
     radial_waves: float = 0.0,
-    methods: tuple[str, ...] = ("mdr", "integral_equation"),
 ) -> Zero:
     """Return the shape test of scenes whose pressure is sampled."""
     return Zero(
         name="the pressure presses the shape",
         quantity="pressure",
         scenes=tuple(scene.name for scene in scenes if scene.sampling.ring_edges),
-        methods=methods,
-        tolerance=tolerance,
+        methods=("mdr", "integral_equation"),
+        tolerance=1e-9,
         why=WHY["shape test"],
         derive=partial(unlike_shape, compliance=compliance, radial_waves=radial_waves),
     )

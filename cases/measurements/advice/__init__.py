@@ -7,8 +7,7 @@
 - ``advise``: all of it as sentences
 """
 
-from cases.measurements.advice.ablation import ablations
 from cases.measurements.advice.advise import Advice, advise
 from cases.measurements.advice.dimensionless_numbers import Number, numbers, validity_lines
 
-__all__ = ["Advice", "Number", "ablations", "advise", "numbers", "validity_lines"]
+__all__ = ["Advice", "Number", "advise", "numbers", "validity_lines"]

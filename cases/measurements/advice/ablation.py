@@ -1,4 +1,4 @@
-"""What each listed effect costs and what it moves, from one cheap solution without it."""
+"""Cost of each part of a scene, and the change of the answer without it."""
 
 from __future__ import annotations
 
@@ -16,17 +16,8 @@ if TYPE_CHECKING:
 
 # A solution of more seconds than this hides the imports.
 _IMPORTS_COUNT = 2.0
-NOTHING_PULLS = "without it nothing pulls: the whole detachment is its work"
+NOTHING_PULLS = "without it nothing pulls, and there is no detachment"
 STATIC = ("contact_radius", "indentation_depth", "normal_force")
-
-
-def ablations(method: Method, scene: Scene) -> list[Effect]:
-    """Each listed effect, and the layer's finite thickness, left out in turn.
-
-    Raises:
-        ContactError: If the method does not solve the whole scene.
-    """
-    return ablations_of(method, first_solution(method, scene))
 
 
 def first_solution(method: Method, scene: Scene) -> Solution:
@@ -40,13 +31,18 @@ def first_solution(method: Method, scene: Scene) -> Solution:
 
 
 def ablations_of(method: Method, whole: Solution) -> list[Effect]:
-    """The same for a scene that was solved."""
+    """Cost and change of each part of a solved scene, left out in turn."""
     return [_ablation(method, whole, part) for part in parts_of(whole.scene)]
 
 
 def parts_of(scene: Scene) -> tuple[str, ...]:
     """What can be left out: each listed effect, and the parts of a layer, its finite thickness among them."""
     return (*(type(effect).__name__ for effect in scene.effects), *layer_parts(scene.layer))
+
+
+def nothing_left(scene: Scene, part: str) -> bool:
+    """Whether nothing is left to solve without the part: the adhesion of a detachment."""
+    return part == Adhesion.__name__ and isinstance(scene.loading, Detachment)
 
 
 def change_without(method: Method, whole: Solution, parts: Sequence[str]) -> float:
@@ -68,7 +64,7 @@ def _ablation(method: Method, whole: Solution, part: str) -> Effect:
     from cases.studies import Effect  # noqa: PLC0415 - a single answer needs no records of runs
 
     entry = partial(Effect, case="", scene="", method=method.name, part=part, seconds=_seconds(whole))
-    if part == Adhesion.__name__ and isinstance(whole.scene.loading, Detachment):
+    if nothing_left(whole.scene, part):
         return entry(seconds_without=None, remark=NOTHING_PULLS)
     try:
         forget()

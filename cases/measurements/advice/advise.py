@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class Advice:
-    """What matters.
+    """Which parts of a scene matter.
 
     Attributes:
         accuracy: Wanted relative accuracy.
@@ -70,7 +70,7 @@ def advise(method: Method, scene: Scene, accuracy: float) -> Advice:
 def _together(
     method: Method, whole: Solution, droppable: tuple[Effect, ...], accuracy: float
 ) -> tuple[float, tuple[Effect, ...]]:
-    """Small changes may add up: as long as they do, the part that moves most is needed after all."""
+    """Largest change without all droppable parts at once, and these; while it is too large, the largest is needed."""
     while len(droppable) > 1:
         change = change_without(method, whole, [part.part for part in droppable])
         if change <= accuracy:

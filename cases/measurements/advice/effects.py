@@ -6,9 +6,9 @@ from dataclasses import dataclass, replace
 from cases.answers import Answer, Table
 from cases.case import Case, Task
 from cases.declare.quantities import IMPACT_NUMBERS
-from cases.measurements.advice.ablation import NOTHING_PULLS, STATIC, parts_of, without
+from cases.measurements.advice.ablation import NOTHING_PULLS, STATIC, nothing_left, parts_of, without
 from cases.studies import Effect
-from contact import Adhesion, Detachment, DetachmentPath
+from contact import DetachmentPath
 
 _COMPARED = (*IMPACT_NUMBERS, *DetachmentPath.SCALARS, *STATIC)
 
@@ -48,7 +48,7 @@ class AblationStudy:
                 if less is not None:
                     yield _effect(whole, part, less)
             for part in parts_of(task.problem):
-                if _holds_all(task.problem, part):
+                if nothing_left(task.problem, part):
                     yield _unanswered(whole, part, NOTHING_PULLS)
 
     def _wholes(self, case: Case) -> Iterator[Task]:
@@ -61,13 +61,8 @@ class AblationStudy:
 
 def _ablated(whole: Task) -> Iterator[tuple[str, Task]]:
     for part in parts_of(whole.problem):
-        if not _holds_all(whole.problem, part):
+        if not nothing_left(whole.problem, part):
             yield part, whole.changed(f"without {part}", without(whole.problem, [part]))
-
-
-def _holds_all(problem: object, part: str) -> bool:
-    """Whether nothing is left to solve without the part: the adhesion of a detachment."""
-    return part == Adhesion.__name__ and isinstance(getattr(problem, "loading", None), Detachment)
 
 
 def _effect(whole: Answer, part: str, less: Answer) -> Effect:

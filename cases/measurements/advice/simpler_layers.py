@@ -36,27 +36,27 @@ def simpler(layer: ElasticLayer, part: str) -> ElasticLayer:
 
 
 def _half_space(layer: ElasticLayer) -> ElasticLayer:
-    """Of the surface's material."""
+    """The half-space of the surface's material."""
     top = layer.surface
     return Layer.half_space(youngs_modulus=top.youngs_modulus, poissons_ratio=top.poissons_ratio)
 
 
 def _on_rigid_base(layer: ElasticLayer) -> ElasticLayer:
-    """Held as it was by the elastic one."""
+    """The layer on a rigid base, with the interface of the elastic one."""
     if isinstance(layer, LayerStack | GradedLayer) and isinstance(layer.support, ElasticBase):
         return layer.replace(support=layer.support.interface)
     return layer
 
 
 def _ungraded(layer: ElasticLayer) -> ElasticLayer:
-    """Of the surface's material throughout."""
+    """The uniform layer of the surface's material."""
     if not isinstance(layer, GradedLayer):
         return layer
     return LayerStack(sublayers=(layer.surface,), support=layer.support).simplest()
 
 
 def _as_above(layer: LayerStack, number: int) -> LayerStack:
-    """With the material of a sublayer in the next one."""
+    """The stack with the material of one sublayer in the next one."""
     above, below = layer.sublayers[number : number + 2]
     taken = above.replace(thickness=below.thickness)
     return layer.replace(sublayers=(*layer.sublayers[: number + 1], taken, *layer.sublayers[number + 2 :]))

@@ -1,4 +1,4 @@
-"""Hard parameters walked in steps until something breaks.
+"""Stress tests: one parameter is made harder step by step until a method stops with an error.
 
-Enters: a method. Leaves: one record for each rung: status, digits, invariants. Read `ladders` first.
+`ladders` runs one test by one method, `ladder_table` lists all tests, `ladder_study` runs and judges them.
 """

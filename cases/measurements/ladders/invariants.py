@@ -1,4 +1,4 @@
-"""Laws of mechanics that hold whatever the method; each gives a relative residual, zero for a perfect answer."""
+"""Relative residuals of laws of mechanics, zero for an exact answer of any method."""
 
 from collections.abc import Callable, Mapping
 from typing import Final

@@ -87,7 +87,7 @@ def refusals(test: StressTest) -> list[str]:
 
 
 def worse_than(test: StressTest, accepted: StressTest) -> list[str]:
-    """Return what is worse than accepted: an earlier breakdown, a digit lost on a step, or a step not taken."""
+    """Return the steps that are worse than accepted: refused, not solved, or with one correct digit less."""
     taken = {step.value: step for step in test.steps}
     found = []
     for before in accepted.steps:

@@ -22,11 +22,11 @@ _LARGEST_EXCESS = 1e-12
 
 @dataclass(frozen=True, kw_only=True)
 class LadderPlan:
-    """What is made harder.
+    """A stress test: its parameter, and the scene for each value.
 
     Attributes:
         name: Unique.
-        parameter: What is made harder, with its symbol.
+        parameter: The parameter that is made harder, with its symbol.
         unit: "1" for a ratio.
         values: From easy to hard.
         scene: The scene of a value.
@@ -61,7 +61,7 @@ def climb(plan: LadderPlan, method: Method, label: str | None = None) -> StressT
 
 
 def _step(plan: LadderPlan, method: Method, value: float) -> Step:
-    """One step: digits that repeats share, and residuals; a warning is a crash."""
+    """One step: correct digits from repeated answers, and residuals of laws; a warning counts as a crash."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("error")
@@ -72,7 +72,7 @@ def _step(plan: LadderPlan, method: Method, value: float) -> Step:
     except ContactError as error:
         return _without_digits(value, Status.INVALID, f"{type(error).__name__}: {error!s:.300}")
     except Exception as error:
-        # A crash is no named refusal.
+        # Only the errors of `contact` count as a refusal.
         return _without_digits(value, Status.FAIL, f"crash: {type(error).__name__}: {error!s:.300}")
     wrong = distance > _stated(answer, plan.quantity) + _LARGEST_EXCESS
     return Step(

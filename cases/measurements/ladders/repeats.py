@@ -1,4 +1,4 @@
-"""Repeats of one solve that ought to change nothing, and the digits that all of them share."""
+"""Repeated solutions that should all be equal, and the digits that they share."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -19,10 +19,10 @@ _THREADS: Final = 2
 
 
 def repeated(method: Method, scene: Scene, quantity: str) -> Iterator[float]:
-    """The last value of a quantity, again and again.
+    """Yield the last value of a quantity from repeated solutions.
 
-    As asked; with every input moved by one unit in the last place at random; in other units; amid other steps; on two
-    threads.
+    The scene itself; with every input changed by one unit in the last place at random; in other units; with other steps
+    before the last; on two threads.
     """
     yield _last(method.solve(scene), quantity)
     for seed in range(NUDGES):
@@ -43,7 +43,7 @@ def relative_spread(values: Sequence[float]) -> float:
 
 
 def digits_of(spread: float) -> float:
-    """Significant digits that values with this relative spread share, at most what doubles carry."""
+    """Significant digits that values with this relative spread share, at most those of double precision."""
     return float(np.clip(-np.log10(spread), 0.0, DOUBLE_DIGITS)) if spread else DOUBLE_DIGITS
 
 
@@ -66,7 +66,7 @@ def _one_ulp(name: str, value: Any, draw: np.random.Generator) -> Any:
 
 
 def amid_other_steps(scene: Scene) -> Scene | None:
-    """The same last step after others in another order; None where steps are not independent."""
+    """The scene with other steps before its last one; None where steps are not independent."""
     loading = scene.loading
     if isinstance(loading, ContactRadii):
         flat, last = scene.indenter.flat_radius, float(loading.values[-1])

@@ -46,7 +46,7 @@ class Units:
     time: float = 1.0
 
     def factor(self, quantity: str) -> float:
-        """What a value of this quantity is multiplied by."""
+        """Factor from SI to these units for a quantity."""
         length, stress, time = DIMENSIONS[quantity]
         return float(self.length**length * self.stress**stress * self.time**time)
 

@@ -9,7 +9,7 @@ from contact.records.validation import FloatArray
 # Numbers longer than twenty characters are cut by CalculiX.
 NUMBER = "{:.12e}"
 # From here on elements with four instead of nine points of integration, which do not lock: at nu = 0.49, bonded,
-# a/h = 1, the stiffness on 32 cells is 6e-6 off, with nine points 1e-2 (2026-11-22).
+# a/h = 1, the stiffness on 32 cells is 6e-6 off, with nine points 1e-2.
 NEARLY_INCOMPRESSIBLE = 0.45
 
 

@@ -33,7 +33,7 @@ def last_change(middle: float, fine: float) -> tuple[float, float]:
 
 
 def observed_order(coarse: float, middle: float, fine: float) -> float:
-    """Of meshes of half the cell each time; zero where changes do not shrink."""
+    """Observed order of a value on meshes whose cells are halved each time; zero where changes do not decrease."""
     change, before = fine - middle, middle - coarse
     return math.log2(before / change) if change and before / change > 1.0 else 0.0
 
@@ -56,5 +56,5 @@ def at_zero(places: FloatArray, values: FloatArray, errors: FloatArray) -> tuple
 
 
 def _weights_at_zero(places: FloatArray) -> FloatArray:
-    """Of the polynomial through values at places (Lagrange)."""
+    """Values at zero of the Lagrange polynomials of the given places."""
     return np.array([np.prod([x / (x - own) for x in places if x != own]) for own in places])

@@ -9,10 +9,8 @@ from numpy.typing import NDArray
 
 from contact.records.validation import FloatArray
 
-# Sizes of cells grow from the contact's edge by exp(GRADING) in all: the first is 1.3e-6 of the contact radius on 64
-# cells.  Chosen by CalculiX's own convergence at a/h = 1, nu = 0.3, bonded and unbonded (2026-11-22): of 8, 10, 11, 12,
-# 13, 14, 16 and 19 its extrapolated stiffness differs least with 12 between 8, 16, 32 and 16, 32, 64 cells, by 6e-6 at
-# most; observed orders are 3.8 to 4.2.
+# Sizes of cells grow from the contact's edge by exp(GRADING) in all, to 1.3e-6 of the contact radius on 64 cells. With
+# 8 and with 19 extrapolated stiffnesses converge more slowly than with 12, which leaves 6e-6.
 GRADING = 12.0
 # The mesh ends so many thicknesses beyond the contact. On bonded layers everything decays exponentially: 6 and 8 give
 # the same seven digits at nu = 0.3. An unbonded layer slides on its base like a sheet, whose displacement falls like

@@ -39,13 +39,13 @@ MET, MOST_STEPS = 1e-4, 10
 # Second radius of those exponents, relative; they are used over 1e-4, so that two digits of them are enough.
 STEP = 1e-2
 # 1 - 2 nu of the layers that lead to nu = 1/2, by a polynomial. Bonded, a/h = 1: exact stiffnesses at these five give
-# that at nu = 1/2 to 1e-6, and CalculiX's meshes still converge at the last one (2026-11-22).
+# that at nu = 1/2 to 1e-6, and CalculiX's meshes still converge at the last one.
 AWAY = (0.08, 0.04, 0.02, 0.01, 0.005)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Mesh:
-    """What one mesh answers at one contact radius: a [m], depth [m], force [N] and stiffness [N/m]."""
+    """Values of one mesh at one contact radius: a [m], depth [m], force [N] and stiffness [N/m]."""
 
     radius: float
     depth: float
@@ -174,7 +174,7 @@ def _loaded(mesh: Mesh, scene: Scene, value: float, exponents: Exponents) -> Mes
 
 
 def _at_radius(scene: Scene, radius: float, cells: int) -> Mesh:
-    """Superposes the two steps so that the outermost node in contact carries nothing.
+    """Superposes the two steps so that the force on the outermost node in contact vanishes.
 
     The deck is written in contact radii and Young's moduli: it takes tiny elements for inverted ones.
     """

@@ -10,7 +10,7 @@ from cases.gate.write_permission import WriteConditions
 from cases.verdicts import Kind
 from tests.cases.example_run import CASE, passing_run
 
-NOW = WriteConditions(revision="0" * 40, changed=(), in_ci=False, date="2026-01-01")
+NOW = WriteConditions(revision="0" * 40, changed=(), in_ci=False)
 SPREAD = 1e-10  # tolerance 1e-9
 
 

@@ -7,7 +7,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from cases.measurements.advice import ablations, advise
+from cases.measurements.advice import advise
 from contact import (
     Adhesion,
     Cone,
@@ -51,7 +51,7 @@ def test_a_slow_relaxation_may_be_dropped_and_a_fast_one_not():
 
 def test_the_changes_are_those_of_solving_with_and_without():
     scene = impact(1e-3)
-    change = ablations(Mdr(), scene)[0].changes["peak_force"]
+    change = part(advise(Mdr(), scene, 1e-2), "StandardSolid").changes["peak_force"]
     elastic = Mdr().solve(scene.replace(effects=()))
     whole = Mdr().solve(scene)
     assert change == pytest.approx(abs(whole.peak_force - elastic.peak_force) / whole.peak_force, rel=1e-12, abs=0.0)
@@ -172,7 +172,8 @@ def test_a_table_of_relaxation_times_has_no_line_per_branch():
 
 def test_what_all_parts_share_is_no_effect_s_share_of_the_time():
     """The flat-punch data are computed with and without viscosity; kept from before, they made it 96 % of the time."""
-    shares = {p.part: p.share_of_time for p in ablations(Mdr(), impact(1e-3))}
+    advice = advise(Mdr(), impact(1e-3), 1e-2)
+    shares = {p.part: p.share_of_time for p in (*advice.needed, *advice.droppable)}
     assert sum(shares.values()) < 1.5
     assert shares["StandardSolid"] < 0.8
 

@@ -1,4 +1,4 @@
-"""What may be left out of a layered body, and by how much the answer moves then."""
+"""Parts that may be left out of a layered body, and the change of the answer without them."""
 
 import numpy as np
 import pytest
