@@ -1,4 +1,4 @@
-"""Dimensionless numbers of a solved scene: estimates of which effects matter, each with its limit.
+"""Dimensionless numbers that say beforehand which effects a scene calls for; estimates, each with its limit.
 
 Each bounds a relative change of depth, force or restitution while it is small, for punches, cones, paraboloids,
 truncated ones and r^6. A half-space in place of a layer changes them by 0.4 to 1.2 times a/h, neglected adhesion by at
@@ -32,7 +32,7 @@ from contact.records.validation import FloatArray
 from mdr import Mdr
 from mdr.friction.statement import friction_effect
 
-# Density of soft layers [kg/m^3], which scenes do not have.
+# That of soft layers [kg/m^3]; a scene knows none.
 TYPICAL_DENSITY = 1000.0
 ATOMIC_RANGE = 0.3e-9  # m
 # From this multiple of the accuracy on, an error of a half-space is much larger.
@@ -41,7 +41,7 @@ _HALF_SPACE_MOVES = (0.4, 1.2)  # times a/h
 _ADHESION_MOVES = 2.0  # times dl/delta
 _DASHPOT_MOVES = 6.5  # times tau/T
 # dl/z0 at a Tabor parameter of 5, with the contact radius at no load.
-_JKR_VALID = 20.0
+_JKR_HOLDS = 20.0
 _SMALL_INERTIA = 0.1
 # Coefficient of friction between wet soft layers and smooth indenters, as an order of magnitude.
 _TYPICAL_FRICTION = 0.1
@@ -59,9 +59,9 @@ class Number:
     """One dimensionless number.
 
     Attributes:
-        name: Ratio, such as "a/h".
+        name: What it compares.
         value: Its value.
-        meaning: Consequence at the wanted accuracy, and limit of the estimate.
+        meaning: What it says at the accuracy wanted, and where the estimate ends.
     """
 
     name: str
@@ -75,7 +75,7 @@ class Number:
 
 
 def validity_lines(scene: Scene, answer: Solution) -> list[str]:
-    """Limits of the theory of an answer, in sentences; none for other layers than a plain one, or without contact."""
+    """How far the theory of an answer reaches, in sentences; none for other layers than a plain one, or no contact."""
     if not isinstance(scene.layer, Layer) or not _largest(answer, "contact_radius"):
         return []
     found = [_tip_share(scene, answer)]
@@ -117,7 +117,7 @@ def _strain(scene: Scene, answer: Solution) -> Number:
 
 
 def _tip_share(scene: Scene, answer: Solution) -> Number | None:
-    """a/R of round tips, with the limits of a paraboloid in place of a sphere and of a sphere."""
+    """For round tips: where a paraboloid no longer is a sphere, or a sphere comes near its equator."""
     match scene.indenter:
         case Paraboloid(radius_of_curvature=radius):
             remedy = "contact radius over tip radius. At 0.4 a Sphere is 4 % higher than the Paraboloid."
@@ -187,7 +187,7 @@ def _duration(answer: Solution) -> float:
 
 
 def _relaxation(scene: Scene, duration: float, accuracy: float) -> list[Number]:
-    """tau/T of a dashpot. For relaxing branches `advise` solves without them."""
+    """Whether a dashpot counts; branches are judged by `advise`, which solves without them."""
     model = scene.effect(Viscoelasticity)
     if model is None or not model.relaxation.viscosity:
         return []
@@ -196,7 +196,7 @@ def _relaxation(scene: Scene, duration: float, accuracy: float) -> list[Number]:
 
 
 def _inertia(scene: Scene, answer: ImpactHistory) -> Number:
-    """Time of a shear wave through min(a, h), as deep as the layer deforms, over the contact time."""
+    """Over the contact radius or the thickness, whichever is less: that is as deep as the layer moves."""
     wave = math.sqrt(scene.layer.shear_modulus / TYPICAL_DENSITY)
     depth = min(scene.layer.thickness, answer.peak_contact_radius)
     value = depth / (wave * answer.contact_time)
