@@ -20,8 +20,8 @@ AT = [int(np.argmin(np.abs(RATIOS - ratio))) for ratio in SHOWN]
 HEAD = """# Formulas in circulation, and how right they are
 
 Written by `python -m docs.formulas.page`; the formulas are plain functions in `docs/formulas/`.
-The reference is MDR on the integral equation, which agrees with the same equation in extended precision to 1e-9 and with
-finite elements to 3e-6; the model is linear, frictionless and axisymmetric, as the formulas assume. Variables:
+The reference is MDR on the integral equation, which agrees with the same equation in extended precision to 1e-9 and
+with finite elements to 3e-6; the model is linear, frictionless and axisymmetric, as the formulas assume. Variables:
 x = sqrt(R delta)/h for a paraboloid, delta tan(alpha)/h for a cone of half angle alpha, t = a/h for a flat punch.
 A formula is judged at the Poisson's ratios that it claims.
 
