@@ -60,6 +60,10 @@ class _PressedFields:
 
         return field
 
+    def along(self, angle: FloatArray) -> _PressedFields:
+        """The fields of a shape in directions [rad]."""
+        return _PressedFields(self._fields.along(angle), self._number)
+
     def inside(self, step: int, known: KnownContact) -> InteriorFields:
         """The body under one step that presses.
 

@@ -11,7 +11,7 @@ from cases.declare.uncertain_inputs import read_inputs
 from cases.files import write_whole
 from cases.measurements.uncertain_fit import fit_uncertain
 from contact import Adhesion, InvalidInput, Scene, load_scene
-from contact.files.scene_file import scene_notes, uses_units
+from contact.files.scene_file import uses_units
 from contact.records.units import read_quantity
 from contact.scene.effects import Viscoelasticity
 from mdr.curves import Limit, fit_curve, fit_history, fit_map
@@ -132,7 +132,7 @@ def fit_file(file: Path, scene_file: Path, request: FitRequest, *, uncertain: st
         show_table(table, on=terminal)
     facts = [("R^2 in contact", f"{found.r_squared:.6f}")]
     facts += [("numerical error", f"{small(found.numerical_error)} of E, in its interval")]
-    notes = (*found.notes, *curve.notes, *scene_notes(scene_file))
+    notes = (*found.notes, *curve.notes)
     show_facts(facts + [("note", line) for line in notes], on=terminal)
     _write_outputs(request.outputs, lambda: fit_csv(found), "fit_figure", found)
 
