@@ -1,10 +1,14 @@
 """The equivalent bed of springs: radius, depth and force belong together, whatever is prescribed."""
 
+from itertools import product
+
 import numpy as np
 import pytest
 
+from bem.numerics import EPS
 from contact import (
     Cone,
+    ContactError,
     ContactRadii,
     FlatPunch,
     IndentationDepths,
@@ -22,6 +26,8 @@ from contact import (
 )
 from mdr import Mdr
 from tests.bed import bed_of
+from tests.random_scenes import INDENTERS as EVERY_INDENTER
+from tests.random_scenes import drawn_scene
 
 LAYER = Layer(thickness=2e-3, youngs_modulus=1e6, poissons_ratio=0.5)
 UNBONDED = Layer(thickness=2e-3, youngs_modulus=1e6, poissons_ratio=0.4, support="unbonded")
@@ -50,6 +56,30 @@ def test_radius_depth_and_force_invert_each_other(layer, indenter):
         np.testing.assert_allclose(solved(layer, indenter, loading).contact_radius, path.contact_radius, rtol=2e-13)
         alone = solved(layer, indenter, type(loading)(loading.values[[7]]))
         np.testing.assert_allclose(alone.contact_radius, path.contact_radius[7], rtol=2e-13)
+
+
+@pytest.mark.parametrize("loading", ["IndentationDepths", "NormalForces"])
+@pytest.mark.parametrize("layer", ["half-space", "bonded layer", "unbonded layer"])
+def test_radii_of_random_loads_give_the_loads_again(layer, loading):
+    """Loads of blunt tips with steep flanks were off by a factor of two: slopes of secants change many times over."""
+    quantity = {"IndentationDepths": "indentation_depth", "NormalForces": "normal_force"}[loading]
+    compared = 0
+    for seed, kind in product((2, 3), sorted(set(EVERY_INDENTER) - {"FlatPunch"})):
+        draw = np.random.default_rng([seed, *kind.encode()])
+        scene = drawn_scene(draw, layer=layer, indenter=kind, loading=loading, effect="no effect")
+        try:
+            path = Mdr().solve(scene)
+        except ContactError:  # too deep, several contacts
+            continue
+        flat = scene.indenter.flat_radius
+        radius, at = np.unique(path.contact_radius, return_index=True)
+        at, radius = at[radius > flat * (1 + 1e-12)], radius[radius > flat * (1 + 1e-12)]
+        if radius.size:
+            again = Mdr().solve(scene.replace(loading=ContactRadii(radius)))
+            off = np.abs(getattr(again, quantity) / getattr(path, quantity)[at] - 1)
+            assert (off < 1e-12 + 8 * EPS / (1 - flat / radius)).all(), scene
+            compared += 1
+    assert compared >= 10
 
 
 @pytest.mark.parametrize("layer", LAYERS, ids=["bonded", "unbonded", "half-space"])
