@@ -22,9 +22,7 @@ def outcome(scene, accuracy):
 
 
 # Of seed 9 these are the scenes in which both runs miss the truth alike: by up to 68 times what they tell.
-@pytest.mark.parametrize(
-    ("number", "accuracy"), [(39, 1e-5), (59, 1e-5), (78, 1e-5), (28, 1e-6), (33, 1e-6), (41, 1e-6), (8, 1e-9)]
-)
+@pytest.mark.parametrize(("number", "accuracy"), [(39, 1e-5), (28, 1e-6), (8, 1e-9)])
 def test_two_runs_that_agree_by_chance_still_state_an_error(number, accuracy):
     """Fails without the floor under stated errors: three tenths of the accuracy asked for."""
     scene = random_scenes(9, number + 1, "impact", (1e-2, 5.0))[number]
@@ -33,7 +31,7 @@ def test_two_runs_that_agree_by_chance_still_state_an_error(number, accuracy):
     assert np.all(np.abs(values / truth - 1.0) <= stated + own)
 
 
-@pytest.mark.parametrize("power", [1.1, 1.3, 1.7, 2.9, 3.456, 4.147])
+@pytest.mark.parametrize("power", [1.1, 1.7, 4.147])
 @pytest.mark.parametrize("accuracy", [1e-6, 1e-8])
 def test_contact_times_of_tips_whose_power_is_no_integer(power, accuracy):
     """On the half-space, in closed form: T = 2 sqrt(pi) Gamma(1 + 1/q) / Gamma(1/2 + 1/q) d/v0 with q = 2 + 1/p.

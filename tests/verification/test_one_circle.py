@@ -175,7 +175,7 @@ def gap_beside(path, indenter):
     return (indenter.height(r) - depth + path.surface_displacement(r)) / depth
 
 
-@pytest.mark.parametrize(("method", "count"), [(MDR, 60), (DIRECT, 4), (FEM, 3), (BEM, 5)], ids=lambda v: str(v)[:3])
+@pytest.mark.parametrize(("method", "count"), [(MDR, 25), (DIRECT, 3), (FEM, 2), (BEM, 2)], ids=lambda v: str(v)[:3])
 def test_what_is_answered_has_no_negative_gap_beside_the_contact(method, count):
     check_random_tables(method, count, seed=1)
 
@@ -242,12 +242,11 @@ def test_tables_with_falling_slopes_are_not_convex(indenter):
     assert not indenter.is_convex
 
 
-@pytest.mark.parametrize("support", ["bonded", "unbonded"])
-@pytest.mark.parametrize("ratio", [0.5, 0.48, 0.3, 0.0])
+@pytest.mark.parametrize(("support", "ratio"), [("bonded", 0.5), ("bonded", 0.48), ("unbonded", 0.3)])
 def test_the_mdr_profile_of_every_truncated_cone_rises(support, ratio):
     """So convex profiles, sums of truncated cones, cannot be touched by a bulge beside the contact."""
     layer = Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=ratio, support=support)
-    for flat in np.geomspace(1e-3, 40.0, 9):
+    for flat in np.geomspace(1e-3, 40.0, 4):
         cone = TruncatedCone(flat_radius=float(flat), slope=1.0)
         excess = np.geomspace(1e-6 * flat, 0.999 * (60.0 - flat), 300)
         assert np.all(np.diff(bed_of(layer, cone).mdr_profile(flat + excess)) > 0.0)
