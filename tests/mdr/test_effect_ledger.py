@@ -2,9 +2,6 @@
 
 import subprocess
 import sys
-import time
-
-import pytest
 
 from contact import Adhesion, ContactRadii, Detachment, Layer, Paraboloid, Scene
 from mdr import Mdr
@@ -51,31 +48,3 @@ def test_stage_records_name_what_ran():
     impact = stages(Mdr().solve(figure_12(1e-3)))
     assert "impact" in impact
     assert "adhesion" not in impact
-
-
-def seconds_of(call):
-    """Processor time; beside other work the least of several calls says what it costs."""
-    start = time.process_time()
-    call()
-    return time.process_time() - start
-
-
-@pytest.mark.slow
-def test_time_grows_at_most_linearly_with_the_number_of_relaxation_times():
-    import numpy as np
-
-    from bem.flat_punch import IntegralEquation
-    from contact import PronySeries
-    from mdr.impact.solver import impact_batch
-    from tests.mdr.viscoelastic_scenes import GLASSY_BRANCH, LONG_TERM
-
-    source, seconds = IntegralEquation(), []
-    for count in (1, 16, 64):
-        model = PronySeries(
-            long_term_shear_modulus=LONG_TERM,
-            shear_moduli=np.full(count, GLASSY_BRANCH / count),
-            relaxation_times=np.geomspace(2e-4, 5e-3, count) if count > 1 else np.array([1e-3]),
-        )
-        scenes = [figure_12(1e-3).replace(effects=(model,))] * 100
-        seconds.append(min(seconds_of(lambda scenes=scenes: impact_batch(scenes, source)) for _ in range(3)))
-    assert seconds[2] - seconds[0] < 1.5 * 63.0 / 15.0 * max(seconds[1] - seconds[0], 0.05 * seconds[0])

@@ -113,7 +113,7 @@ def test_a_spring_that_is_touched_and_released_within_one_step():
     assert_same_bed(one, short)
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", [0, *(pytest.param(n, marks=pytest.mark.slow) for n in range(1, 6))])
 def test_a_long_step_is_many_short_ones(seed):
     draw, profile = np.random.default_rng(seed), np.linspace(0.0, 1.0, 60) ** 2
     law = random_law(draw)
