@@ -5,15 +5,7 @@ import tracemalloc
 import numpy as np
 import pytest
 
-from contact import (
-    ContactRadii,
-    IndentationDepths,
-    Layer,
-    NormalForces,
-    Paraboloid,
-    Scene,
-    TruncatedCone,
-)
+from contact import ContactRadii, IndentationDepths, Layer, NormalForces, Paraboloid, Scene, TruncatedCone
 from mdr import Mdr
 
 # More values than any array of a solution is long.

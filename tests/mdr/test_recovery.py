@@ -72,13 +72,6 @@ def test_free_springs_creep_exactly(name):
         np.testing.assert_allclose(later, exactly(spectrum, surface, strains, time), rtol=0.0, atol=1e-14)
 
 
-def test_a_liquid_has_one_mode_that_stays():
-    found = modes(0.0, 0.0, np.array([0.3, 0.6, 0.1]), np.array([1.0, 2.0, 7.0]))
-    assert found.rates[0] == 0.0
-    assert np.all(found.strains[:, 0] == 0.0)
-    assert np.all(found.rates[1:] > [1.0, 2.0])
-
-
 def random_law(draw):
     times = 10.0 ** draw.uniform(-3.0, 3.0, draw.integers(1, 8))
     weights, long_term = np.exp(draw.uniform(np.log(1e-4), 0.0, times.size)), draw.choice([0.0, draw.uniform()])

@@ -56,22 +56,6 @@ def scene_of(layer, loading, indenter=PARABOLOID, effects=STICK):
     return Scene(layer=layer, indenter=indenter, loading=loading, effects=effects)
 
 
-@pytest.mark.parametrize(("support", "nu"), [("bonded", 0.5), ("unbonded", 0.3)])
-def test_a_layer_cut_into_sublayers_has_its_kernel(nu, support):
-    cut = stack((1.0, 1.0, nu), (0.7, 1.0, nu), (1.3, 1.0, nu), support=support)
-    k = np.geomspace(1e-2, 20.0, 30)
-    found, whole = stack_kernel(cut).beyond_half_space(k), StackKernel.single(support, nu).beyond_half_space(3.0 * k)
-    for entry, exact in zip(found, whole, strict=True):
-        assert entry == pytest.approx(exact, rel=1e-13, abs=1e-14)
-
-
-def test_a_base_of_the_same_material_is_a_half_space():
-    base = stack((1.0, 1.0, 0.2), support=ElasticBase(youngs_modulus=1.0, poissons_ratio=0.2))
-    punch = Adhered(stack_kernel(base), 3.0)
-    exact = 0.8 * math.log(2.2) / 0.6
-    assert punch.stiffness / 3.0 == pytest.approx(exact, rel=1e-13, abs=0.0)
-
-
 @pytest.mark.parametrize(("name", "ratio"), zip(STACKS, (0.3, 4.0, 0.3, 4.0, 0.3), strict=True))
 def test_the_surface_below_a_punch_neither_sinks_unevenly_nor_slides(name, ratio, monkeypatch):
     """Then what the surface beside the punch leaves of its depth goes on analytically from the density below it."""

@@ -10,15 +10,7 @@ import numpy as np
 import pytest
 
 from bem.flat_punch import IntegralEquation
-from contact import (
-    ContactRadii,
-    IndentationDepths,
-    Layer,
-    NormalForces,
-    Paraboloid,
-    Scene,
-    TruncatedCone,
-)
+from contact import ContactRadii, IndentationDepths, Layer, NormalForces, Paraboloid, Scene, TruncatedCone
 from mdr import Mdr
 from tests.bed import bed_of
 

@@ -19,7 +19,7 @@ from contact import (
     Scene,
 )
 from mdr import Mdr
-from tests.drawn_scenes import random_scene, random_scenes
+from tests.drawn_scenes import scene_of
 from tests.referees.restated import RESTATEMENTS, changes_when_restated
 from tests.referees.spring_by_spring import spring_by_spring
 
@@ -111,7 +111,7 @@ def test_a_layer_pressed_again_and_again():
 @pytest.mark.parametrize("number", [1, 3, 4, *(pytest.param(n, marks=pytest.mark.slow) for n in range(5, 12))])
 def test_random_reloading_however_it_is_written_down(number):
     """Branch order, a split branch and the unit of time change no digit that counts."""
-    scene = random_scenes(21, number + 1, "reloading", (1e-2, 5.0))[number]
+    scene = scene_of(21, number)
     try:
         answer = Mdr().solve(scene)
     except ContactError:
@@ -173,6 +173,6 @@ def test_the_referee_keeps_its_digits_where_a_punch_sinks_into_a_layer_that_flow
 
 @pytest.mark.parametrize("number", [112, pytest.param(135, marks=pytest.mark.slow)])
 def test_a_layer_that_flows_is_followed_on_more_springs_before_it_is_refused(number):
-    scene = random_scene(np.random.default_rng([77, number]), "reloading")
+    scene = scene_of(77, number)
     distance, allowed = distance_from_springs(scene)
     assert distance <= allowed

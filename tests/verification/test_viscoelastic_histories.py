@@ -37,7 +37,6 @@ STANDARD = StandardSolid(
 )
 KELVIN_VOIGT = KelvinVoigt(shear_modulus=TOTAL, viscosity=TOTAL * RELAXATION_TIME)
 LEGENDRE = np.polynomial.legendre.leggauss(32)
-HERTZ = 16.0 / 3.0 * np.sqrt(CURVATURE)  # F = HERTZ G delta^1.5 on an incompressible half-space
 
 
 def solve(loading, *, thickness=np.inf, model=STANDARD, indenter=None):
@@ -161,21 +160,6 @@ def test_loading_unloading_and_reloading_before_recovery(thickness):
     answer = solve(DepthHistory(time=time, depth=depth), thickness=thickness)
     expected = brute_force(thickness, time, depth)
     np.testing.assert_allclose(answer.normal_force, expected, atol=1.5e-2 * expected.max())
-
-
-def test_one_formulation():
-    """A Prony series of one branch is the standard solid; a very fast branch is a dashpot."""
-    time = np.linspace(0.0, 4e-3, 41)
-    load = DepthHistory(time=time, depth=1e-4 * np.sin(np.pi * time / 4e-3) ** 2)
-    series = PronySeries(
-        long_term_shear_modulus=LONG_TERM, shear_moduli=[GLASSY_BRANCH], relaxation_times=[RELAXATION_TIME]
-    )
-    standard = solve(load)
-    np.testing.assert_allclose(solve(load, model=series).normal_force, standard.normal_force, rtol=1e-12, atol=1e-14)
-    elastic = solve(load, model=None)
-    np.testing.assert_allclose(
-        elastic.normal_force, HERTZ * TOTAL * np.asarray(load.depth) ** 1.5, atol=1e-7 * elastic.normal_force.max()
-    )
 
 
 def test_a_worn_cone_and_its_flat_end():
