@@ -34,6 +34,8 @@ from contact.records.units import Unit
 
 # Validators are built when the first record of a class is made: scenes use few of the classes.
 _CONFIG = pydantic.ConfigDict(arbitrary_types_allowed=True, extra="forbid", strict=True, defer_build=True)
+# Frozen by `Record` itself: methods that are generated for each class take a tenth of the time of `import contact`.
+_OPTIONS: Any = {"kw_only": True, "eq": False, "repr": False, "config": _CONFIG}
 # Other names that books and users give to fields.
 _SYNONYMS = {
     "base": "support",
@@ -81,7 +83,7 @@ def _parameter(field: dataclasses.Field[Any]) -> inspect.Parameter:
     )
 
 
-@pydantic.dataclasses.dataclass(frozen=True, kw_only=True, eq=False, config=_CONFIG)
+@pydantic.dataclasses.dataclass(**_OPTIONS)
 class Record(metaclass=_RecordType):
     """Base of all records: equality, hash and change by copying, by content (arrays included)."""
 
@@ -91,6 +93,18 @@ class Record(metaclass=_RecordType):
     """Entries of files that replace fields, with their JSON schemas."""
     REPLACED: ClassVar[Mapping[str, str]] = {}
     """Fields that files may leave out, with the shorthand that replaces them; "" for another part of the scene."""
+
+    if not TYPE_CHECKING:  # type checkers know that records are frozen
+
+        def __setattr__(self, name: str, value: object) -> None:
+            raise dataclasses.FrozenInstanceError(f"cannot assign to field {name!r}")
+
+        def __delattr__(self, name: str) -> None:
+            raise dataclasses.FrozenInstanceError(f"cannot delete field {name!r}")
+
+    def __repr__(self) -> str:
+        fields = (f"{field.name}={getattr(self, field.name)!r}" for field in dataclasses.fields(self))
+        return f"{type(self).__qualname__}({', '.join(fields)})"
 
     def _content(self) -> tuple[Any, ...]:
         values = [getattr(self, field.name) for field in dataclasses.fields(self)]
@@ -150,7 +164,7 @@ def record(cls: type[R]) -> type[R]:
     Raises:
         InvalidInput: At construction, one line for each offending field.
     """
-    made = pydantic.dataclasses.dataclass(cls, frozen=True, kw_only=True, eq=False, config=_CONFIG)
+    made = pydantic.dataclasses.dataclass(cls, **_OPTIONS)
     return cast(type[R], made)  # pydantic returns the class that it was given
 
 
