@@ -83,7 +83,20 @@ def _parameter(field: dataclasses.Field[Any]) -> inspect.Parameter:
     )
 
 
-@pydantic.dataclasses.dataclass(**_OPTIONS)
+C = TypeVar("C")
+
+
+@dataclass_transform(frozen_default=True, kw_only_default=True, field_specifiers=(dataclasses.field, pydantic.Field))
+def record(cls: type[C]) -> type[C]:
+    """Make a `Record` subclass a frozen, keyword-only dataclass that validates its fields.
+
+    Raises:
+        InvalidInput: At construction, one line for each offending field.
+    """
+    return cast(type[C], pydantic.dataclasses.dataclass(cls, **_OPTIONS))
+
+
+@record
 class Record(metaclass=_RecordType):
     """Base of all records: equality, hash and change by copying, by content (arrays included)."""
 
@@ -155,17 +168,6 @@ class Record(metaclass=_RecordType):
 
 
 R = TypeVar("R", bound=Record)
-
-
-@dataclass_transform(frozen_default=True, kw_only_default=True, field_specifiers=(dataclasses.field, pydantic.Field))
-def record(cls: type[R]) -> type[R]:
-    """Make a `Record` subclass a frozen, keyword-only dataclass that validates its fields.
-
-    Raises:
-        InvalidInput: At construction, one line for each offending field.
-    """
-    made = pydantic.dataclasses.dataclass(cls, **_OPTIONS)
-    return cast(type[R], made)  # pydantic returns the class that it was given
 
 
 class OneOf:

@@ -302,7 +302,7 @@ def scene_file(tmp_path):
 
 
 def modulus_in(text):
-    line = next(line for line in text.splitlines() if line.strip().startswith("youngs modulus"))
+    line = next(line for line in text.splitlines() if line.strip().startswith("Young's modulus"))
     assert line.split()[-1] == "kPa"
     return 1e3 * float(line.split()[2].partition("(")[0])
 
