@@ -223,15 +223,13 @@ def test_a_step_without_contact_has_neither_outline_nor_pressure():
 
 def random_scene(draw):
     """A shape that mdr may answer, on any layer it models."""
-    nu, h, a = draw.choice([0.0, 0.3, 0.45, 0.5]), 1.0, draw.uniform(0.1, 3.0)
+    nu, h, a = float(draw.choice([0.0, 0.3, 0.45, 0.5])), 1.0, float(draw.uniform(0.1, 3.0))
     body = [
         HALF_SPACE,
         Layer(thickness=h, youngs_modulus=1.0, poissons_ratio=nu),
         Layer(thickness=h, youngs_modulus=1.0, poissons_ratio=nu, support="unbonded"),
-        Layer(
-            thickness=h,
-            youngs_modulus=1.0,
-            poissons_ratio=nu,
+        LayerStack(
+            sublayers=(Sublayer(thickness=h, youngs_modulus=1.0, poissons_ratio=nu),),
             support=ElasticBase(youngs_modulus=float(draw.uniform(0.5, 5.0)), poissons_ratio=0.3),
         ),
         LayerStack(
@@ -242,7 +240,7 @@ def random_scene(draw):
             interfaces=("bonded",),
         ),
     ][draw.integers(5)]
-    eps, n = draw.uniform(0.02, 0.25), int(draw.choice([2, 3, 4, 6]))
+    eps, n = float(draw.uniform(0.02, 0.25)), int(draw.choice([2, 3, 4, 6]))
     power = PowerLaw(exponent=float(draw.uniform(1.5, 4.0)), reference_radius=a, reference_height=0.05 * a)
     term = PowerLaw(exponent=float(draw.uniform(1.5, 4.0)), reference_radius=a, reference_height=0.05 * a * eps)
     indenter = [
