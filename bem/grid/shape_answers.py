@@ -71,13 +71,14 @@ class ShapeState:
 
     def displacement(self, radius: FloatArray, angle: FloatArray) -> FloatArray:
         """w [m] between the centres of cells."""
+        edge = float(self.cells.radius[-1, -1]) / sqrt(2.0) * self.cell_size
+        if np.max(radius, initial=0.0) > edge:
+            raise InvalidInput(f"radius: bem gives displacements by shapes up to {edge:g} m from the axis")
         unit = self.depth if isinstance(self.shape, Flat) else self.cell_size
         return unit * self._at("displacement", radius, angle)
 
     def _at(self, name: str, radius: FloatArray, angle: FloatArray) -> FloatArray:
         r = radius / self.cell_size
-        if np.max(r, initial=0.0) > (edge := float(self.cells.radius[-1, -1]) / sqrt(2.0)):
-            raise InvalidInput(f"radius: bem gives fields of shapes up to {edge * self.cell_size:g} m from the axis")
         return self.cells.interpolated(name, r * np.cos(angle), r * np.sin(angle))
 
 

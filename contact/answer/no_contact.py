@@ -8,6 +8,7 @@ from collections.abc import Callable
 from typing import Any, TypeVar, cast
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from contact.answer.inside import InteriorFields, KnownContact
 from contact.answer.paths import ContactPath
@@ -60,7 +61,7 @@ class _PressedFields:
 
         return field
 
-    def along(self, angle: FloatArray) -> _PressedFields:
+    def along(self, angle: ArrayLike) -> _PressedFields:
         """The fields of a shape in directions [rad]."""
         return _PressedFields(self._fields.along(angle), self._number)
 

@@ -181,7 +181,7 @@ class ContactPath(Solution):
         """The fields in a direction, where they depend on it."""
         fields: Any = self.fields
         if isinstance(self.scene.indenter, Shape) and hasattr(fields, "along"):
-            fields = fields.along(np.ravel(angle))
+            fields = fields.along(angle)
         return cast("Fields | None", fields)
 
     def inside(self, step: int = 0) -> Inside:

@@ -210,7 +210,7 @@ def test_fields_that_are_not_known_are_refused(tmp_path):
     with pytest.raises(InvalidInput, match="not kept in files"):
         stored.outline(0.0)
     cells = solved(BEM, layer(1.0), Pyramid(slope=0.1))
-    with pytest.raises(InvalidInput, match="bem gives fields of shapes up to"):
+    with pytest.raises(InvalidInput, match="bem gives displacements by shapes up to"):
         cells.surface_displacement(100.0)
 
 
