@@ -41,6 +41,16 @@ class Fields(Protocol):
         """w(r) [m], positive into the layer."""
 
 
+class ShapedFields(Protocol):
+    """Fields of one equilibrium under a `Shape`."""
+
+    def outline(self, angle: FloatArray, step: int) -> FloatArray:
+        """a(phi) [m]."""
+
+    def pressure(self, radius: FloatArray, step: int, angle: FloatArray) -> FloatArray:
+        """p(r, phi) [Pa], zero outside the contact."""
+
+
 class InstantInterior(InteriorFields, Protocol):
     """Fields inside at one instant of a history."""
 
@@ -126,7 +136,7 @@ class ContactPath(Solution):
     indentation_depth: Depths
     normal_force: Forces
     contact_stiffness: Stiffnesses
-    fields: Fields | None = None
+    fields: Fields | ShapedFields | None = None
 
     def scale(self, quantity: str) -> FloatArray:
         """The quantity's own magnitude; with adhesion, where it may cross zero, its largest along the path.
