@@ -22,8 +22,10 @@ from contact import (
     Loading,
     NormalForces,
     Scene,
+    Shape,
     Solution,
     Unsupported,
+    not_round,
 )
 from contact.scene.effects import Viscoelasticity
 
@@ -96,8 +98,14 @@ def _compressible_part(layer: ElasticLayer) -> str:
     return f"layer.poissons_ratio = {layer.surface.poissons_ratio:g}"
 
 
+SHAPES = Solver((), (IndentationDepths, NormalForces), "mdr.shapes", "solve_shape")
+
+
 def solver_of(scene: Scene) -> Solver | Unsupported:
     """The computation for a scene, or what stands in the way."""
+    if isinstance(scene.indenter, Shape):
+        other = None if SHAPES.takes(scene) else not_round("mdr", scene, "without effects under depths or forces")
+        return SHAPES if other is None else other
     viscous = scene.effect(Viscoelasticity)
     if viscous is not None and (reason := _not_relaxing(scene.layer, type(viscous).__name__)):
         return Unsupported(reason)
