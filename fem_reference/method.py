@@ -173,7 +173,7 @@ class Fem:
 
             return partial(impact if isinstance(scene.loading, Impact) else history, scene, written=written, log=log)
         if isinstance(scene.loading, Detachment):
-            from fem_reference.detachment import detachment_path  # noqa: PLC0415
+            from fem_reference.adhesion import detachment_path  # noqa: PLC0415
 
             return partial(detachment_path, scene, partial(self._solver, scene, log), written, log)
         return partial(self._at_rest, scene, cache(partial(searched_radius, scene, log)), log)

@@ -28,8 +28,7 @@ from fem_reference.mesh import Section
 from fem_reference.prescribed_contact import solve_contact
 from fem_reference.profiles import ScaledIndenter, shape
 from fem_reference.settings import Discretisation, contact_section
-from fem_reference.surface import condense, strip_section
-from fem_reference.trace import TraceSpace
+from fem_reference.surface import TraceSpace, condense, strip_section
 
 # Steps after which a body counts as held by the layer: five hundred times what an impact at the default settings takes.
 MAX_STEPS = 200_000

@@ -9,7 +9,7 @@ from fem_reference import assembly
 from fem_reference.assembly import PAIRS
 from fem_reference.materials import uniform
 from fem_reference.mesh import section_mesh
-from fem_reference.trace import TraceSpace
+from fem_reference.surface import TraceSpace
 from fem_reference.verification import uniform_layer
 
 MESH = section_mesh(uniform(0.5), 2.0, ((1.0, 0.02),), 0.5)
