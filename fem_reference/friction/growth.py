@@ -140,6 +140,10 @@ class Growing:
         share = EDGE_SHARE - np.where(self.stick == 1.0, self.less_by_stick, 0.0)
         return np.asarray(self.contact.radius * (touching + share * radii[1]))
 
+    def radius_of(self, name: str, value: float) -> float:
+        """Contact radius [m] at a radius, depth or force, to a cell."""
+        return float(np.interp(value, getattr(self, name), self.radius))
+
     @property
     def less_by_stick(self) -> float:
         """Share of a cell by which an edge that sticks lies farther in than one that slides."""
