@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 from functools import cache
 
 import numpy as np
+from scipy import sparse
 from scipy.linalg import solveh_banded
 
 from contact import ElasticLayer, NotConvergedError, StageLog
@@ -67,14 +68,18 @@ class TraceSpace:
         ways = [np.prod((t[..., None] - nodes[own]) / (nodes[n] - nodes[own]), axis=-1) for n, own in enumerate(others)]
         return np.stack(ways, axis=-1)
 
+    def _values(self, cell: IntArray, t: FloatArray) -> sparse.csr_array:
+        """Values of all functions at local coordinates t of cells, shape (n, node)."""
+        nodes, ends = cell[:, None] * self.degree + np.arange(self.degree + 1), np.arange(len(t) + 1)
+        entries = self.basis(t).ravel(), nodes.ravel(), (self.degree + 1) * ends
+        return sparse.csr_array(entries, shape=(len(t), len(self.radii)))
+
     def evaluate(self, values: FloatArray, radius: FloatArray) -> FloatArray:
         """Function with nodal ``values`` at radii within the trace; zero beyond it."""
         vertices = self.vertices
         cell = np.clip(np.searchsorted(vertices, radius, side="right") - 1, 0, len(vertices) - 2)
         t = (radius - vertices[cell]) / (vertices[cell + 1] - vertices[cell])
-        nodes = cell[:, None] * self.degree + np.arange(self.degree + 1)
-        inside = (radius >= vertices[0]) & (radius <= vertices[-1])
-        return np.where(inside, np.sum(self.basis(t) * values[nodes], axis=1), 0.0)
+        return np.where((radius >= vertices[0]) & (radius <= vertices[-1]), self._values(cell, t) @ values, 0.0)
 
     def gauss(self, points: int) -> tuple[FloatArray, FloatArray]:
         """Radii (cell, point) and weights ``2 pi r dr`` of a Gauss rule on every cell."""
@@ -83,45 +88,30 @@ class TraceSpace:
         radius = self.vertices[:-1, None] + length * (x + 1) / 2
         return radius, 2 * np.pi * radius * length * w / 2
 
+    def at_gauss(self, points: int, parts: int = 1) -> sparse.csr_array:
+        """Values of all functions at a Gauss rule on each of some equal parts of every cell, shape (n, node)."""
+        part = np.repeat(np.arange(parts * (len(self.vertices) - 1)), points)
+        x = np.resize((_gauss_rule(points)[0] + 1) / 2, len(part))
+        return self._values(part // parts, (part % parts + x) / parts)
+
     def moments(self, function_values: FloatArray, points: int) -> FloatArray:
         """``int f v 2 pi r dr`` for every basis function v, f given at ``gauss(points)``."""
-        _, weights = self.gauss(points)
-        x, _ = _gauss_rule(points)
-        local = (weights * function_values) @ self.basis((x + 1) / 2)
-        loads = np.bincount(self._cell_nodes.ravel(), local.ravel(), minlength=len(self.radii))
-        return np.asarray(loads, dtype=np.float64)
+        return np.asarray(self.at_gauss(points).T @ (self.gauss(points)[1] * function_values).ravel())
 
     def hat_moments(self, stride: int) -> FloatArray:
         """``int v hat 2 pi r dr`` for every basis function v and the hat functions on every ``stride``-th node.
 
         Shape (node, hat); ``stride`` divides the degree, so that hats bend at nodes only.
         """
-        hats, parts, points = TraceSpace(self.radii[::stride], 1), self.degree // stride, self.degree + 1
-        weights = hats.gauss(points)[1]
-        x = (_gauss_rule(points)[0] + 1) / 2
-        piece = np.arange(len(weights))
-        basis = self.basis((piece[:, None] % parts + x) / parts)
-        local = np.einsum("cq,cqi,qj->cij", weights, basis, hats.basis(x))
-        moments = np.zeros((len(self.radii), len(hats.radii)))
-        rows = (piece // parts)[:, None] * self.degree + np.arange(self.degree + 1)
-        np.add.at(moments, (rows[:, :, None], (piece[:, None] + np.arange(2))[:, None, :]), local)
-        return moments
-
-    @property
-    def _cell_nodes(self) -> IntArray:
-        return np.arange(0, len(self.radii) - 1, self.degree)[:, None] + np.arange(self.degree + 1)
+        hats, points = TraceSpace(self.radii[::stride], 1), self.degree + 1
+        weighted = hats.at_gauss(points).multiply(hats.gauss(points)[1].reshape(-1, 1))
+        return np.asarray((self.at_gauss(points, self.degree // stride).T @ weighted).toarray())
 
     def mass_bands(self) -> FloatArray:
         """``int u v 2 pi r dr``, its diagonals from the first one down, shape (degree + 1, node)."""
-        points = self.degree + 2
-        x, _ = _gauss_rule(points)
-        basis = self.basis((x + 1) / 2)
-        local = np.einsum("cq,qi,qj->cij", self.gauss(points)[1], basis, basis)
-        bands = np.zeros((self.degree + 1, len(self.radii)))
-        for j in range(self.degree + 1):
-            for i in range(j, self.degree + 1):
-                bands[i - j, j :: self.degree][: len(local)] += local[:, i, j]
-        return bands
+        values, weights = self.at_gauss(self.degree + 2), self.gauss(self.degree + 2)[1].reshape(-1, 1)
+        mass = values.T @ values.multiply(weights)
+        return np.array([np.append(mass.diagonal(-k), np.zeros(k)) for k in range(self.degree + 1)])
 
     def recover(self, nodal_forces: FloatArray) -> FloatArray:
         """Nodal values of the pressure p with ``int p v 2 pi r dr = force(v)`` for every v: the consistent recovery.
