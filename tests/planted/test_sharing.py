@@ -26,7 +26,7 @@ def _no_leftovers():
 
 
 # These take seconds of processor time each.
-LONG = {"graded", "inside"}
+LONG = {"graded", "inside", "stack", "sphere impact", "held", "pull-off", "table"}
 
 
 def named(fault):
