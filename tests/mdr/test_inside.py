@@ -139,7 +139,7 @@ INDENTERS = [
 
 
 @pytest.mark.parametrize(
-    ("indenter", "nu"), zip(INDENTERS, (0.2, 0.5, 0.2, 0.5, 0.2), strict=True), ids=lambda one: type(one).__name__
+    ("indenter", "nu"), [*zip(INDENTERS, (0.2, 0.5, 0.2, 0.5, 0.2), strict=True)], ids=lambda one: type(one).__name__
 )
 def test_equilibrium_dilatation_and_gradient(indenter, nu):
     """Differences of eighth order: div sigma = 0, (1 - 2 nu)/E tr sigma = div u, and the gradient of the pressure."""
