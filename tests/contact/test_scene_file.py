@@ -29,7 +29,7 @@ from contact import (
     scene_from_mapping,
     scene_to_mapping,
 )
-from contact.records.columns import MAX_BYTES
+from contact.records.tables import MAX_BYTES
 
 GOOD = """
 [layer]

@@ -5,7 +5,6 @@ import pytest
 
 from contact import (
     Adhesion,
-    Cone,
     ElasticBase,
     FlatPunch,
     Friction,
@@ -219,6 +218,15 @@ def test_curves_of_withdrawal_give_modulus_and_work_however_strong_the_adhesion(
         assert any("Tabor parameter" in note for note in found.notes)
 
 
+@pytest.mark.parametrize("travel", [20e-6, 26e-6, 34e-6, 44e-6])
+def test_a_sphere_that_hardly_adheres_is_withdrawn_over_any_travel(travel):
+    scene = HALF_SPACE.replace(indenter=Sphere(radius=1e-6), effects=(Adhesion(work_of_adhesion=1e-6),))
+    depth = np.linspace(-travel, 2e-7, 1500)[::-1]
+    elastic = ForceCurve(scene.replace(effects=(), loading=IndentationDepths([1e-6])))
+    found = fit_curve(scene, depth, with_noise(elastic(depth, 5e3)))
+    assert found.youngs_modulus == pytest.approx(5e3, rel=0.2, abs=0.0)
+
+
 def test_a_few_points_in_contact_are_no_curve():
     depth = np.linspace(-1e-4, 5e-7, 200)
     with pytest.raises(InvalidInput, match=r"points in contact, from .* m on: .* measure more points in contact"):
@@ -302,7 +310,7 @@ def scene_file(tmp_path):
 
 
 def modulus_in(text):
-    line = next(line for line in text.splitlines() if line.strip().startswith("youngs modulus"))
+    line = next(line for line in text.splitlines() if line.strip().startswith("Young's modulus"))
     assert line.split()[-1] == "kPa"
     return 1e3 * float(line.split()[2].partition("(")[0])
 
@@ -403,35 +411,3 @@ def test_withdrawal_is_read_for_scenes_with_adhesion(tmp_path):
     (curve,) = load_curves(file, direction="withdrawal")
     assert curve.force.max() == pytest.approx(0.8e-9 * FORCE.max(), rel=0.05, abs=0.0)
     assert "withdrawal is used" in curve.notes[-1]
-
-
-def random_curve(draw):
-    """A random tip and layer, the modulus, and a noisy curve with offset, tilt and 0 to 99.5 % of baseline."""
-    tips = (TIP, Sphere(radius=5e-6), Cone(slope=0.36), FlatPunch(radius=2e-6))
-    nu, support = draw.choice([0.5, 0.45, 0.3]), draw.choice(["bonded", "unbonded"])
-    layer = Layer(thickness=10 ** draw.uniform(-6, -4.5), youngs_modulus=1e3, poissons_ratio=nu, support=support)
-    if draw.integers(4) == 0:
-        layer = Layer.half_space(youngs_modulus=1e3, poissons_ratio=nu)
-    deepest, modulus = 0.3 * min(layer.thickness, 2e-6) * draw.uniform(0.3, 1.0), 10 ** draw.uniform(2, 6)
-    scene = HALF_SPACE.replace(layer=layer, indenter=tips[draw.integers(4)], loading=IndentationDepths([deepest]))
-    depth = np.linspace(deepest * (1 - 10 ** draw.uniform(0, 2.3)), deepest, int(draw.choice([1500, 3000])))
-    force = ForceCurve(scene)(depth, modulus)
-    line = 0.3 * draw.standard_normal() + 0.2 * draw.standard_normal() * depth / np.ptp(depth)
-    noise = 10 ** draw.uniform(-3.5, -1.3) * draw.standard_normal(depth.size)
-    return scene, modulus, depth + 1e-6 * draw.uniform(-1, 1), force + force.max() * (line + noise)
-
-
-@pytest.mark.slow
-def test_intervals_cover_random_tips_layers_and_baselines_and_nothing_is_silently_wrong():
-    draw, distances = np.random.default_rng(2711), []
-    for _ in range(200):
-        scene, modulus, depth, force = random_curve(draw)
-        try:
-            found = fit_curve(scene, depth, force, formulas=False)
-        except InvalidInput:
-            continue
-        low, high = found.interval("youngs_modulus")
-        distances.append(2 * abs(found.youngs_modulus - modulus) / (high - low))
-    assert len(distances) > 180
-    assert 0.91 <= np.mean(np.array(distances) <= 1.0) <= 0.99
-    assert max(distances) < 3.0
