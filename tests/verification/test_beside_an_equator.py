@@ -73,7 +73,8 @@ def test_tables_round_positions_beside_an_equator_too() -> None:
     assert within_stated(table, scene.replace(loading=NormalForces(truth.normal_force)), truth)
 
 
-@pytest.mark.parametrize("loading", [IndentationDepths, pytest.param(NormalForces, marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("loading", [IndentationDepths, NormalForces])
 def test_the_direct_equation_meets_what_is_prescribed(loading: type[IndentationDepths | NormalForces]) -> None:
     """Its radius was known to 1e-13 of itself, which is 1e-5 of what is left: the depth was missed by 1.6e-7."""
     scene = contact(1e-8)
