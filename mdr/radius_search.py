@@ -343,6 +343,7 @@ def _roots(
         raise NotConvergedError("no contact radius has the load", {"ln(load) missed by": float(np.abs(f2[at]).max())})
     x3, f3, share, at = x2, f2, np.full(start.shape, 0.5), np.ones(start.shape, dtype=np.bool_)
     for _ in range(_MOST_STEPS):
+        best: FloatArray
         best, least = np.where(np.abs(f1) < np.abs(f2), (x1, np.abs(f1)), (x2, np.abs(f2)))
         narrow = 2 * EPS * (1 + np.abs(best)) / np.maximum(np.abs(x2 - x1), 1e-300)
         at = (least > _SMALLEST) & (narrow < 0.5)
