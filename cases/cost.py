@@ -3,9 +3,11 @@
 import math
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from typing import ClassVar
 
 from cases.answers import Answer, Table
 from cases.case import Case, Task
+from cases.claims import Study
 from cases.declare.methods import MethodUse
 from cases.run.timing import summed_up
 from cases.studies import CostOfAccuracy, Point
@@ -14,7 +16,7 @@ from contact import InvalidInput
 
 
 @dataclass(frozen=True, kw_only=True)
-class WorkStudy:
+class Cost(Study):
     """Error against seconds of one quantity's last step, for settings that are timed alone on the machine.
 
     Attributes:
@@ -25,17 +27,19 @@ class WorkStudy:
         cheap: the settings that the ci suite times; empty for all.
     """
 
+    timed: ClassVar[bool] = True
+
     scene: str
     quantity: str
     ladder: tuple[MethodUse, ...]
     reference: MethodUse
     cheap: tuple[MethodUse, ...] = ()
 
-    def in_suite(self, suite: str) -> "WorkStudy":
+    def in_suite(self, suite: str) -> "Cost":
         """Return the study as a suite carries it out: nightly all settings, otherwise the cheap ones."""
         return self if suite == "nightly" or not self.cheap else replace(self, ladder=self.cheap)
 
-    def of_methods(self, methods: Collection[str], foreign: Iterable[MethodUse]) -> "WorkStudy":
+    def of_methods(self, methods: Collection[str], foreign: Iterable[MethodUse]) -> "Cost":
         """Return the study of these methods' settings, and of those of ``foreign`` ones."""
         own = tuple(use for use in self.ladder if use.method in methods)
         return replace(self, ladder=(*own, *foreign), cheap=())

@@ -7,7 +7,7 @@ radii; detachments and motions against the fast method at its finest, whose own 
 from collections.abc import Sequence
 from typing import Final
 
-from cases.cost import WorkStudy
+from cases.cost import Cost
 from cases.declare.methods import MethodUse
 
 
@@ -63,7 +63,7 @@ def elastic_costs(
     in_ci: bool = False,
     periodic: bool = False,
     as_published: bool = False,
-) -> tuple[WorkStudy, ...]:
+) -> tuple[Cost, ...]:
     """What depth and force cost on an elastic scene, with every method that solves it.
 
     Args:
@@ -79,19 +79,19 @@ def elastic_costs(
     return _studies(scene, quantities, (*MDR, *EQUATION, *FEM, *grids, *tables), FINEST_EQUATION, cheap)
 
 
-def costs_beside_others(scene: str) -> tuple[WorkStudy, ...]:
+def costs_beside_others(scene: str) -> tuple[Cost, ...]:
     """What a force costs by our methods and by solvers of others; theirs run in a process whose start counts."""
     ladder = (*MDR, *FEM_BESIDE_OTHERS, *BEM[:4], *OTHERS)
     return _studies(scene, ("normal_force",), ladder, FINEST_EQUATION, MDR[2:3])
 
 
-def inside_costs(scene: str) -> tuple[WorkStudy, ...]:
+def inside_costs(scene: str) -> tuple[Cost, ...]:
     """What stresses inside cost at the last of a scene's points, with the fields at all of them in the time."""
     quantities = ("von_mises_inside", "axial_stress_inside")
     return _studies(scene, quantities, (*MDR, *FEM), FINEST_MDR, MDR[2:3])
 
 
-def detachment_costs(scene: str) -> tuple[WorkStudy, ...]:
+def detachment_costs(scene: str) -> tuple[Cost, ...]:
     """What the pull-off costs."""
     # A branch by finite elements takes a second, ten times over.
     cheap = MDR[2:3]
@@ -99,7 +99,7 @@ def detachment_costs(scene: str) -> tuple[WorkStudy, ...]:
     return _studies(scene, quantities, (*MDR, *FEM_DETACHING, *BEM[:2], *TABLE), FINEST_MDR, cheap)
 
 
-def impact_costs(scene: str) -> tuple[WorkStudy, ...]:
+def impact_costs(scene: str) -> tuple[Cost, ...]:
     """What restitution and peak force of an impact cost."""
     cheap = (*MDR_IN_TIME[1:3], FEM_IN_TIME[0])
     quantities = ("coefficient_of_restitution", "peak_force")
@@ -112,8 +112,15 @@ def _studies(
     ladder: tuple[MethodUse, ...],
     reference: MethodUse,
     cheap: tuple[MethodUse, ...],
-) -> tuple[WorkStudy, ...]:
+) -> tuple[Cost, ...]:
     return tuple(
-        WorkStudy(scene=scene, quantity=quantity, ladder=ladder, reference=reference, cheap=cheap)
+        Cost(
+            name=f"cost of {quantity}, {scene}",
+            scene=scene,
+            quantity=quantity,
+            ladder=ladder,
+            reference=reference,
+            cheap=cheap,
+        )
         for quantity in quantities
     )

@@ -9,7 +9,7 @@ from typing import Literal, TypeAlias, get_args
 
 import numpy as np
 
-from cases.measurements.ladders.units import Units, in_units
+from cases.units import Units, in_units
 from contact import (
     Adhesion,
     Cone,

@@ -19,9 +19,9 @@ from cases.gate.baseline import (
 from cases.gate.gate import judged_claims
 from cases.gate.spread import Spreads
 from cases.gate.write_permission import WriteConditions
-from cases.measurements.ladders.ladder_study import worse_than
 from cases.rules import SMALLEST_RELATIVE
 from cases.runs import Run
+from cases.stress import worse_than
 from cases.verdicts import Kind, Verdict
 from contact import InvalidInput
 

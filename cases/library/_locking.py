@@ -31,13 +31,17 @@ def punch_stiffness(pair: str, poissons_ratio: float) -> float:
     return float(solver.reactions(solver.solve_displaced(values), pressed).sum())
 
 
+def punch(poissons_ratio: float) -> Scene:
+    """The flat punch at a/h = 1 on a bonded layer."""
+    layer = Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=poissons_ratio)
+    return Scene(layer=layer, indenter=FlatPunch(radius=1.0), loading=IndentationDepths([0.1]))
+
+
 @cache
 def exact_stiffness(poissons_ratio: float) -> float:
     """The same by the direct integral equation, which has no mesh."""
-    layer = Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=poissons_ratio)
-    scene = Scene(layer=layer, indenter=FlatPunch(radius=1.0), loading=IndentationDepths([0.1]))
-    path = IntegralEquationMethod().solve(scene)
-    return float(path.contact_stiffness[0]) / layer.contact_modulus
+    scene = punch(poissons_ratio)
+    return float(IntegralEquationMethod().solve(scene).contact_stiffness[0]) / scene.layer.contact_modulus
 
 
 def stiffness_error(pair: str, poissons_ratio: float) -> float:

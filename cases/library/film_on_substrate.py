@@ -127,6 +127,6 @@ CASE = Case(
         c.equal("force without a film", "normal_force", half_space_force, NO_FILM, NONE, **CLOSED),
         s.stiffness_limit(THIN, WIDE, thin_film, "thin film", largest=0.05, parameter=thinness),
         s.stiffness_limit(BENT, PLATES, bent_plate, "plate", largest=0.05, parameter=narrowness),
+        *elastic_costs(film(10.0, 1.0).name),
     ),
-    work=elastic_costs(film(10.0, 1.0).name),
 )

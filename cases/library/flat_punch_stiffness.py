@@ -194,6 +194,5 @@ CASE = Case(
     text=text_of(__doc__),
     scenes=(*PUNCHES, *HAYES_WALKS, BONDED, UNBONDED, *EXPONENTS),
     methods=c.EVERY,
-    claims=(*CLAIMS, *ORDERS),
-    work=elastic_costs("bonded nu=0.5 a/h=2", (STIFFNESS,)),
+    claims=(*CLAIMS, *ORDERS, *elastic_costs("bonded nu=0.5 a/h=2", (STIFFNESS,))),
 )

@@ -98,6 +98,6 @@ CASE = Case(
         c.equal("published stiffness", "contact_stiffness", stiffness, FIRST, DIGITS, **PUBLISHED),
         c.equal("published depth", "indentation_depth", depth, FIRST, DIGITS, **PUBLISHED),
         c.approach(APPROACH, "contact_stiffness", CUT, stiffness, s.WHY["sublayers"], **NEARLY_SECOND),
+        *elastic_costs(FIRST[0].name),
     ),
-    work=elastic_costs(FIRST[0].name),
 )

@@ -138,6 +138,6 @@ CASE = Case(
             largest=0.15,
             methods=("mdr",),
         ),
+        *inside_costs(REFINED[0].name),
     ),
-    work=inside_costs(REFINED[0].name),
 )

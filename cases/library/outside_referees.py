@@ -162,6 +162,5 @@ CASE = Case(
     suites=("referees",),
     scenes=(*SCENES, *CURVES),
     methods=(c.MDR, c.FEM, c.BEM, c.EQUATION, *REFEREES),
-    claims=CLAIMS,
-    work=tuple(study for scene in PRICED for study in costs_beside_others(scene)),
+    claims=(*CLAIMS, *tuple(study for scene in PRICED for study in costs_beside_others(scene))),
 )

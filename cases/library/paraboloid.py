@@ -158,6 +158,5 @@ CASE = Case(
     text=text_of(__doc__),
     scenes=(*BY_RADIUS, *BY_DEPTH, *BY_FORCE),
     methods=c.EVERY,
-    claims=(*CLAIMS, *ORDERS),
-    work=elastic_costs(c.scene_name("bonded nu=0.5", 2.0), periodic=True),
+    claims=(*CLAIMS, *ORDERS, *elastic_costs(c.scene_name("bonded nu=0.5", 2.0), periodic=True)),
 )

@@ -140,6 +140,6 @@ CASE = Case(
         *r.studies(THIN, r.NODES, QUANTITIES, against="integral_equation"),
         *r.studies(THIN, r.EQUATION_NODES, ("normal_force",), against=r.FINEST_MDR),
         *r.studies(THIN, r.fem_cells(3, thin=True), SIXTH, against="integral_equation", nightly=True),
+        *elastic_costs("bonded nu=0.45 a/h=40, paraboloid"),
     ),
-    work=elastic_costs("bonded nu=0.45 a/h=40, paraboloid"),
 )

@@ -76,6 +76,6 @@ CASE = Case(
         s.pressed_shape(SCENES),
         SOFTER,
         *r.studies(ONE, r.EQUATION_NODES, FORCE, against=r.FINEST_MDR),
+        *elastic_costs(ONE[0].name),
     ),
-    work=elastic_costs(ONE[0].name),
 )

@@ -113,6 +113,6 @@ CASE = Case(
         c.scaling_law(ALIKE, EQUAL, merged, (1.0, 1.0, 1.0), s.WHY["equal layers"], **SAME_ANSWER),
         s.stiffness_limit(FLOW, THIN, flowing, "flow", largest=0.1),
         *r.studies(ONE, r.EQUATION_NODES, ("normal_force",), against=r.FINEST_MDR),
+        *elastic_costs(ONE[0].name),
     ),
-    work=elastic_costs(ONE[0].name),
 )

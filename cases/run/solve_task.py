@@ -91,6 +91,8 @@ def answered(job: Job) -> Answer:
     try:
         # With one thread, times can be compared and sums repeat bit by bit.
         with threadpool_limits(limits=1):
+            if job.task.measure is not None:
+                return replace(job.answer(), **job.task.measure(job.method, job.task.problem))
             support = job.method.supports(job.task.problem)
             if not support:
                 return job.answer(Status.SKIP, getattr(support, "reason", "not supported"))
