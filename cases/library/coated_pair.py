@@ -12,7 +12,7 @@ exact: two Winkler beds in series.
 import numpy as np
 
 from cases.case import Case, CaseScene, text_of
-from cases.cost_settings import elastic_costs
+from cases.cost import elastic_costs
 from cases.library import _common as c
 from cases.library import _refinements as r
 from contact import CoatedPair, ContactRadii, Paraboloid, Scene

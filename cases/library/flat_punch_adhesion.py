@@ -12,11 +12,11 @@ from typing import Any
 import numpy as np
 
 from cases.case import Case, CaseScene, text_of
-from cases.cost_settings import detachment_costs
+from cases.cost import detachment_costs
 from cases.declare.methods import MethodUse
+from cases.effects import Ablation
 from cases.library import _common as c
 from cases.library import _refinements as r
-from cases.measurements.advice.effects import Ablation
 from contact import Adhesion, Detachment, FlatPunch, Layer
 
 WHY = c.reasons("flat_punch_adhesion")

@@ -11,10 +11,10 @@ from dataclasses import replace
 from typing import Any
 
 from cases.case import Case, CaseScene, text_of
-from cases.cost_settings import impact_costs
+from cases.cost import impact_costs
+from cases.effects import Ablation
 from cases.library import _common as c
 from cases.library import _refinements as r
-from cases.measurements.advice.effects import Ablation
 from contact import FlatPunch, Impact, KelvinVoigt, Layer
 from contact.scene.layer import Support
 

@@ -13,7 +13,7 @@ and its depth a^2 / ((1 + m) R), Eq. (34), gives the exponent m of Eq. (33).
 import numpy as np
 
 from cases.case import Case, CaseScene, text_of
-from cases.cost_settings import elastic_costs
+from cases.cost import elastic_costs
 from cases.declare.methods import MethodUse
 from cases.library import _common as c
 from cases.library import _refinements as r

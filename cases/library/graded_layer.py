@@ -11,7 +11,7 @@ layer is approached with nearly the second order of 1/n: the top one, of constan
 import numpy as np
 
 from cases.case import Case, text_of
-from cases.cost_settings import elastic_costs
+from cases.cost import elastic_costs
 from cases.library import _common as c
 from cases.library import _stacks as s
 from contact import ElasticBase, ExponentialDepth, GradedLayer, LayerStack

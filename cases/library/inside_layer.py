@@ -20,7 +20,7 @@ import numpy as np
 
 from cases.case import Case, CaseScene, Sampling, text_of
 from cases.claims import Norm
-from cases.cost_settings import inside_costs
+from cases.cost import inside_costs
 from cases.declare.methods import MethodUse
 from cases.library import _common as c
 from cases.library import _refinements as r

@@ -13,7 +13,7 @@ from typing import ClassVar
 from cases.answers import Answer
 from cases.case import Case, CaseScene, Task, text_of
 from cases.claims import PerScene
-from cases.cost_settings import elastic_costs
+from cases.cost import elastic_costs
 from cases.declare.methods import MethodUse
 from cases.library import _common as c
 from cases.library import _refinements as r

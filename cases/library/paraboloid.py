@@ -10,7 +10,7 @@ come back.
 import math
 
 from cases.case import Case, CaseScene, text_of
-from cases.cost_settings import elastic_costs
+from cases.cost import elastic_costs
 from cases.library import _common as c
 from cases.library import _refinements as r
 from contact import ContactRadii, IndentationDepths, Loading, NormalForces, Paraboloid

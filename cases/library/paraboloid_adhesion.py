@@ -10,10 +10,10 @@ release rate from the derivative of the strain energy.
 import numpy as np
 
 from cases.case import Case, CaseScene, text_of
-from cases.cost_settings import detachment_costs
+from cases.cost import detachment_costs
+from cases.effects import Ablation
 from cases.library import _common as c
 from cases.library import _refinements as r
-from cases.measurements.advice.effects import Ablation
 from contact import Adhesion, Detachment, Paraboloid
 
 WHY = c.reasons("paraboloid_adhesion")

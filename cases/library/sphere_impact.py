@@ -8,11 +8,11 @@ livelier the rebound. R and v0 enter only as a product. Kinetic, stored and diss
 
 from cases.case import Case, CaseScene, text_of
 from cases.claims import Equal, Law
-from cases.cost_settings import impact_costs
+from cases.cost import impact_costs
 from cases.declare.methods import MethodUse
+from cases.effects import Ablation
 from cases.library import _common as c
 from cases.library import _refinements as r
-from cases.measurements.advice.effects import Ablation
 from contact import Impact, Layer, Paraboloid, Scene, StandardSolid
 
 WHY = c.reasons("sphere_impact")

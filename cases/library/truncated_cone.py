@@ -18,10 +18,10 @@ from dataclasses import replace
 import numpy as np
 
 from cases.case import Case, CaseScene, text_of
-from cases.cost_settings import elastic_costs
+from cases.cost import elastic_costs
+from cases.effects import Ablation
 from cases.library import _common as c
 from cases.library import _refinements as r
-from cases.measurements.advice.effects import Ablation
 from contact import ContactRadii, TruncatedCone
 
 WHY = c.reasons("truncated_cone")

@@ -12,7 +12,7 @@ here. The figure shows what bodies made simpler err by, also one on an elastic b
 import math
 
 from cases.case import Case, CaseScene, text_of
-from cases.cost_settings import elastic_costs
+from cases.cost import elastic_costs
 from cases.library import _common as c
 from cases.library import _refinements as r
 from cases.library import _stacks as s

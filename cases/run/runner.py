@@ -5,28 +5,65 @@ that it is incomplete; timed tasks run after all others, one by one, so that the
 """
 
 import time
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import BrokenExecutor, Executor, Future
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
-from typing import IO
+from typing import IO, Literal
 
 from cases.answers import NAME, Answer, Identity, Table, read_answers
 from cases.case import Case, Task
 from cases.declare.methods import registered
 from cases.files import write_whole
-from cases.run.executors import ClusterLost, ExecutorFactory, ahead, closing, fresh_processes, process_pool, serial
+from cases.run.executors import (
+    ClusterLost,
+    ExecutorFactory,
+    Window,
+    ahead,
+    closing,
+    fresh_processes,
+    process_pool,
+    serial,
+)
 from cases.run.lock import locked
-from cases.run.progress import Progress, ProgressEvent, silent
 from cases.run.solve_task import Job, job_of, solve
 from cases.run.stamp import stamp
-from cases.run.window import Window
 from cases.runs import CaseText, Judged, Run, Stamp, write_run
 from cases.studies import Convergence, CostOfAccuracy, Effect, StressTest
 from cases.verdicts import Status, worst
 from contact import InvalidInput
+
+
+@dataclass(frozen=True, kw_only=True)
+class ProgressEvent:
+    """One event of a run.
+
+    Attributes:
+        kind: "planned" once, then "finished" or "reused" for each task, "judged" for each case; "refused" before
+            "finished" for a task whose stored answer is damaged; "stopped" when the cluster that solves is lost.
+        label: the task or case in words.
+        done: tasks behind.
+        total: tasks in all.
+        status: how the task or case ended; None for "planned", "refused" and "stopped".
+        reason: of a status other than PASS, or why a stored answer was refused or the run stopped.
+    """
+
+    kind: Literal["planned", "finished", "reused", "judged", "refused", "stopped"]
+    label: str
+    done: int
+    total: int
+    status: Status | None = None
+    reason: str = ""
+
+
+Progress = Callable[[ProgressEvent], None]
+
+
+def silent(event: ProgressEvent) -> None:
+    """Ignore the event."""
+
 
 # Default time limit of one solution by a method of an installed package [s]. Half of it stops three-dimensional meshes,
 # twice of it only waits longer for methods that hang.

@@ -12,10 +12,9 @@ from cases.case import Task
 from cases.declare.methods import registered, shared_inputs
 from cases.recording import fields_at, recorded
 from cases.run.apart import ProcessDied, TimeLimitReached, apart
-from cases.run.empty_caches import forget
 from cases.run.from_refinement import with_estimated_errors
 from cases.run.keys import code, question
-from cases.run.timing import timed_warm
+from cases.run.timing import forget, timed_warm
 from cases.verdicts import Status
 from contact import ContactPath, Method, NotConvergedError, Solution, UnsupportedSceneError
 from contact.records.errors import printable

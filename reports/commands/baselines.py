@@ -16,11 +16,11 @@ from cases.gate.accept import (
     propose,
     refusals,
     refusals_beforehand,
+    write_conditions,
 )
 from cases.gate.baseline import read_baselines, relative_tolerance
 from cases.gate.gate import gate
 from cases.gate.spread import measured_spreads
-from cases.gate.write_permission import write_conditions
 from cases.run.lock import locked
 from cases.run.stamp import repository
 from cases.runs import Run, read_run, write_run

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from cases.gate.write_permission import git
+from cases.gate.accept import git
 
 SOURCE = Path(__file__).parents[3]
 TIMES = 20

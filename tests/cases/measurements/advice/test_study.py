@@ -6,7 +6,7 @@ from cases.answers import Table
 from cases.case import Case, CaseScene
 from cases.claims import Equal
 from cases.declare.methods import MethodUse
-from cases.measurements.advice.effects import NOTHING_PULLS, Ablation
+from cases.effects import NOTHING_PULLS, Ablation
 from cases.run.solve_task import job_of, solve
 from contact import Adhesion, Detachment, FlatPunch, Impact, KelvinVoigt, Layer, Paraboloid, Scene
 from tests.cases.fake_case import WHY

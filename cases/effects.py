@@ -3,11 +3,11 @@
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
+from cases.advice import NOTHING_PULLS, STATIC, nothing_left, parts_of, without
 from cases.answers import Answer, Table
 from cases.case import Case, Task
 from cases.claims import Study
 from cases.declare.quantities import IMPACT_NUMBERS
-from cases.measurements.advice.ablation import NOTHING_PULLS, STATIC, nothing_left, parts_of, without
 from cases.studies import Effect
 from contact import DetachmentPath
 
