@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 from pydantic import TypeAdapter
 
-from contact.records.columns import read_text
 from contact.records.errors import InvalidInput, shown
 from contact.records.record import Record, read
+from contact.records.tables import read_bytes
 from contact.records.validation import Derived, Reading
 from contact.scene.effects import EFFECTS, Viscoelasticity
 from contact.scene.layer import Layer
@@ -36,7 +36,10 @@ def load_scene(path: str | Path) -> Scene:
 
 
 def _tables(file: Path) -> dict[str, Any]:
-    text = read_text(file, "a scene")
+    try:
+        text = read_bytes(file, "a scene").decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise InvalidInput(f"{file}: not a text file in UTF-8 (byte {error.start}); save it in UTF-8") from None
     if not text.strip():
         raise InvalidInput(f"{file}: the file is empty; a scene needs [layer], [indenter] and [loading]")
     try:

@@ -9,7 +9,7 @@ from scipy.interpolate import CubicSpline
 
 from cases.library._common import HAYES
 from contact.records.validation import FloatArray
-from mdr.curves import series
+from mdr.curves import formulas
 
 # Hayes, Keer, Herrmann and Mockros, J. Biomech. 5 (1972) 541, nu = 1/2, as an R package that cites the table has it; a
 # Python program has the same numbers up to a/h = 2 (seen 2026-11-22). The paper itself was not at hand.
@@ -40,7 +40,7 @@ def hayes_mislabelled(t: FloatArray, nu: float) -> FloatArray:
 
 def garcia(t: FloatArray, nu: float) -> FloatArray:
     """Garcia and Garcia 2018: bonded, nu = 1/2."""
-    return np.asarray(polyval(t, series.GARCIA_PUNCH))
+    return np.asarray(polyval(t, formulas.GARCIA_PUNCH))
 
 
 def lin_hui_conway(t: FloatArray, nu: float) -> FloatArray:

@@ -113,7 +113,7 @@ def test_columns_of_files_with_units_in_their_heads(tmp_path):
 
 @pytest.mark.parametrize(
     ("text", "message"),
-    [("", "holds no numbers"), ("a,b\n", "no numbers below"), ("1,2\n3\n", "line 2"), ("1,nan\n", "no numbers below")],
+    [("", "holds no numbers"), ("a,b\n", "holds no numbers"), ("1,2\n3\n", "line 2"), ("1,nan\n", "line 1")],
 )
 def test_a_file_that_is_no_table_is_named(tmp_path, text, message):
     (tmp_path / "bad.csv").write_text(text)

@@ -3,14 +3,7 @@
 import numpy as np
 import pytest
 
-from cases.advice import (
-    ELASTIC_BASE,
-    GRADING,
-    THICKNESS,
-    advise,
-    layer_parts,
-    simpler,
-)
+from cases.advice import ELASTIC_BASE, GRADING, THICKNESS, advise, layer_parts, simpler
 from cases.declare.methods import build
 from contact import (
     ElasticBase,
