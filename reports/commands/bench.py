@@ -8,7 +8,7 @@ import numpy as np
 
 from cases.declare.uncertain_inputs import read_inputs
 from cases.files import write_whole
-from cases.measurements.uncertain_fit import fit_uncertain
+from cases.uncertain_fit import fit_uncertain
 from contact import Adhesion, InvalidInput, Scene, load_scene
 from contact.files.scene_file import uses_units
 from contact.records.units import read_quantity

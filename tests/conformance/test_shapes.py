@@ -7,10 +7,10 @@ import pytest
 
 from bem import Bem
 from bem.direct_method import IntegralEquationMethod
-from cases.measurements.ladders.units import Units, in_units
-from cases.referees.calculix.method import CalculiX
+from cases.referees.calculix import CalculiX
 from cases.referees.contact_mechanics import ContactMechanics
 from cases.referees.tamaas import Tamaas
+from cases.units import Units, in_units
 from contact import (
     Adhesion,
     ContactRadii,

@@ -145,7 +145,7 @@ def test_a_map_of_curves_from_a_file(folder, capsys):
 
 
 def test_a_sweep_is_a_frame_where_pandas_is(folder):
-    from cases.measurements.sweep import sweep
+    from cases.sweep import sweep
     from contact import InvalidInput
 
     found = sweep(load_scene(folder / "force_steps.toml"), "poissons_ratio=0..0.5:2", Mdr())
