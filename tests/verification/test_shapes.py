@@ -246,6 +246,13 @@ def test_advice_on_a_pyramid_is_that_on_its_cone():
     assert any("Friction with mu = 0.1" in line for line in validity_lines(path.scene, path))
 
 
+def test_friction_changes_nothing_on_an_incompressible_half_space():
+    """Once a division by zero: no point of its surface moves in the radial direction."""
+    body = Layer.half_space(youngs_modulus=1.0, poissons_ratio=0.5)
+    path = solved(MDR, body, Paraboloid(radius_of_curvature=1.0))
+    assert not any("Friction" in line for line in validity_lines(path.scene, path))
+
+
 def random_scene(draw):
     """A shape that mdr may answer, on any layer it models."""
     nu, h, a = float(draw.choice([0.0, 0.3, 0.45, 0.5])), 1.0, float(draw.uniform(0.1, 3.0))
