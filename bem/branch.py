@@ -74,6 +74,8 @@ class Branch:
         """
 
         def section(start: float, low: float, high: float) -> Piecewise:
+            """Depth, force and displacement of the machine over y in [low, high], at a = start + (y - low)^2."""
+
             def values(y: FloatArray) -> FloatArray:
                 depth, force = sample(start, (y - low) ** 2)
                 return np.stack([depth, force, depth + compliance * force])

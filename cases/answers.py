@@ -1,4 +1,4 @@
-"""An answer: what one method said to one scene. A file holds one answer per line; it is store, result and baseline."""
+"""An answer is the result of one method on one scene. Store, result and baseline are files of one answer per line."""
 
 import json
 from collections.abc import Iterable, Iterator

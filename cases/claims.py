@@ -1,4 +1,4 @@
-"""What a case may claim. Each kind yields the tasks it needs beside the case's own and judges their answers."""
+"""Claims of a case. Each kind yields the tasks it needs in addition to the case's own, and judges the answers."""
 
 import math
 from abc import ABC, abstractmethod
@@ -25,25 +25,60 @@ from cases.rules import (
     positive_tolerance,
     worst_judgement,
 )
+from cases.studies import Record
 from cases.verdicts import Kind, Origin, Status, Verdict, Why
 from contact import InvalidInput, Scene
 from contact.records.validation import FloatArray
 
-Expected: TypeAlias = Mapping[str, Sequence[float]] | Callable[[Scene], Sequence[float]]
+Expected: TypeAlias = Mapping[str, Sequence[float]] | Callable[[Scene], float | Sequence[float] | FloatArray]
 Norm: TypeAlias = Literal["", "weighted L2", "ring loads", "largest", "root mean square"]
 
-# On the half-space MDR on a table reads no table: it is MDR itself, by construction.
+# On the half-space, MDR on a table uses no table and equals MDR by construction.
 TABLE, NO_TABLE = "mdr_table", "on the half-space no table is read"
 # Twice the standard uncertainty of printed inputs covers 95 % (GUM 6.3.3); once it would fail every third number.
 COVERAGE = 2.0
 
 
 @dataclass(frozen=True, kw_only=True)
-class Claim(ABC):
-    """What every claim states before anything is computed.
+class Study:
+    """What a case asks for beside its scenes: tasks, and verdicts and records of their answers.
 
     Attributes:
         name: unique within the case.
+        nightly: whether it takes too long for the suite "ci".
+    """
+
+    # Whether its tasks are timed, alone on the machine.
+    timed: ClassVar[bool] = False
+
+    name: str
+    nightly: bool = False
+
+    def check(self, case: Case) -> None:
+        """Refuse what the case does not have."""
+
+    def in_suite(self, suite: str) -> "Study | None":
+        """Return the study as a suite carries it out, or None."""
+        return None if self.nightly and suite == "ci" else self
+
+    def tasks(self, case: Case) -> Iterator[Task]:
+        """Yield the tasks that are needed in addition to the case's own."""
+        yield from ()
+
+    def judge(self, case: Case, answers: Table) -> Iterator[Verdict]:
+        """Yield the verdicts whose answers are there."""
+        yield from ()
+
+    def records(self, case: Case, answers: Table) -> Iterator[Record]:
+        """Yield what was measured, for tables and figures."""
+        yield from ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class Claim(Study, ABC):
+    """Base of all claims, which are stated before anything is computed.
+
+    Attributes:
         quantity: what is compared.
         tolerance: largest permitted error, relative.
         why: why it should hold, and where its numbers come from.
@@ -51,12 +86,10 @@ class Claim(ABC):
         methods: labels of the methods it speaks about; empty for every method that solves a scene.
         tolerances: of methods that need another one, by label.
         identities: of methods for which it holds by construction, by label: why; such checks are not counted.
-        nightly: whether it takes too long for the suite "ci".
     """
 
     kind: ClassVar[Kind]
 
-    name: str
     quantity: str
     tolerance: float
     why: Why
@@ -64,7 +97,6 @@ class Claim(ABC):
     methods: tuple[str, ...] = ()
     tolerances: Mapping[str, float] = field(default_factory=dict)
     identities: Mapping[str, str] = field(default_factory=dict)
-    nightly: bool = False
 
     def __post_init__(self) -> None:
         """Refuse a claim without words, and a tolerance of the wrong sign."""
@@ -86,51 +118,31 @@ class Claim(ABC):
                 case.use(scenes[0], label)
 
     def scenes_of(self, case: Case) -> tuple[CaseScene, ...]:
-        """Return the scenes of the case that this claim speaks about."""
+        """Return the scenes of the case that this claim is about."""
         return tuple(case.by_name[name] for name in self.scenes if name in case.by_name) if self.scenes else case.scenes
 
     def places(self, case: Case) -> Iterator[tuple[CaseScene, MethodUse]]:
-        """Yield each scene with each method that solves it and is spoken about."""
+        """Yield each scene of the claim with each method of the claim that solves it."""
         for scene in self.scenes_of(case):
             for use in case.methods_of(scene):
                 if not self.methods or use.label in self.methods:
                     yield scene, use
 
     def tasks(self, case: Case) -> Iterator[Task]:
-        """Yield what must be solved beside the case's own scenes."""
-        yield from ()
-
-    def judge(self, case: Case, answers: Table) -> Iterator[Verdict]:
-        """Judge each scene and method whose answers are there."""
+        """Yield the tasks that the verdicts need in addition to the case's own."""
         for scene, use in self.places(case):
-            answer = answers.get(case.task(scene, use).identity)
-            others = [answers.get(task.identity) for task in self.needed(case, scene, use)]
-            if answer is not None and None not in others:
-                present = [other for other in others if other is not None]
-                judged = self._judged(scene, use, answer, present)
-                yield self.verdict(case, scene, use, answer, judged=judged, others=present)
+            yield from self.needed(case, scene, use)
 
     def needed(self, case: Case, scene: CaseScene, use: MethodUse) -> Iterator[Task]:
         """Yield the other tasks whose answers one verdict needs."""
         yield from ()
-
-    def _judged(self, scene: CaseScene, use: MethodUse, answer: Answer, others: list[Answer]) -> Judgement:
-        absent = first_missing(answer, *others, quantity=self.quantity if self.needs_quantity else "")
-        return absent or self.judged(scene, use.label, answer, others)
-
-    # Whether answers without the quantity cannot be compared.
-    needs_quantity: ClassVar[bool] = True
-
-    @abstractmethod
-    def judged(self, scene: CaseScene, label: str, answer: Answer, others: list[Answer]) -> Judgement:
-        """Judge one answer, and those of the needed tasks, which all have numbers."""
 
     def tolerance_of(self, label: str) -> float:
         """Return the tolerance of one method."""
         return self.tolerances.get(label, self.tolerance)
 
     def labels(self, use: MethodUse) -> tuple[str, ...]:
-        """Return the labels of the methods that a verdict speaks about."""
+        """Return the labels of the methods of a verdict."""
         return (use.label,)
 
     def expected(self, scene: CaseScene) -> float | None:
@@ -193,7 +205,33 @@ def first_missing(*answers: Answer, quantity: str = "") -> Judgement | None:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Equal(Claim):
+class PerScene(Claim, ABC):
+    """A claim that judges the answer of each method on each scene by itself, with those of its needed tasks."""
+
+    # Whether answers without the quantity cannot be compared.
+    needs_quantity: ClassVar[bool] = True
+
+    def judge(self, case: Case, answers: Table) -> Iterator[Verdict]:
+        """Judge each scene and method whose answers are there."""
+        for scene, use in self.places(case):
+            answer = answers.get(case.task(scene, use).identity)
+            others = [answers.get(task.identity) for task in self.needed(case, scene, use)]
+            if answer is not None and None not in others:
+                present = [other for other in others if other is not None]
+                judged = self._judged(scene, use, answer, present)
+                yield self.verdict(case, scene, use, answer, judged=judged, others=present)
+
+    def _judged(self, scene: CaseScene, use: MethodUse, answer: Answer, others: list[Answer]) -> Judgement:
+        absent = first_missing(answer, *others, quantity=self.quantity if self.needs_quantity else "")
+        return absent or self.judged(scene, use.label, answer, others)
+
+    @abstractmethod
+    def judged(self, scene: CaseScene, label: str, answer: Answer, others: list[Answer]) -> Judgement:
+        """Judge one answer, and those of the needed tasks, which all have numbers."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Equal(PerScene):
     """The values along the steps equal expected ones, of a closed form or the literature.
 
     Attributes:
@@ -222,18 +260,13 @@ class Equal(Claim):
     def values(self, scene: CaseScene) -> list[float]:
         """Return the expected values on one scene."""
         if not isinstance(self.to, Mapping):
-            return [float(value) for value in self.to(scene.scene)]
+            return [float(value) for value in np.atleast_1d(np.asarray(self.to(scene.scene)))]
         if scene.name not in self.to:
             raise InvalidInput(f"claim {self.name!r}: no expected value for scene {scene.name!r}")
         return list(self.to[scene.name])
 
-    def tasks(self, case: Case) -> Iterator[Task]:
-        """Yield the scenes with each uncertain input one standard deviation up and down."""
-        for scene, use in self.places(case):
-            yield from self.needed(case, scene, use)
-
     def needed(self, case: Case, scene: CaseScene, use: MethodUse) -> Iterator[Task]:
-        """Yield them for one scene."""
+        """Yield the scene with each uncertain input one standard deviation up and down."""
         if not self.uncertain:
             return
         inputs, task = read_inputs(self.uncertain), case.task(scene, use)
@@ -285,7 +318,7 @@ class Equal(Claim):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Agree(Claim):
+class Agree(PerScene):
     """Two methods give the same values, or the same field in a norm, their stated errors counted.
 
     Attributes:
@@ -319,15 +352,16 @@ class Agree(Claim):
     def tasks(self, case: Case) -> Iterator[Task]:
         """Yield the refined solutions that stand for a missing error."""
         for scene, _ in self.places(case):
-            yield from (self._finer(case, scene, label) for label in self.refined)
+            yield from self._refined(case, scene)
 
     def needed(self, case: Case, scene: CaseScene, use: MethodUse) -> Iterator[Task]:
         """Yield the reference's task, then the refined ones."""
         yield case.task(scene, case.use(scene, self.reference))
-        yield from (self._finer(case, scene, label) for label in self.refined)
+        yield from self._refined(case, scene)
 
-    def _finer(self, case: Case, scene: CaseScene, label: str) -> Task:
-        return case.task(scene, case.use(scene, label)).changed("refined", refined=1)
+    def _refined(self, case: Case, scene: CaseScene) -> Iterator[Task]:
+        for label in self.refined:
+            yield case.task(scene, case.use(scene, label)).changed("refined", refined=1)
 
     def _judged(self, scene: CaseScene, use: MethodUse, answer: Answer, others: list[Answer]) -> Judgement:
         # A refined solution that failed leaves its method without a stated error.
@@ -402,7 +436,7 @@ class Agree(Claim):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Changed(Claim, ABC):
+class Changed(PerScene, ABC):
     """A claim on an answer and on that of a changed scene.
 
     Attributes:
@@ -412,11 +446,6 @@ class Changed(Claim, ABC):
     kind: ClassVar[Kind] = Kind.INVARIANT
 
     change: Callable[[Scene], Scene]
-
-    def tasks(self, case: Case) -> Iterator[Task]:
-        """Yield the changed scenes to solve."""
-        for scene, use in self.places(case):
-            yield from self.needed(case, scene, use)
 
     def needed(self, case: Case, scene: CaseScene, use: MethodUse) -> Iterator[Task]:
         """Yield the changed scene of one place."""
@@ -470,7 +499,7 @@ class Bound(Changed):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Zero(Claim):
+class Zero(PerScene):
     """A residual vanishes: one that the answers carry as a quantity, or one that is derived from an answer.
 
     Attributes:
@@ -516,7 +545,6 @@ class Approach(Claim):
     limit: Callable[[Scene], float]
     formal_order: float = 1.0
     largest: float
-    needs_quantity: ClassVar[bool] = False
 
     def places(self, case: Case) -> Iterator[tuple[CaseScene, MethodUse]]:
         """Yield the last scene with each method that solves it and the one before."""
@@ -527,11 +555,6 @@ class Approach(Claim):
                 if scene is scenes[-1] and use.label in before:
                     yield scene, use
 
-    def needed(self, case: Case, scene: CaseScene, use: MethodUse) -> Iterator[Task]:
-        """Yield the scene before the last."""
-        before = self.scenes_of(case)[-2]
-        yield case.task(before, case.use(before, use.label))
-
     def judge(self, case: Case, answers: Table) -> Iterator[Verdict]:
         """Judge the sequence once for each method."""
         for scene, use in self.places(case):
@@ -540,10 +563,6 @@ class Approach(Claim):
             if near is not None and far is not None:
                 judged = first_missing(far, near) or self._limit((before, scene), (far, near))
                 yield self.verdict(case, scene, use, near, judged=judged)
-
-    def judged(self, scene: CaseScene, label: str, answer: Answer, others: list[Answer]) -> Judgement:
-        """Judge nothing: two scenes are judged at once."""
-        raise NotImplementedError
 
     def expected(self, scene: CaseScene) -> float | None:
         """Return the formal order."""
@@ -554,7 +573,7 @@ class Approach(Claim):
         return ""
 
     def _limit(self, scenes: tuple[CaseScene, CaseScene], answers: tuple[Answer, Answer]) -> Judgement:
-        """Judge the rate; what fails inside the method's stated error stays open."""
+        """Judge the rate; a failure that the stated error explains is inconclusive."""
         pairs = [
             (answer.quantities[self.quantity], self.limit(scene.scene))
             for scene, answer in zip(scenes, answers, strict=True)

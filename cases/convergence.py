@@ -71,13 +71,8 @@ class Order(Claim):
             if self.method in uses and (not isinstance(self.against, str) or self.against in {"", *uses}):
                 yield scene, uses[self.method]
 
-    def tasks(self, case: Case) -> Iterator[Task]:
-        """Yield the grids of every scene, coarsest first, and the reference."""
-        for scene, use in self.places(case):
-            yield from self.needed(case, scene, use)
-
     def needed(self, case: Case, scene: CaseScene, use: MethodUse) -> Iterator[Task]:
-        """Yield them for one scene; named after their settings, claims about other quantities share them."""
+        """Yield the grids, coarsest first, then the reference; claims about other quantities share them."""
         for level in self._levels(case, scene, use):
             yield from level
         yield from self._references(case, scene)
@@ -103,7 +98,7 @@ class Order(Claim):
                 judged = first_missing(*found) or self._order(self._study(case, scene, use, answers))
                 yield self.verdict(case, scene, use, found[0], judged=judged)
 
-    def studies(self, case: Case, answers: Table) -> Iterator[Convergence]:
+    def records(self, case: Case, answers: Table) -> Iterator[Convergence]:
         """Yield the study of each scene whose grids were all solved."""
         for scene, use in self.places(case):
             own = [answers.get(task.identity) for task in self.needed(case, scene, use)]
@@ -113,10 +108,6 @@ class Order(Claim):
     def expected(self, scene: CaseScene) -> float | None:
         """Return the formal order."""
         return self.formal_order
-
-    def judged(self, scene: CaseScene, label: str, answer: Answer, others: list[Answer]) -> Judgement:
-        """Judge nothing: a whole sequence is judged at once."""
-        raise NotImplementedError
 
     def _order(self, study: Convergence) -> Judgement:
         if self.formal_order is not None:
@@ -220,7 +211,7 @@ def _grid(case: Case, scene: CaseScene, use: MethodUse) -> Task:
 
 
 def _last(answer: Answer, name: str) -> Values:
-    """The last value of a quantity alone, or a field at points, which is kept over its scale."""
+    """The last value of a quantity along the steps, or a whole field at points."""
     q = answer.quantities[name]
     return q if q.at else replace(q, values=q.values[-1:], error=q.error[-1:])
 

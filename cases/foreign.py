@@ -22,10 +22,10 @@ from cases.declare.methods import REFEREES, MethodUse, build, check_known, load,
 from contact import ContactError, ContactPath, ContactRadii, IndentationDepths, InvalidInput, Scene
 from contact.records.errors import shown
 
-# Largest accuracy, relative, that a method may claim for itself: agreement within more than a tenth tells nothing.
+# Largest relative accuracy that a method may claim for itself; agreement within more than 10 % shows nothing.
 LARGEST_CLAIM: Final = 0.1
-# A method is held to ten times the accuracy that it claims: with half of it errors of a few digits beyond would fail,
-# with twice as much a claim would mean less.
+# Tolerance over the accuracy that a method claims. Half of it fails methods slightly beyond their claim, twice of it
+# accepts errors of more than one lost digit.
 HELD_TO: Final = 10.0
 SUFFIX: Final = ", restated by depth"
 # What is compared where a depth is prescribed, by what is compared where a radius is.
@@ -192,7 +192,12 @@ def with_restated(case: Case, names: Iterable[str]) -> Case:
     if not twins:
         return case
     # A claim about all scenes says nothing of their twins.
-    own = tuple(replace(c, scenes=tuple(s.name for s in c.scenes_of(case))) for c in case.claims)
+    own = tuple(
+        replace(claim, scenes=tuple(scene.name for scene in claim.scenes_of(case)))
+        if isinstance(claim, Claim)
+        else claim
+        for claim in case.claims
+    )
     new = tuple(twin for claim in case.claims for twin in _on_twins(case, claim, twins))
     return replace(case, scenes=(*case.scenes, *twins.values()), claims=(*own, *new))
 
@@ -219,18 +224,18 @@ def _twin(scene: CaseScene, names: tuple[str, ...]) -> CaseScene | None:
 
 
 def _only_by_depth(name: str, problem: Scene) -> bool:
-    """Whether a method refuses the radii of a scene and takes depths; any depths of their number will do to ask."""
+    """Whether a method refuses the prescribed radii of a scene, but supports as many prescribed depths."""
     by_depth = problem.replace(loading=IndentationDepths(values=problem.loading.values))  # type: ignore[attr-defined]  # radii
     try:
         method = build_guarded(name, {})
         return not method.supports(problem) and bool(method.supports(by_depth))
     except ContactError:
-        # What breaks here says so where it solves.
+        # The error is reported when the scene is solved.
         return False
 
 
 def _on_twins(case: Case, claim: Any, twins: Mapping[str, CaseScene]) -> Iterator[Agree]:
-    """An agreement of quantities on the twins of its scenes; whatever else is claimed speaks of the radii alone."""
+    """The agreement of quantities on the restated scenes; other claims are about prescribed radii and have no twin."""
     if isinstance(claim, Agree) and not claim.norm and claim.quantity in RESTATED:
         names = tuple(twins[scene.name].name for scene in claim.scenes_of(case) if scene.name in twins)
         if names:
@@ -268,7 +273,7 @@ def _compared(case: Case, pairs: list[tuple[str, str]], claims: tuple[Agree, ...
         if scene.name in about
     )
     uses = tuple(_use(case, case.scenes[0], label) for label in labels)
-    return replace(case, scenes=scenes, methods=uses, claims=claims, work=(), ablations=())
+    return replace(case, scenes=scenes, methods=uses, claims=claims)
 
 
 def _use(case: Case, scene: CaseScene, label: str) -> MethodUse:
@@ -292,11 +297,11 @@ def beside(case: Case, methods: Collection[str], reference: str) -> Case:
     left = case.only(lambda scene, use: use.label in methods or (use.label == reference and scene.name in compared))
     uses = tuple(use for use in case.methods if use.label in (*methods, reference))
     claims = tuple(own for claim in case.claims for own in _about(claim, methods))
-    return replace(left, methods=uses, claims=claims, work=(), ablations=())
+    return replace(left, methods=uses, claims=claims)
 
 
 def _supports(scene: CaseScene, label: str) -> bool:
-    """Whether the method supports the scene; one that breaks down when it is asked says so when it solves."""
+    """Whether the method supports the scene; True where `supports` raises, since `solve` then reports the error."""
     try:
         return bool(build_guarded(label, {}).supports(scene.scene))
     except BrokenMethodError:

@@ -60,7 +60,7 @@ def _disc(radius: float, shallowest: float) -> tuple[FloatArray, FloatArray]:
 
 
 def _force_balance(inside: Inside, radius: float, depths: FloatArray, force: float) -> FloatArray:
-    """What presses on top leaves through bottom and side of a cylinder."""
+    """Force on top of a cylinder minus the forces on its bottom and side."""
     r, area = _disc(radius, float(depths[0]))
     bottom = inside.at(r, depths[:, None] * np.ones_like(r)).axial_stress @ area
     side = []

@@ -25,7 +25,7 @@ STRESSES = ("radial_stress", "axial_stress", "von_mises")
 
 
 def recorded(solution: Solution, sampling: Sampling) -> dict[str, Values]:
-    """Return all that a run keeps of an answer, by name."""
+    """Return the quantities and fields that a run keeps of an answer, by name."""
     found = quantities(solution, sampling)
     if isinstance(solution, ContactPath):
         found |= _pressure(solution, sampling) if sampling.ring_edges else {}

@@ -1,6 +1,7 @@
-"""What some claims show beside their verdicts: convergence, cost of accuracy, stress tests, effects of a scene."""
+"""Records of studies: convergence, cost of accuracy, stress tests, effects of the parts of a scene."""
 
 from dataclasses import field
+from typing import TypeAlias
 
 from pydantic.dataclasses import dataclass
 
@@ -125,7 +126,7 @@ class StressTest:
 
 @dataclass(frozen=True, kw_only=True, config=RECORD)
 class Effect:
-    """What a part of a scene ("Adhesion", "finite thickness") costs and changes: solved with it and without.
+    """Cost of a part of a scene ("Adhesion", "finite thickness"), and change of the answer without it.
 
     Attributes:
         seconds: processor time of a first solution of the whole scene [s].
@@ -145,14 +146,14 @@ class Effect:
 
     @property
     def share_of_time(self) -> float:
-        """How much of the time goes into the part, not below zero; all of it where nothing is left without it."""
+        """Share of the time that the part takes, at least zero; one where the scene has no answer without it."""
         if self.seconds_without is None:
             return 1.0
         return max(0.0, 1.0 - self.seconds_without / self.seconds) if self.seconds else 0.0
 
     @property
     def largest_change(self) -> float:
-        """Over all quantities; infinite where nothing is left without the part."""
+        """Largest relative change over all quantities; infinite where the scene has no answer without the part."""
         return max(self.changes.values(), default=float("inf"))
 
     def may_be_dropped(self, accuracy: float) -> bool:
@@ -161,9 +162,12 @@ class Effect:
 
     @property
     def line(self) -> str:
-        """In words: "viscosity: 61 % of the time, changes peak force by 0.02 %"."""
+        """In words: "without it peak force changes by 0.02 %. It takes 61 % of the run time."."""
         if not self.changes:
-            return f"{self.part}: {self.remark}"
+            return self.remark
         quantity = max(self.changes, key=lambda name: self.changes[name])
-        changed = f"changes {quantity.replace('_', ' ')} by {100 * self.changes[quantity]:.2g} %"
-        return f"{self.part}: {100 * self.share_of_time:.0f} % of the time, {changed}"
+        changed = f"without it {quantity.replace('_', ' ')} changes by {100 * self.changes[quantity]:.2g} %"
+        return f"{changed}. It takes {100 * self.share_of_time:.0f} % of the run time."
+
+
+Record: TypeAlias = Convergence | CostOfAccuracy | StressTest | Effect

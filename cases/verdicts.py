@@ -72,7 +72,7 @@ def worst(statuses: Iterable[Status]) -> Status:
 
 
 class ExitCode(IntEnum):
-    """What the command line answers to the shell."""
+    """Exit codes of the command line."""
 
     PASSED = 0
     GATE_FAILED = 1

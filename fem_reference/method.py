@@ -34,6 +34,7 @@ from contact import (
     other_layer,
 )
 from contact.answer.accuracy import told_where_less
+from contact.answer.method import not_round
 from contact.answer.no_contact import without_contact
 from contact.answer.one_thread import one_thread
 from contact.answer.small_strains import within_small_strains
@@ -105,6 +106,8 @@ class Fem:
 
     def supports(self, scene: Scene) -> Supported | Unsupported:
         """Whether this method models the scene."""
+        if (other := not_round("fem", scene)) is not None:
+            return other
         if scene.effect(Friction) is not None:
             punch = isinstance(scene.indenter, FlatPunch)
             other = other_layer("full stick of a FlatPunch by fem", scene.layer) if punch else None

@@ -1,12 +1,14 @@
-"""What people and CI see: pages, figures, tables, the command line. Nothing is computed here.
+"""Pages, figures, tables and the command line. Nothing is computed here.
 
 - ``command_line``, ``commands``: `contact-verify`, the console command
-- ``pages``: report.html and a page a case, comparison.html, summary.md, junit.xml, annotations
-- ``charts``: what is drawn of a case
-- ``figures``: one renderer and one style for every figure: SVG, PNG and CSV
-- ``tables``: tables before anyone prints them
-- ``words``: a number with its unit and no more digits than its uncertainty allows; names; outcomes
-- ``terminal``: progress and tables while a run goes on
+- ``page``: report.html, one page per case and comparison.html
+- ``ci``: summary.md, junit.xml and annotations
+- ``findings``, ``tables``: what a run found, in words and as tables
+- ``charts``, ``pictures``, ``inside``, ``fit_figures``: pictures
+- ``answer``, ``fit_tables``: single answers and fits as tables and CSV files
+- ``style``, ``words``: one look for all figures; numbers with units and no digit beyond their uncertainty
+- ``terminal``, ``progress``: tables and bars in the terminal
+- ``book``: pages of the documentation
 """
 
 import os

@@ -15,19 +15,31 @@ from contact import (
     HistoryPath,
     ImpactHistory,
     InvalidInput,
+    Layer,
     Solution,
     StageRecord,
 )
 from contact.answer.evidence import SYMBOLS
+from contact.answer.friction import told_of_friction
 from contact.answer.small_strains import depth_note, depths_of
 from contact.answer.solution import scene_line
 from contact.records.units import prefix_for
 from contact.records.validation import FloatArray
-from reports.words import Table, display_name, duration, measured, memory, scaled_unit, small
+from reports.words import (
+    Table,
+    display_name,
+    duration,
+    measured,
+    memory,
+    quantity_words,
+    scaled_column,
+    scaled_unit,
+    small,
+)
 
 if TYPE_CHECKING:
-    from cases.measurements.sweep import Sweep
     from cases.run.propagation import Propagated, PropagatedQuantity
+    from cases.sweep import Sweep
 
 BRACKETS = (
     "Digits in brackets: uncertainty of the last digits, as the method itself estimates it; (?) where it gives none. "
@@ -116,7 +128,7 @@ def difference_table(solution: Solution, other: Solution) -> Table:
         scale = float(np.max(np.abs(values))) or 1.0
         stated = np.hypot(_uncertainty(solution, name), _uncertainty(other, name))[step] / scale
         difference = float(abs(values[step] - others[step])) / scale
-        rows.append((name.replace("_", " "), small(difference), small(stated) if np.isfinite(stated) else "(?)"))
+        rows.append((quantity_words(name), small(difference), small(stated) if np.isfinite(stated) else "(?)"))
     return Table(
         title=f"{display_name(solution.method)} against {display_name(other.method)}",
         note="Largest difference over all states, over the largest value; stated: by both methods together, there.",
@@ -125,18 +137,23 @@ def difference_table(solution: Solution, other: Solution) -> Table:
     )
 
 
+def critical_facts(solution: Solution) -> list[tuple[str, str]]:
+    """Pull-off of a detachment, restitution and peaks of an impact; nothing for a plain path."""
+    return [(quantity_words(name), _critical_value(solution, name)) for name in single_numbers(solution)]
+
+
 def solution_facts(solution: Solution) -> list[tuple[str, str]]:
-    """What is said once of an answer: critical values, cost, own error estimate, notes but that on the depth."""
-    # Pull-off of a detachment, restitution and peaks of an impact; nothing for a plain path.
-    facts = [(name.replace("_", " "), _critical_value(solution, name)) for name in single_numbers(solution)]
+    """Error estimate, cost, scene and notes of an answer, without the notes that the command prints more closely."""
     worst = {name: float(np.max(error)) for name, error in solution.error_estimate.items() if np.size(error)}
-    estimates = ", ".join(f"{name.replace('_', ' ')} {small(error)}" for name, error in worst.items())
-    facts += [("relative error estimate", estimates)] if estimates else []
+    estimates = ", ".join(f"{quantity_words(name)} {small(error)}" for name, error in worst.items())
+    facts = [("relative error estimate", estimates)] if estimates else []
     facts += [("cost", f"{duration(solution.cost.wall_seconds)}, {solution.cost.unknowns} unknowns")]
     facts += [("stages", ", ".join(map(_stage, solution.stages)))] if solution.stages else []
     facts += [("scene", scene_line(solution.scene))]
-    above = depth_note(solution.scene, depths_of(solution))
-    return facts + [("note", note) for note in solution.notes if note != above]
+    elsewhere = [depth_note(solution.scene, depths_of(solution))]
+    if isinstance(solution.scene.layer, Layer) and isinstance(solution, ContactPath):
+        elsewhere += told_of_friction(solution.scene.layer, solution.contact_radius)
+    return facts + [("note", note) for note in solution.notes if note not in elsewhere]
 
 
 def _critical_value(solution: Solution, name: str) -> str:
@@ -162,24 +179,24 @@ def _stage(stage: StageRecord) -> str:
     """The effect ledger in words: what ran, how long, how often, and the bytes it declared."""
     times = "" if stage.calls == 1 else f" in {stage.calls} calls"
     size = f", {memory(stage.bytes)}" if stage.bytes else ""
-    return f"{stage.name.replace('_', ' ')} {duration(stage.wall_seconds)}{times}{size}"
+    return f"{quantity_words(stage.name)} {duration(stage.wall_seconds)}{times}{size}"
 
 
-# Pairs of quantities are listed where they move together at least so much.
+# Pairs of quantities are listed from this correlation on.
 TOGETHER = 0.5
 
 
 def propagated_table(found: "Propagated") -> Table:
     """Value, numerical error, uncertainty by the inputs and what each input contributes, of the last step."""
     names = list(found.quantities[0].by_input) if found.quantities else []
-    words = [one.name.replace("_", " ") for one in found.quantities]
+    words = [quantity_words(one.name) for one in found.quantities]
     note = "Standard uncertainty by the inputs at the last step, beside the error of the method; "
     note += f"{found.solved} scenes solved{'' if names else ', by samples'}."
     if bent := [word for word, one in zip(words, found.quantities, strict=True) if one.bends]:
         note += f" Not linear over these uncertainties: {', '.join(bent)}; --samples takes the whole of it."
     pairs = [(words[i], words[j], float(found.correlation[i, j])) for j in range(len(words)) for i in range(j)]
     if together := [f"{a} and {b} ({share:+.2f})" for a, b, share in pairs if abs(share) >= TOGETHER]:
-        note += f" Moving together: {', '.join(together)}."
+        note += f" Correlated: {', '.join(together)}."
     heads = ("quantity", "value", "numerical error", "by inputs", "relative", *names)
     rows = tuple(_row(one, names) for one in found.quantities)
     return Table(title="Uncertain inputs", note=note, heads=heads, rows=rows)
@@ -190,7 +207,7 @@ def _row(one: "PropagatedQuantity", names: list[str]) -> tuple[str, ...]:
     factor, unit = scaled_unit(value, one.unit)
     size = abs(value) or 1.0
     return (
-        one.name.replace("_", " "),
+        quantity_words(one.name),
         f"{measured(value / factor, spread / factor) if spread else f'{value / factor:.6g}'} {unit}".strip(),
         "(?)" if one.numerical is None else small(float(one.numerical[-1]) / size),
         f"{small(spread / factor)} {unit}".strip(),
@@ -207,8 +224,9 @@ def sweep_table(found: "Sweep") -> Table:
             name, bracket, unit = head.partition(" [")
             errors = columns.get(f"{name}_uncertainty{bracket}{unit}", np.zeros_like(values))
             exact = ~np.isfinite(errors) | (values == 0.0)
-            numbers = zip(values.tolist(), np.where(exact, 0.0, errors).tolist(), strict=True)
-            texts[head] = [f"{value:.6g}" if error == 0.0 else _readable(value, error) for value, error in numbers]
+            factor, words = scaled_column(head, values.tolist())
+            numbers = zip((values / factor).tolist(), (np.where(exact, 0.0, errors) / factor).tolist(), strict=True)
+            texts[words] = [f"{value:.6g}" if error == 0.0 else _readable(value, error) for value, error in numbers]
     note = "Digits in brackets: uncertainty of the last digits. A number without brackets is right to the digits shown."
     rows = tuple(zip(*texts.values(), strict=True))
-    return Table(title=f"Over {found.swept.name}", note=note, heads=tuple(texts), rows=rows, words=0)
+    return Table(title=f"Over {quantity_words(found.swept.name)}", note=note, heads=tuple(texts), rows=rows, words=0)

@@ -1,6 +1,6 @@
 """`contact-verify`: verification runs, reports, gates, and single answers with error bars, from the shell.
 
-Only declarations stand here and in `commands.studies`; what a command needs is imported when it is called, so that help
+Only declarations stand here and in `commands.curves`; what a command needs is imported when it is called, so that help
 and errors come at once.
 """
 
@@ -90,9 +90,7 @@ class Only(StrEnum):
 
 
 Option = typer.Option
-Cases = Annotated[
-    list[str] | None, typer.Argument(metavar="[CASE]...", help="Cases by name; all of the suite if none.")
-]
+Cases = Annotated[list[str] | None, typer.Argument(metavar="CASE", help="Cases by name; all if none.")]
 Methods = Annotated[list[str] | None, Option(help="Only this method. Repeatable.")]
 Against = Annotated[list[str] | None, Option(help="Compare each --method with this one, and nothing else. Repeatable.")]
 Baselines = Annotated[Path, Option(help="Folder of the accepted numbers.")]
@@ -204,7 +202,7 @@ def gate(
 ) -> int:
     """Compare a run with the accepted numbers: values, counters, nothing missing, nothing extra; then its claims.
 
-    By default those methods are compared that the run was made with. `contact-verify report` draws pages with it.
+    Compares the methods of the run unless --method names some. `contact-verify report` then draws its pages.
     """
     from reports.commands.baselines import run_gate  # noqa: PLC0415
 
@@ -222,7 +220,7 @@ def accept(
     loosen: Annotated[bool, Option("--loosen", help="Let tolerances grow or records be withdrawn.")] = False,
     jobs: Annotated[int, Option(help="Repetitions at a time.")] = 2,
 ) -> None:
-    """Show what accepting a run's numbers would change, in units of tolerance and of stated error; write it on request.
+    """Show what new accepted numbers would change, in units of tolerance and of stated error; write them with --write.
 
     Refused: numbers that are not finite, uncommitted changes, a failing exact or order claim, continuous integration.
     """
@@ -257,7 +255,7 @@ def solve(
             "deviations, ranges, correlations.",
         ),
     ] = "",
-    samples: Annotated[int, Option(help="Scenes to draw for --uncertain; by default differences, two per input.")] = 0,
+    samples: Annotated[int, Option(help="Random scenes for --uncertain, 0: two scenes per uncertain input.")] = 0,
     over: Annotated[
         str, Option(metavar="RANGE", help='Vary one number: "thickness=1um..10um:20", then ":log" for equal factors.')
     ] = "",

@@ -9,6 +9,7 @@ from cases.answers import Answer, Values
 from cases.runs import Run
 from cases.verdicts import Kind, Origin, Status, Verdict, Why
 from reports.findings import WORST_FIRST
+from reports.words import quantity_words
 
 WHY = Why(
     Origin.OWN_EARLIER_OUTPUT,
@@ -81,7 +82,7 @@ def _verdict(
     tolerance = stated or 5e-324
     return Verdict(
         case=one.case,
-        claim=f"{quantity.replace('_', ' ')} of both runs",
+        claim=f"{quantity_words(quantity)} of both runs",
         kind=Kind.REGRESSION,
         scene=one.scene,
         methods=tuple(dict.fromkeys((one.method, other.method))),

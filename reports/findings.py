@@ -14,7 +14,7 @@ from typing import Any, TypeVar
 from cases.answers import Answer
 from cases.runs import Run
 from cases.verdicts import Kind, Status, Verdict
-from reports.words import NOT_FINITE, display_name, small
+from reports.words import NOT_FINITE, display_name, quantity_words, short_exponents, signed, small
 
 T = TypeVar("T")
 K = TypeVar("K", bound=Hashable)
@@ -80,14 +80,9 @@ def who(methods: Iterable[str], between: str = " – ") -> str:
 
 
 def in_words(message: str) -> str:
-    """A message with its non-finite numbers in words, so that pages can be searched for stray ones."""
+    """A message with short powers of ten and non-finite numbers in words, so that a search finds stray ones."""
     names = {"nan": "not-a-number", "inf": "infinity"}
-    return re.sub(r"(?<![\w-])([-+]?)(nan|inf)\b", lambda found: found[1] + names[found[2]], message)
-
-
-def quantity_words(name: str) -> str:
-    """The name of a quantity as words."""
-    return name.replace("_", " ")
+    return re.sub(r"(?<![\w-])([-+]?)(nan|inf)\b", lambda found: found[1] + names[found[2]], short_exponents(message))
 
 
 def observed_text(verdict: Verdict) -> str:
@@ -98,7 +93,7 @@ def observed_text(verdict: Verdict) -> str:
     if verdict.kind is Kind.ORDER and verdict.expected is not None:
         return f"{verdict.error:.2f}{unit}, formal {verdict.expected:g}"
     if verdict.kind is Kind.REGRESSION and (change := relative_error(verdict)) is not None:
-        return f"moved by {change:+.1e}"
+        return f"changed by {signed(change)}"
     stated = ", ".join(f"{display_name(method)} {small(u)}" for method, u in verdict.uncertainty.items())
     return f"{small(verdict.error)}{unit}" + (f" (stated {stated})" if stated else "")
 
@@ -222,8 +217,8 @@ def size_text(errors: Sequence[float]) -> str:
     if not errors:
         return ""
     if max(errors) - min(errors) <= 2 * ALIKE * abs(median(errors)):
-        return f"{median(errors):+.1e} each"
-    return f"{min(errors):+.1e} to {max(errors):+.1e}"
+        return f"{signed(median(errors))} each"
+    return f"{signed(min(errors))} to {signed(max(errors))}"
 
 
 def _unanswered(run: Run) -> list[Answer]:

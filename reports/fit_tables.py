@@ -3,10 +3,10 @@
 import numpy as np
 
 from cases.files import csv_text
-from cases.measurements.uncertain_fit import UncertainFit
+from cases.uncertain_fit import UncertainFit
 from mdr.curves import CurveFit, MapFit
 from mdr.curves.families import unit_of_parameter
-from reports.words import Table, measured, scaled_unit, small, with_prefix
+from reports.words import Table, measured, quantity_words, scaled_unit, small, with_prefix
 
 
 def fit_table(found: CurveFit) -> Table:
@@ -16,7 +16,7 @@ def fit_table(found: CurveFit) -> Table:
         factor, unit = scaled_unit(value, unit_of_parameter(name))
         low, high = (f"{end / factor:.5g}" for end in found.interval(name))
         text = measured(value / factor, found.standard_error[name] / factor)
-        rows.append((name.replace("_", " "), text, f"{low} to {high}", unit))
+        rows.append((quantity_words(name), text, f"{low} to {high}", unit))
     return Table(
         title=f"Fit of {found.depth.size} points",
         note="Digits in brackets: standard error from the scatter of the curve.",
@@ -32,7 +32,7 @@ def shares_table(found: UncertainFit) -> Table:
         factor, unit = scaled_unit(found.fit.values[name], unit_of_parameter(name))
         scatter, inputs = found.fit.standard_error[name], found.fit.input_error[name]
         numbers = [f"{number / factor:+.3g}" for number in changes.values()]
-        rows.append((name.replace("_", " "), f"{scatter / factor:.3g}", *numbers, f"{inputs / factor:.3g}", unit))
+        rows.append((quantity_words(name), f"{scatter / factor:.3g}", *numbers, f"{inputs / factor:.3g}", unit))
     heads = [f"{one.name} ({one.in_words()})" for one in found.inputs.inputs]
     return Table(
         title="Standard uncertainty, one deviation each",

@@ -1,5 +1,6 @@
 """report.html, the verdict and three answers first, and a page per case; no script, no network."""
 
+import re
 import shlex
 from collections import Counter
 from collections.abc import Iterable, Sequence
@@ -17,15 +18,18 @@ from cases.files import csv_text, write_whole
 from cases.runs import Run
 from cases.verdicts import Kind, Status, Verdict, worst
 from reports import findings, tables
-from reports.charts import front, of_case
+from reports.charts import Picture, front, of_case
 from reports.findings import grouped, severity, who
-from reports.study_charts import Picture
 from reports.style import figure_style, svg_text
 from reports.words import duration, file_name, small
 
 # The folders of the pages of single cases, and of the pictures.
 CASES, FIGURES = "cases", "figures"
 QUESTIONS = ("Do the methods agree?", "What does accuracy cost?", "Where does it break?")
+# The space between a number and its unit.
+BEFORE_UNIT = re.compile(r"(?<=\d) (?=(?:min|%|[pnuµmkMG]?(?:s|m|N|Pa|B|J))(?!\w))")
+# Letters of a word with digits that is kept on one line: longer ones are names, and columns are narrow.
+LONGEST_NUMBER = 24
 # The accuracies whose price the front page states.
 PRICED = (1e-4, 1e-6)
 
@@ -113,7 +117,7 @@ def _agreement(run: Run) -> list[str]:
     medians = (f"{who(pair)} {small(median(map(tables.difference, same)))}" for pair, same in pairs.items())
     return [
         f"{verdict} {len(found)} comparisons agree within their tolerance{rest}.",
-        f"Median difference: {', '.join(medians)}.",
+        f"Median difference: {'; '.join(medians)}.",
     ]
 
 
@@ -121,12 +125,12 @@ def _cost(run: Run) -> list[str]:
     costs = [tables.timed_methods(cost) for cost in run.judged.costs]
     if not costs:
         return ["Nothing was timed in this run."]
-    lines = [f"Median of {len(costs)} timed quantities, once data are prepared."]
+    lines = [f"Median time once data are prepared, and how many of {len(costs)} timed quantities reach the accuracy."]
     for tau in PRICED:
         parts = []
         for method in dict.fromkeys(name for points in costs for name in points):
             found = [one.seconds for points in costs if (one := cheapest(points.get(method, ()), tau))]
-            parts += [f"{who([method])} {duration(median(found))}"] if found else []
+            parts += [f"{who([method])} {duration(median(found))} ({len(found)})"] if found else []
         lines += [f"To {tables.percent(tau)}: {', '.join(parts)}."] if parts else []
     return lines
 
@@ -166,12 +170,14 @@ def _rendered(template: str, **values: Any) -> str:
 
 
 def unbroken(text: str) -> Markup:
-    """The text with numbers that are never broken at the end of a line."""
+    """The text with numbers that are never broken at the end of a line, nor parted from their units."""
+    words = BEFORE_UNIT.sub("\u00a0", text).split(" ")
+    number = Markup("<span class=nb>{}</span>")
     parts = (
-        f"<span class=nb>{escape(word)}</span>" if any(map(str.isdigit, word)) else escape(word)
-        for word in text.split()
+        number.format(word) if any(map(str.isdigit, word)) and len(word) <= LONGEST_NUMBER else escape(word)
+        for word in words
     )
-    return Markup(" ").join(map(Markup, parts))
+    return Markup(" ").join(parts)
 
 
 @cache

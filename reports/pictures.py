@@ -4,7 +4,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from cases.measurements.sweep import Sweep
+from cases.sweep import Sweep
 from contact import (
     ContactRadii,
     DepthHistory,
@@ -17,10 +17,10 @@ from contact import (
     Scene,
     Solution,
 )
-from contact.records.units import prefix_for
 from contact.records.validation import FloatArray
+from reports.answer_plot import axis_label, factor
 from reports.style import BLACK, line_with_band, look_of, panels
-from reports.words import display_name
+from reports.words import display_name, scaled_column
 
 # Points of a line, about: half as many show corners in a printed figure.
 POINTS = 240
@@ -47,7 +47,7 @@ def solution_figure(solution: Solution, curve: Solution | None = None) -> Figure
     shown = ("normal_force", "indentation_depth", "contact_radius") if in_time else ("normal_force", "contact_radius")
     drawing, all_axes = panels(len(shown), size=SIZE)
     for axes, y in zip(all_axes, shown, strict=True):
-        axes.set(xlabel=solution.label(x), ylabel=solution.label(y))
+        axes.set(xlabel=axis_label(solution, x), ylabel=axis_label(solution, y))
         _draw_answer(axes, solution, curve, (x, y))
     drawing.legend(handles=all_axes[0].get_legend_handles_labels()[0], loc="outside lower center", ncols=2)
     return drawing
@@ -73,9 +73,9 @@ def _in_units(
     drawn: Solution, answer: Solution, names: tuple[str, str]
 ) -> tuple[FloatArray, FloatArray, FloatArray | None]:
     """States of `drawn` and the stated error of the second quantity, in the units of the axes of `answer`."""
-    x, y = (getattr(drawn, name) * answer.factor(name) for name in names)
+    x, y = (getattr(drawn, name) * factor(answer, name) for name in names)
     stated = drawn.stated_error(names[1])
-    return x, y, None if stated is None else stated * answer.factor(names[1])
+    return x, y, None if stated is None else stated * factor(answer, names[1])
 
 
 def between(scene: Scene) -> Scene | None:
@@ -109,20 +109,13 @@ def sweep_figure(found: Sweep) -> Figure:
     size = (ALONE * SIZE[0], ALONE * SIZE[1]) if len(varied) == 1 else SIZE
     drawing, all_axes = panels(len(varied), size=size)
     for axes, head in zip(all_axes, varied, strict=True):
-        (x, x_label), (y, y_label) = (_scaled(columns[name], name) for name in (x_head, head))
+        (x_factor, x_label), (y_factor, y_label) = (
+            scaled_column(name, columns[name].tolist()) for name in (x_head, head)
+        )
         axes.set(xlabel=x_label, ylabel=y_label)
+        x, y = columns[x_head] / x_factor, columns[head] / y_factor
         for state in range(states):
             axes.plot(x[state::states], y[state::states], label=f"state {state + 1}")
     if 1 < states <= MOST_NAMED:
         drawing.legend(handles=all_axes[0].lines, loc="outside lower center", ncols=min(states, 4))
     return drawing
-
-
-def _scaled(values: FloatArray, head: str) -> tuple[FloatArray, str]:
-    """Values in a unit with a fitting prefix, and their label."""
-    name, bracket, unit = head.partition(" [")
-    words = name.replace("_", " ")
-    if not bracket:
-        return values, words
-    factor, prefix = prefix_for(values.tolist())
-    return values / factor, f"{words} [{prefix}{unit}"

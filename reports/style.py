@@ -20,7 +20,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 from numpy.typing import ArrayLike
 
-from reports.words import base_of
+from reports.words import base_of, short_exponents
 
 BLACK, GREY, FAINT, TINT = "#1a1a1a", "#767676", "#c8c8c8", "#eef4ee"
 BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY = "#0072b2", "#d55e00", "#009e73", "#b0509a", "#e69f00", "#56b4e9"
@@ -74,7 +74,7 @@ def mark_decades(*all_axes: Axis) -> None:
         axis.set_minor_formatter(NullFormatter())
         if decades < 2:
             axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-            axis.set_major_formatter(FuncFormatter(lambda value, _position: f"{value:g}"))
+            axis.set_major_formatter(FuncFormatter(lambda value, _position: short_exponents(f"{value:g}")))
         else:
             axis.set_major_locator(LogLocator(base=10.0 ** max(1, math.ceil(decades / 10)), numticks=12))
             axis.set_major_formatter(FuncFormatter(power_of_ten))

@@ -11,8 +11,18 @@ from cases.runs import Run
 from cases.studies import Convergence, CostOfAccuracy, Effect, Point, StressTest
 from cases.verdicts import Kind, Status, Verdict
 from contact import UNITS
-from reports.findings import grouped, quantity_words, severity, tone_of, who, word_of
-from reports.words import Table, display_name, duration, measured, memory, scaled_unit, small, tabulated
+from reports.findings import grouped, severity, tone_of, who, word_of
+from reports.words import (
+    Table,
+    display_name,
+    duration,
+    measured,
+    memory,
+    quantity_words,
+    scaled_unit,
+    small,
+    tabulated,
+)
 
 # Accuracies that tables of costs show.
 SHOWN = (1e-2, 1e-4, 1e-6, 1e-8)
@@ -280,15 +290,15 @@ def stress_tests(tests: Sequence[StressTest]) -> Table | None:
             "test": lambda test: test.name,
             "method": lambda test: display_name(test.method),
             "parameter": lambda test: test.parameter,
-            "why it stopped": _why_stopped,
             "end": end_of,
+            "why it stopped": _why_stopped,
             "fewest digits": fewest_digits,
             "residual": lambda test: small(max((r for s in test.steps for r in s.residuals.values()), default=0.0)),
         },
         title="Stress tests",
         note="Digits: those that perturbed repeats share at the worst completed step. Residual: the largest of any law "
         "of mechanics there, independent answers and stated errors included.",
-        words=4,
+        words=5,
     )
 
 

@@ -46,7 +46,7 @@ def measured(value: float, uncertainty: float) -> str:
     if uncertainty == 0.0:
         return f"{value:.12g}"
     exponent = _leading_power(max(abs(value), uncertainty))
-    if SMALLEST_PLAIN <= max(abs(value), uncertainty) < LARGEST_PLAIN and uncertainty < 10.0:
+    if SMALLEST_PLAIN <= max(abs(value), uncertainty) < LARGEST_PLAIN and uncertainty <= 99.0:
         return _bracketed(value, uncertainty, exponent)
     scale = 10.0**exponent
     return f"{_bracketed(value / scale, uncertainty / scale, 0)}e{exponent}"
@@ -78,6 +78,26 @@ def small(value: float) -> str:
     return f"{mantissa}e{int(exponent)}"
 
 
+def signed(value: float) -> str:
+    """A relative error to two digits with its sign: +3.2e-6."""
+    return f"{'+' * (value > 0.0)}{small(value)}"
+
+
+def short_exponents(text: str) -> str:
+    """The text with its powers of ten as `small` writes them: 1e-6 for 1e-06, 1e5 for 1e+05."""
+    return re.sub(r"(?<=\d)e(?:\+|(-))0?(\d+)\b", lambda found: f"e{found[1] or ''}{found[2]}", text)
+
+
+def quantity_words(name: str) -> str:
+    """The name of a quantity or parameter as words: pull-off force, Poisson's ratio."""
+    return (
+        name.replace("_", " ")
+        .replace("pull off", "pull-off")
+        .replace("poissons", "Poisson's")
+        .replace("youngs", "Young's")
+    )
+
+
 def duration(seconds: float) -> str:
     """Seconds in the unit that fits: 4.2 ms, 1.3 s, 2 min 05 s."""
     if not math.isfinite(seconds):
@@ -107,6 +127,13 @@ def scaled_unit(value: float, unit: str) -> tuple[float, str]:
         return 1.0, ""
     factor, prefix = prefix_for([value])
     return factor, f"{prefix}{unit}"
+
+
+def scaled_column(head: str, values: Iterable[float]) -> tuple[float, str]:
+    """Factor and head with a fitting prefix of a column "name [unit]"; a ratio has neither."""
+    name, _, unit = head.partition(" [")
+    factor, prefix = prefix_for(values) if unit and not unit.startswith(("1", "kg")) else (1.0, "")
+    return factor, quantity_words(name) + (f" [{prefix}{unit}" if unit and unit != "1]" else "")
 
 
 def _three_digits(value: float) -> str:

@@ -1,4 +1,4 @@
-"""Methods of installed packages, asked with care: whatever goes wrong inside one is told under its name."""
+"""Methods of installed packages. Every error inside one becomes an error with the method's name."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -108,7 +108,7 @@ def _blamed(name: str, place: str, call: Callable[[], T]) -> T:
 
 
 def _faults(answer: object, scene: Scene) -> list[str]:
-    """What makes an answer none to this scene."""
+    """Reasons why an answer does not belong to this scene."""
     if not isinstance(answer, Solution):
         return [f"{shown(answer)} is no Solution"]
     prescribed = PRESCRIBED.get(type(scene.loading), "")

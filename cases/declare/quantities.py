@@ -7,7 +7,7 @@ import numpy as np
 from contact import ImpactHistory, Solution
 from contact.records.validation import FloatArray
 
-# What sums up an impact: its samples lie where the steps of a method fall and cannot be compared.
+# Numbers of an impact. Its samples in time differ between methods and cannot be compared.
 IMPACT_NUMBERS: Final = (
     "coefficient_of_restitution",
     "contact_time",
@@ -23,7 +23,7 @@ def values_of(answer: Solution, quantity: str) -> FloatArray:
 
 
 def single_numbers(answer: Solution) -> tuple[str, ...]:
-    """What an answer ends with beside its path: restitution and peaks of an impact, the pull-off of a detachment."""
+    """Names of single numbers of an answer: restitution and peaks of an impact, pull-off of a detachment."""
     return IMPACT_NUMBERS if isinstance(answer, ImpactHistory) else answer.SCALARS
 
 

@@ -1,4 +1,4 @@
-"""What two methods share: one list, from which claims, reports and tests of planted faults all read.
+"""Code and data that two methods share, in one list for claims, reports and tests of planted faults.
 
 Agreement of two methods says nothing about what both use. Whatever is listed here is planted wrong by one per cent in
 `tests/planted/sharing.py`; the table of what then fails is `docs/shared.md`.
@@ -183,10 +183,10 @@ def used_by(method: str) -> tuple[str, ...]:
 
 
 def in_common(first: tuple[str, ...], second: tuple[str, ...], *, quantity: str, case: str) -> tuple[str, ...]:
-    """Names of the code that two answers rest on both, so that their agreement says nothing about it.
+    """Names of the code and data that both answers use, which their agreement cannot check.
 
     Args:
-        first: what one answer used (`used_by`, or what a method of another package says itself).
+        first: what one answer used (`used_by`, or the `shared_inputs` of a method of another package).
         second: what the other used.
         quantity: that is compared.
         case: name of the case.

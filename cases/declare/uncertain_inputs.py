@@ -61,7 +61,7 @@ class UncertainInput:
 
 @dataclass(frozen=True, kw_only=True)
 class UncertainInputs:
-    """What is uncertain about a scene.
+    """Uncertain numbers of a scene.
 
     Attributes:
         inputs: each of them.
@@ -178,13 +178,17 @@ def part_of(scene: Scene, part: str) -> Any:
     return scene.effects[int(part.removeprefix("effects"))] if part.startswith("effects") else getattr(scene, part)
 
 
+def with_part(scene: Scene, part: str, record: Any) -> Scene:
+    """The scene with another record as a part that `place_of` names."""
+    if not part.startswith("effects"):
+        return scene.replace(**{part: record})
+    number = int(part.removeprefix("effects"))
+    return scene.replace(effects=(*scene.effects[:number], record, *scene.effects[number + 1 :]))
+
+
 def _changed(scene: Scene, one: UncertainInput, change: Callable[[Any], Any]) -> Scene:
     part, field = place_of(scene, one.name)
-    if part.startswith("effects"):
-        number = int(part.removeprefix("effects"))
-        changed = _with(scene.effects[number], field, one, change)
-        return scene.replace(effects=(*scene.effects[:number], changed, *scene.effects[number + 1 :]))
-    return scene.replace(**{part: _with(getattr(scene, part), field, one, change)})
+    return with_part(scene, part, _with(part_of(scene, part), field, one, change))
 
 
 def _with(record: Any, field: str, one: UncertainInput, change: Callable[[Any], Any]) -> Any:

@@ -1,4 +1,4 @@
-"""What was accepted: one file per case, ``baselines/<case>.jsonl``, written by ``accept`` alone.
+"""Accepted answers: one file per case, ``baselines/<case>.jsonl``, written by ``accept`` alone.
 
 Its first line says what was accepted; every other one is an answer (`cases.answers`) with the measured spread of its
 quantities. Fields are not kept, only their stated errors.
@@ -21,7 +21,8 @@ REMEDY = "restore it from the repository, or accept the case anew"
 # Fraction of the accepted stated error by which a value may move. Processors round differently, and a searched radius
 # or a mesh amplifies that to 3e-9. Half of it is not enough for finite elements, twice is still far below any error.
 OF_STATED_ERROR = 0.01
-# Times the measured spread: three repetitions see about a third of it; with half of that a gate would fail by chance.
+# Tolerance over the measured spread. Three repetitions show about a third of it; with half the factor a gate fails by
+# chance, with twice the factor larger changes pass.
 OF_SPREAD = 10.0
 
 

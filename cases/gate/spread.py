@@ -1,4 +1,4 @@
-"""How much an answer moves when nothing has changed: the spread that sets the tolerance of a baseline.
+"""Spread of repeated answers, which sets the tolerance of a baseline.
 
 Every accepted solution is repeated twice: with all its inputs one unit in the last place larger, and with them one unit
 smaller by the plain kernels of OpenBLAS, those of another processor.  What differs then is rounding, and another
@@ -16,9 +16,8 @@ import numpy as np
 from cases.answers import Answer, Table
 from cases.case import Case, Task
 from cases.rules import relative_spread
-from cases.run.executors import ahead, closing, process_pool
+from cases.run.executors import Window, ahead, closing, process_pool
 from cases.run.solve_task import job_of, solve
-from cases.run.window import Window
 from contact import (
     ContactRadii,
     DepthHistory,

@@ -55,7 +55,7 @@ class ContactMechanics:
         log, layer = StageLog(), scene.layer
 
         def respond(depths: FloatArray) -> Response:
-            """What the grid answers at depths."""
+            """Force, radius and stiffness of the grid at depths [m], shape (n,)."""
             size = box(scene, float(depths.max()))
             with log.stage("grid"):
                 answer = ask(

@@ -41,7 +41,7 @@ MET, MOST_STEPS = 1e-10, 40
 
 @dataclass(frozen=True, kw_only=True)
 class Response:
-    """What a solver answers at depths, shape (n,); what it does not know is left out.
+    """Values of a solver at depths, shape (n,); None for those that it does not compute.
 
     Attributes:
         normal_force: F_N [N].
@@ -67,7 +67,7 @@ def answer_from_depths(
     unknowns: int = 1,
     **further: Any,
 ) -> ContactPath | ForcePath:
-    """Return the equilibria that the scene prescribes; without radii where the solver knows none.
+    """Return the equilibria that the scene prescribes, without radii where the solver computes none.
 
     A stiffness by difference quotients states their error, besides what ``error_estimate`` states of it.
 
@@ -151,7 +151,7 @@ def _radius(found: Response) -> FloatArray:
 
 
 def _scale(scene: Scene, forces: FloatArray) -> FloatArray:
-    """A first depth [m]: any will do, the steps are those of logarithms."""
+    """A first depth [m] of the search, which steps in logarithms."""
     length = scene.indenter.flat_radius or float(np.sqrt(np.max(forces) / scene.layer.contact_modulus))
     return np.asarray(forces / (2 * scene.layer.contact_modulus * length))
 

@@ -65,7 +65,7 @@ def lacks(package: str) -> str:
 
 
 def support(reason: str) -> Supported | Unsupported:
-    """What a method answers that refuses a scene for a reason, if there is one."""
+    """`Unsupported` with the reason, or `Supported` if there is none."""
     return Unsupported(reason) if reason else Supported()
 
 

@@ -1,4 +1,4 @@
-"""A solution in a process of its own that is killed at the time limit: nobody knows whether a foreign method ends.
+"""Solutions in a separate process that is killed at the time limit, since methods of others may not end.
 
 One such process serves one process of this program, task after task, until a task does not end in time. Run as a
 module this file is that process: it reads pickled calls from its input and writes pickled results.
@@ -42,6 +42,11 @@ class _Apart:
         self.results.get(timeout=STARTS)
 
     def call(self, function: Callable[..., Any], arguments: tuple[Any, ...], seconds: float) -> Any:
+        """Return ``function(*arguments)``, computed by the process; None if the process ended without a result.
+
+        Raises:
+            Empty: after so many seconds.
+        """
         assert self.process.stdin is not None
         pickle.dump((function, arguments), self.process.stdin)
         self.process.stdin.flush()

@@ -15,7 +15,7 @@ ESTIMATED = "errors estimated from its own refinement"
 # Three grids of unknown formal order: safety factor and least order (VERIFICATION, "Convergence"); no more than the
 # second order is taken for granted.
 SAFETY, LEAST_ORDER, LARGEST_ORDER = 3.0, 0.5, 2.0
-# A closed form does not change when it is refined: so many roundings are stated of it.
+# Relative error stated of a closed form, which does not change under refinement, in roundings.
 ROUNDINGS = 32.0
 
 
@@ -64,7 +64,7 @@ def _order(coarse: FloatArray, middle: FloatArray, fine: FloatArray) -> float:
 
 
 def _error(coarse: FloatArray, middle: FloatArray, fine: FloatArray) -> FloatArray:
-    """Of the coarse values: their distance to the fine ones, and the error of those."""
+    """Error of the coarse values: their distance to the fine ones plus the error of those."""
     order = min(max(_order(coarse, middle, fine), LEAST_ORDER), LARGEST_ORDER)
     remains = SAFETY * float(np.max(np.abs(fine - middle))) / (2.0**order - 1.0)
     return np.asarray(np.abs(fine - coarse) + remains + ROUNDINGS * np.finfo(float).eps * np.abs(fine))

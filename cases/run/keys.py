@@ -1,4 +1,4 @@
-"""Is it the same question, asked of the same code?  Two hashes; the first is the same on every processor."""
+"""Hash of a task's question, equal on every processor, and hash of the code that answers it."""
 
 import dataclasses
 import hashlib
@@ -33,7 +33,7 @@ def question(task: Task) -> str:
 
 
 def code(task: Task) -> str:
-    """Return the hash of all that answers a task beside its question: sources, versions, what is kept and how."""
+    """Return the hash of all else that the answer depends on: sources, versions, sampling, exact inputs."""
     module, attribute = location(task.use.method or task.use.label)
     kept = [plain(task.sampling), task.refined, task.timed, task.first, attribute, _sources(module)]
     exact = [scene_to_mapping(task.problem), plain(task.use.settings)]

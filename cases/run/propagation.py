@@ -22,9 +22,9 @@ from contact.records.validation import FloatArray
 Named: TypeAlias = tuple[tuple[str, Values], ...]
 # The seed of the samples: an answer repeats digit by digit.
 SEED = 20261122
-# Beyond this share of the change, a difference of the two sides is said: samples are then the better answer.
+# Share of the change beyond which a difference of the two sides is noted; samples are then more accurate.
 BENT = 0.1
-# Fewer samples do not tell a standard deviation within a fifth.
+# Fewer samples give standard deviations with errors of more than 20 %.
 FEWEST_SAMPLES = 16
 
 
@@ -53,7 +53,7 @@ class PropagatedQuantity:
 
 @dataclass(frozen=True, kw_only=True)
 class Propagated:
-    """An answer at the middle of its inputs, and what their uncertainty makes of it.
+    """An answer at the middle of uncertain inputs, and the uncertainty that they cause.
 
     Attributes:
         scene: with the inputs at their middle.

@@ -44,9 +44,9 @@ def revision(directory: Path | None = None) -> str:
     return _git(directory or repository(), "rev-parse", "HEAD") or "unknown"
 
 
-def is_dirty(directory: Path | None = None) -> bool:
-    """Whether tracked files in ``directory`` (or `repository`) differ from the commit."""
-    return bool(_git(directory or repository(), "status", "--porcelain", "--untracked-files=no"))
+def is_dirty() -> bool:
+    """Whether tracked files of `repository` differ from the commit."""
+    return bool(_git(repository(), "status", "--porcelain", "--untracked-files=no"))
 
 
 def _git(directory: Path, *arguments: str) -> str:

@@ -1,6 +1,7 @@
 """Times: how they are sampled and summed up."""
 
 import gc
+import sys
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -9,26 +10,23 @@ import numpy as np
 
 from contact import InvalidInput
 
-# A time is the median of so many samples; of six and more the range covers the median
-# with more than 95 %.
+# Samples per time, which is their median: the range of six or more covers the true median with more than 95 %.
 SAMPLES = 7
-# A sample lasts at least so many seconds; anything faster is repeated within it. Chosen: it is far longer than a tick
-# of the clock and short enough for many samples.
+# Least seconds per sample, far more than a tick of the clock; faster calls are repeated within one. Half of it scatters
+# more, twice of it takes twice the time.
 SHORTEST = 0.1
-# Calls of more seconds (first number) are sampled less often (second number): they vary by less than what they are
-# compared for.
+# Calls of more than LONG seconds are sampled FEW_SAMPLES times: they scatter less than the times that are compared.
 LONG, FEW_SAMPLES = 2.0, 3
 
 
 @dataclass(frozen=True, kw_only=True)
 class Timing:
-    """Seconds per call: all samples, their median, quartiles and minimum."""
+    """Seconds per call: all samples, their median and quartiles."""
 
     samples: tuple[float, ...]
     median: float
     lower_quartile: float
     upper_quartile: float
-    minimum: float
 
     @property
     def spread(self) -> float:
@@ -37,7 +35,7 @@ class Timing:
 
 
 def summed_up(samples: Sequence[float]) -> Timing:
-    """Return median, quartiles and minimum.
+    """Return median and quartiles.
 
     Raises:
         InvalidInput: unless there is at least one sample and all are positive and finite.
@@ -51,18 +49,15 @@ def summed_up(samples: Sequence[float]) -> Timing:
         median=float(median),
         lower_quartile=float(lower),
         upper_quartile=float(upper),
-        minimum=float(values.min()),
     )
 
 
-def timed(call: Callable[[], object], *, samples: int = SAMPLES, shortest: float = SHORTEST) -> Timing:
-    """Call once to warm up, then sample; a call faster than ``shortest`` seconds is looped within each sample."""
-    _seconds(call, 1)
-    return timed_warm(call, samples=samples, shortest=shortest)
-
-
 def timed_warm(call: Callable[[], object], *, samples: int = SAMPLES, shortest: float = SHORTEST) -> Timing:
-    """Sample a call that has been warmed up; one of more than ``LONG`` seconds ``FEW_SAMPLES`` times only."""
+    """Sample a call that has been warmed up.
+
+    A call faster than ``shortest`` seconds is looped within each sample, one slower than ``LONG`` seconds is sampled
+    ``FEW_SAMPLES`` times only.
+    """
     first = _seconds(call, 1)
     if first >= shortest:
         # Such a call is not repeated within a sample: it is a sample already.
@@ -83,3 +78,16 @@ def _seconds(call: Callable[[], object], loops: int) -> float:
     finally:
         if collecting:
             gc.enable()
+
+
+PACKAGES = ("bem", "mdr", "fem_reference")
+
+
+def forget() -> None:
+    """Empty every cache that a module of a method keeps: flat-punch data, tables, meshes, quadrature."""
+    for name, module in tuple(sys.modules.items()):
+        if name.partition(".")[0] in PACKAGES:
+            for value in tuple(vars(module).values()):
+                clear = getattr(value, "cache_clear", None)
+                if callable(clear):
+                    clear()

@@ -134,8 +134,12 @@ class Evidence:
 
         A residual that a method publishes among its errors, and that is no quantity of the answer, refers to one.
         """
-        values = np.abs(np.atleast_1d(np.asarray(getattr(self, quantity, 1.0), dtype=np.float64)))
+        values = self._magnitude(quantity)
         return np.full(values.shape, values.max(initial=0.0))
+
+    def _magnitude(self, quantity: str) -> FloatArray:
+        """|q|, shape (n,); one, shape (1,), for what is no quantity of the answer."""
+        return np.abs(np.atleast_1d(np.asarray(getattr(self, quantity, 1.0), dtype=np.float64)))
 
     def uncertainty(self, quantity: str) -> FloatArray:
         """Absolute error estimate in the quantity's own unit.

@@ -33,5 +33,5 @@ def told_of_friction(layer: ElasticLayer, radius: FloatArray) -> tuple[str, ...]
     slip = _COEFFICIENT * _SLIDES[layer.support] * ratio
     most = f"by up to {100.0 * slip / (1.0 - slip):.2g} %" if slip < 0.5 else "by more than half of it"
     told = f"at a/h = {ratio:.3g} and nu = {nu:g} dry friction of {_COEFFICIENT:g} may raise the force {most}"
-    more = "contact-verify solve --advise says more closely, Friction(coefficient=..) solves it"
+    more = "contact-verify solve --advise bounds it more closely, Friction(coefficient=..) solves it"
     return (f"frictionless: {told}; {more}",)

@@ -103,7 +103,7 @@ class InsideFields:
 
 
 class KnownContact(NamedTuple):
-    """What a path knows of one equilibrium.
+    """Contact radius of one equilibrium, with errors of radius and pressure.
 
     Attributes:
         radius: a [m], with all digits of what was prescribed.
@@ -119,7 +119,7 @@ class KnownContact(NamedTuple):
 
 
 class InteriorFields(Protocol):
-    """What a method provides of one equilibrium."""
+    """Fields of a method inside the body under one equilibrium."""
 
     def at(self, radius: FloatArray, depth: FloatArray) -> InsideFields:
         """At points of shape (n,) inside the body."""

@@ -5,7 +5,7 @@ import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Protocol
+from typing import Annotated, Any, ClassVar, Protocol, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -28,6 +28,7 @@ from contact.answer.solution import Solution
 from contact.records.errors import InvalidInput
 from contact.records.validation import FloatArray
 from contact.scene.effects import Adhesion
+from contact.scene.shapes import Shape
 
 
 class Fields(Protocol):
@@ -137,7 +138,7 @@ class ContactPath(Solution):
             return self.scale("indentation_depth")
         if self._adheres or not hasattr(self, quantity):
             return super().scale(quantity)
-        return np.abs(np.asarray(getattr(self, quantity), dtype=np.float64))
+        return self._magnitude(quantity)
 
     def _mean_pressure(self) -> FloatArray:
         force, area = np.abs(self.normal_force), np.pi * self.contact_radius**2
@@ -150,13 +151,38 @@ class ContactPath(Solution):
     def _adheres(self) -> bool:
         return self.scene.effect(Adhesion) is not None
 
-    def pressure(self, radius: ArrayLike, step: int = 0) -> FloatArray:
-        """Contact pressure p(r) [Pa] of one step at radii [m], zero outside the contact."""
-        return sampled(self, self.fields, "pressure", radius, step)
+    def pressure(self, radius: ArrayLike, step: int = 0, angle: ArrayLike = 0.0) -> FloatArray:
+        """Contact pressure p(r) [Pa] of one step at radii [m], zero outside the contact.
 
-    def surface_displacement(self, radius: ArrayLike, step: int = 0) -> FloatArray:
-        """Surface displacement w(r) [m] of one step at radii [m], inside and outside the contact."""
-        return sampled(self, self.fields, "surface_displacement", radius, step)
+        Under a `Shape` it depends on the direction too: an angle [rad] for all radii or one for each.
+        """
+        return sampled(self, self._along(angle), "pressure", radius, step)
+
+    def surface_displacement(self, radius: ArrayLike, step: int = 0, angle: ArrayLike = 0.0) -> FloatArray:
+        """Surface displacement w(r) [m] of one step at radii [m], inside and outside the contact; as `pressure`."""
+        return sampled(self, self._along(angle), "surface_displacement", radius, step)
+
+    def outline(self, angle: ArrayLike, step: int = 0) -> FloatArray:
+        """Distance a(phi) [m] of the edge from the axis at directions [rad]; the contact radius of a circle.
+
+        Raises:
+            InvalidInput: If the answer has no such step, or came from a file, which keeps no outline of a `Shape`.
+        """
+        self.refuse_step(step)
+        phi = np.asarray(angle, dtype=np.float64)
+        if not isinstance(self.scene.indenter, Shape):
+            return np.full(phi.shape, self.contact_radius[step])
+        of_fields = getattr(self.fields, "outline", None)
+        if of_fields is None:
+            raise InvalidInput("the outline of a shape is not kept in files; solve the scene again")
+        return np.asarray(of_fields(np.ravel(phi), step % len(self))).reshape(phi.shape)
+
+    def _along(self, angle: ArrayLike) -> Fields | None:
+        """The fields in a direction, where they depend on it."""
+        fields: Any = self.fields
+        if isinstance(self.scene.indenter, Shape) and hasattr(fields, "along"):
+            fields = fields.along(angle)
+        return cast("Fields | None", fields)
 
     def inside(self, step: int = 0) -> Inside:
         """The body under one step: `.at(radius, depth)` and `.largest("von_mises")`.
@@ -226,8 +252,7 @@ class FrictionPath(ContactPath):
             return np.abs(self.normal_force * self.indentation_depth)
         if quantity in ("pressure", "tangential_traction"):
             return np.asarray(np.abs(self.normal_force) / (np.pi * self.contact_radius**2))
-        values = self.contact_radius if quantity == "stick_radius" else getattr(self, quantity, np.ones(len(self)))
-        return np.abs(np.asarray(values, dtype=np.float64))
+        return self._magnitude("contact_radius" if quantity == "stick_radius" else quantity)
 
     def tangential_traction(self, radius: ArrayLike, step: int = 0) -> FloatArray:
         """Traction q(r) [Pa] of one step at radii [m], positive where it pushes the layer outward, zero outside."""
@@ -256,7 +281,7 @@ class ForcePath(Solution):
 
     def scale(self, quantity: str) -> FloatArray:
         """The quantity's own magnitude."""
-        return np.abs(np.asarray(getattr(self, quantity, 1.0), dtype=np.float64))
+        return self._magnitude(quantity)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -362,7 +387,7 @@ class HistoryPath(Solution):
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class FrictionHistory(HistoryPath):
-    """Response to a prescribed history of depth or force, at its own instants: dry friction knows no time.
+    """Response to a prescribed history of depth or force, at its own instants; dry friction does not depend on time.
 
     Attributes:
         stick_radius: Radius of the outermost point that sticks [m], shape (n,).

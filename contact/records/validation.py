@@ -18,8 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import PlainValidator, ValidationInfo, WithJsonSchema
 
-from contact.records.columns import MAX_ENTRIES, column_in_si
 from contact.records.errors import refused, shown
+from contact.records.tables import MAX_ENTRIES, column_in_si
 from contact.records.units import Unit, in_si
 
 FloatArray: TypeAlias = NDArray[np.float64]
@@ -94,7 +94,7 @@ def _is_number(value: object) -> bool:
     return isinstance(value, Real) and not isinstance(value, bool | np.bool_)
 
 
-def read_number(value: object, remedy: str, unit: str | None, reading: Reading | None = None) -> float:
+def read_number(value: object, remedy: str, unit: str | None, reading: Reading | None) -> float:
     """A number, or a text with a number and its unit, in SI.
 
     Raises:
@@ -248,7 +248,7 @@ def _end(value: object, unit: str | None, name: str, reading: Reading | None) ->
 
 def vector(
     remedy: str,
-    unit: str | None = None,
+    unit: str | None,
     *,
     least: float = -math.inf,
     above: float = -math.inf,

@@ -1,6 +1,7 @@
 """How right a formula is: the error of its force at a depth, and of the modulus that a user would fit with it.
 
-Right is MDR on the integral equation, at the depths that belong to a/h; on layers all lengths are in thicknesses.
+The reference is MDR on the integral equation, at the depths that belong to a/h. On layers all lengths are in
+thicknesses.
 """
 
 from dataclasses import dataclass

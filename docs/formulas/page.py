@@ -20,8 +20,8 @@ AT = [int(np.argmin(np.abs(RATIOS - ratio))) for ratio in SHOWN]
 HEAD = """# Formulas in circulation, and how right they are
 
 Written by `python -m docs.formulas.page`; the formulas are plain functions in `docs/formulas/`.
-Right is MDR on the integral equation, which agrees with the same equation in extended precision to 1e-9 and with
-finite elements to 3e-6; the model is linear, frictionless and axisymmetric, as the formulas assume. Variables:
+The reference is MDR on the integral equation, which agrees with the same equation in extended precision to 1e-9 and
+with finite elements to 3e-6; the model is linear, frictionless and axisymmetric, as the formulas assume. Variables:
 x = sqrt(R delta)/h for a paraboloid, delta tan(alpha)/h for a cone of half angle alpha, t = a/h for a flat punch.
 A formula is judged at the Poisson's ratios that it claims.
 
@@ -40,7 +40,7 @@ far as programs copied them rightly.
 - **Error of the modulus**: Young's modulus that least squares find in an exact force curve from zero to the depth that
   belongs to a/h (points equally far apart in depth, contact point known), over the true one, minus one.
 - **Holds to**: a/h up to which the error of the force stays within the share; for limits of thin layers, from which on.
-  For paraboloids delta R/h^2 stands beside it in brackets. Judged are a/h from 0.005 to 20.
+  For paraboloids delta R/h^2 stands beside it in brackets. We tested a/h from 0.005 to 20.
 """
 
 LAST = """
@@ -50,7 +50,7 @@ LAST = """
 `paraboloid_factor(sqrt(R delta)/h, nu, support)`, that is F over Hertz's force, for a/h up to 10, any nu from 0 to 1/2
 and both supports: half-space and thin layer, added, times the exponential of a polynomial. `fit_compact` makes the
 coefficients (`compact.toml`). On random points that the fit has not seen the error stays below 0.1 %
-(`tests/cases/library/test_formulas.py` checks 10 000).
+(`tests/examples/test_formulas.py` checks 10 000).
 """
 
 

@@ -39,7 +39,7 @@ file.write_text("\n".join([*heads, *rows]))
 # %%
 # Reading
 # -------
-# Every conversion is said. Columns without units, or heights without a spring constant, are refused.
+# Notes state every conversion. Columns without units, or heights without a spring constant, are refused.
 (curve,) = load_curves(file)
 print(*curve.notes, sep="\n")
 
@@ -56,7 +56,7 @@ for name in found.values:
 print(f"R^2 in contact {found.r_squared:.5f}")
 
 # %%
-# A warning stands before the numbers wherever one is due: here the depth is more than a tenth of the thickness.
+# Warnings are printed first by the command line. Here the depth is more than a tenth of the thickness.
 print(*found.warnings, sep="\n")
 
 # %%
@@ -85,7 +85,7 @@ for other in found.formulas:
 # %%
 # A wrong scene shows
 # -------------------
-# With a thickness of 30 µm the fit has another modulus, its residuals are no noise any more, and that is said.
+# With a thickness of 30 µm the fit has another modulus, its residuals are no noise any more, and a warning says so.
 wrong = fit_curve(scene.replace(layer=gel.replace(thickness=30e-6)), curve.depth, curve.force)
 print(f"{1e-3 * wrong.youngs_modulus:.2f} kPa")
 print(*wrong.warnings, sep="\n")

@@ -1,4 +1,11 @@
-"""Springs that impacts share, tracks that reach far enough, first guesses of durations.
+"""Stiffness integral K and contact radius a as functions of the depth: all that an impact needs of layer and profile.
+
+    K(d) = int_0^a(d) y_1^2 dx,   g(a(d)) = d                                                  Eqs. (3), (5), (6)
+
+A track consists of pieces between the radii where the profile is not analytic. On each piece K and a are piecewise
+polynomials of ln(1 + z/z_0), z = (d - d_0)^(1/q), d_0 the depth at its start: q = n under a tip r^n, 2 beyond a break
+or a flat end, where g - d_0 is a power series in the root of a - b. The logarithm resolves all lengths of layer and
+profile. Nodes are images of Lobatto nodes in ln(1 + u/u_0), a = u at a tip and b + u^2 elsewhere.
 
 Under a power law f = C r^n lengths count in thicknesses L and depths in C L^n, so that one track serves all layers of
 one kind. Other profiles count in metres. A track reaches up to a radius from a ladder b + L 2^k, so that no number of
@@ -9,31 +16,176 @@ from __future__ import annotations
 
 import math
 from functools import lru_cache
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
+from numpy.polynomial import legendre
 
 from bem.equation import Sizes
 from bem.flat_punch import FlatPunchSource, IntegralEquation
 from bem.kernels.moduli import contact_modulus
-from bem.kernels.of_contact import ContactKernel, contact_kernel, unit_of
-from contact import ElasticLayer, FlatPunch, PowerLaw, Profile, Scene, UnsupportedSceneError
+from bem.kernels.of_layer import ContactKernel, contact_kernel, unit_of
+from contact import ElasticLayer, FlatPunch, Profile, Scene, UnsupportedSceneError
 from contact.records.validation import FloatArray
 from mdr.equilibria import springs_on
-from mdr.impact.track import Track, exponent_of
-from mdr.own_units import power_law
+from mdr.own_units import OwnUnits, is_power_law, own_units
 from mdr.profiles import tip_of
 from mdr.radius_search import largest_radius
 from mdr.spring_bed import Springs
 
-# Binary logarithms of the ladder's radii over the unit of length.
-_LOWEST, _HIGHEST = -60, 80
+# Width of the polynomials in ln(u), and nodes less than `Sizes.radii`. Twice as wide, or with half the nodes, K errs by
+# 1e-7 in place of 1e-13.
+_WIDTH, _FEWER = 0.5, 4
+# Octaves of u below the smallest length, and most octaves of a piece. With fewer of both, touches are less smooth.
+_BELOW, _MOST = 2, 40
+# Least binary logarithm of the ladder's radii over the unit of length.
+_LOWEST = -60
+# Force times depth over the energy that is stored: at most, on thin layers under cones, and usually.
+_MOST_WORK, _USUAL_WORK = 12.0, 2.5
 # Flattest tip r^n, and binary logarithm of the least heights of a ladder: beyond, energies underflow.
 _FLATTEST, _UNDERFLOW = 40.0, -900.0
 # Share of the radius of an upright end that contacts keep away from it.
 _NEAR_END = 1e-6
 # Tracks and ladders that are remembered.
 _KEPT = 128
+
+
+class Piece(NamedTuple):
+    """K and a between two depths.
+
+    Attributes:
+        start: Least depth.
+        end: Largest depth.
+        power: q.
+        scale: z_0.
+        is_tip: Whether it starts at a point, where K and a vanish; then the polynomials are those of K/z and a/z.
+        ends: Of the polynomials in ln(1 + z/z_0), shape (m + 1,).
+        series: Legendre coefficients of K, a and dK/dln(1 + z/z_0), shape (m, k, 3).
+    """
+
+    start: float
+    end: float
+    power: float
+    scale: float
+    is_tip: bool
+    ends: FloatArray
+    series: FloatArray
+
+    def at(self, depth: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """K, dK/d(depth) and a at depths of any shape; constant beyond the piece."""
+        rise = np.clip(depth - self.start, 1e-300, self.end - self.start)
+        z = rise ** (1 / self.power)
+        place = np.log1p(z / self.scale)
+        which = np.clip(np.searchsorted(self.ends, place) - 1, 0, len(self.series) - 1)
+        low, high = self.ends[which], self.ends[which + 1]
+        basis = legendre.legvander((2 * place - low - high) / (high - low), self.series.shape[1] - 1)
+        K, a, slope = np.moveaxis((basis[..., None] * self.series[which]).sum(axis=-2), -1, 0)
+        slope = slope / (self.scale + z)
+        if self.is_tip:
+            slope, K, a = K + z * slope, z * K, np.where(depth > self.start, z * a, 0.0)
+        return K, slope * z / (self.power * rise), a
+
+
+class Track:
+    """K and a up to a largest contact radius.
+
+    Args:
+        springs: Springs of layer and profile.
+        excess: Largest contact radius less the flat one, in the springs' unit of length; nothing under a flat punch.
+
+    Attributes:
+        flat: b.
+        still: K at touch.
+        pieces: None under a flat punch.
+        fall: Radius beyond which g falls within `excess`, or None.
+        floor: Relative rounding error of K and depth.
+    """
+
+    def __init__(self, springs: Springs, excess: float) -> None:
+        tip = springs.tip
+        self.flat = tip.flat
+        self.fall: float | None = None
+        self.still = float(springs.at([tip.flat]).K[0]) if tip.flat else 0.0
+        self.pieces: tuple[Piece, ...] = ()
+        top = tip.flat + excess
+        self.floor = float(np.add(*springs.floor(np.array([top])))[0])
+        if isinstance(tip.profile, FlatPunch):
+            return
+        ends = [0.0, *(b - tip.flat for b in tip.breaks if tip.flat < b < top * (1 - 1e-9)), excess]
+        depth, stiffness = 0.0, self.still
+        for low, high in pairwise(ends):
+            piece, stiffness, self.fall = _piece(springs, low, high, depth, stiffness)
+            self.pieces += (piece,) if piece else ()
+            if self.fall is not None or piece is None:
+                break
+            depth = piece.end
+
+    def until(self, piece: int) -> float:
+        """Depth at the end of a piece."""
+        return self.pieces[piece].end if self.pieces else np.inf
+
+    def at(self, depth: FloatArray, piece: int) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """K, dK/d(depth) and a at depths of any shape on one piece."""
+        if self.pieces:
+            return self.pieces[piece].at(depth)
+        return np.full_like(depth, self.still), np.zeros_like(depth), np.full_like(depth, self.flat)
+
+
+def _piece(
+    springs: Springs, low: float, high: float, start: float, stiffness: float
+) -> tuple[Piece | None, float, float | None]:
+    """The piece between two excesses from the depth and K at its start; K at its end; the radius where g falls."""
+    flat, is_tip = springs.tip.flat, springs.tip.flat + low == 0
+    count = springs.sizes.radii - _FEWER
+    # Towards an upright end u has no end: a = u/(1 + u/room).
+    room = springs.tip.end - flat - low if springs.tip.profile.ends_upright else np.inf
+    top = (high - low) / (1 - (high - low) / room)
+    share, least = _shares(springs, flat + low, top, count)
+    grown = top * share ** (1 if is_tip else 2)
+    excess = low + grown / (1 + grown / room)
+    radius = flat + excess
+    values = springs.at(radius, excess if flat else None)
+    falls = np.flatnonzero(np.diff(values.g, prepend=start) <= 0)
+    fall = float(radius[max(falls[0] - 1, 0)]) if falls.size else None
+    panels = (falls[0] if falls.size else radius.size) // count
+    if not panels:
+        return None, stiffness, fall
+    depth, K, a = (one[: panels * count] for one in (values.g, values.K, radius))
+    power = springs.tip.exponent if is_tip else 2.0
+    z, rows = (depth - start) ** (1 / power), np.stack([K, a])
+    if is_tip:
+        rows = rows / z
+    scale = float(np.interp(least, share[: z.size], z))
+    place = np.append(0.0, np.log1p(z / scale))
+    first = np.array([stiffness, flat + low])
+    if is_tip:
+        first = _series(place[1 : count + 1], rows[:, :count], place[[0, count]])[:, :2].T @ (-1.0) ** np.arange(count)
+    rows = np.hstack([first[:, None], rows])
+    ends = place[::count]
+    parts = [slice(i, i + count + 1) for i in range(0, z.size, count)]
+    series = np.array([_series(place[part], rows[:, part], place[part][[0, -1]]) for part in parts])
+    return Piece(start, float(depth[-1]), power, scale, is_tip, ends, series), float(K[-1]), fall
+
+
+def _shares(springs: Springs, start: float, top: float, count: int) -> tuple[FloatArray, float]:
+    """Lobatto nodes of u over its largest value without 0, panel by panel, and u_0 over it."""
+    lengths = [length for length in (start, 0.0 if springs.kernel.is_uniform else springs.unit) if length]
+    octaves = np.log2(top / min(lengths, default=top))
+    octaves = min(max(octaves / (2 if start else 1), 0) + _BELOW, _MOST)
+    least = 2.0**-octaves
+    whole = np.log1p(1 / least)
+    panels = int(np.ceil(whole / _WIDTH))
+    lobatto = (1 - np.cos(np.pi * np.arange(1, count + 1) / count)) / 2
+    return least * np.expm1(whole / panels * (np.arange(panels)[:, None] + lobatto).ravel()), least
+
+
+def _series(place: FloatArray, rows: FloatArray, ends: FloatArray) -> FloatArray:
+    """Legendre coefficients between ends through rows at places, and of the first row's derivative, shape (k, 3)."""
+    half = (ends[1] - ends[0]) / 2
+    basis = legendre.legvander((place - ends[0]) / half - 1, place.size - 1)
+    fit = np.linalg.solve(basis, rows.T)
+    return np.column_stack([fit, np.append(legendre.legder(fit[:, 0]), 0.0) / half])
 
 
 class Bed(NamedTuple):
@@ -60,44 +212,30 @@ class Bed(NamedTuple):
         return Springs(self.kernel, self.unit, 0.5, tip_of(self.indenter), sizes)
 
 
-class Units(NamedTuple):
-    """Units of a bed: length [m], depth [m] and stiffness, 2 E* times the length [N/m]."""
-
-    length: float
-    depth: float
-    stiffness: float
-
-
-def bed_of(scene: Scene, flat_punch: FlatPunchSource) -> tuple[Bed, Units]:
+def bed_of(scene: Scene, flat_punch: FlatPunchSource) -> tuple[Bed, OwnUnits]:
     """The bed of a scene and its units.
 
     Raises:
         UnsupportedSceneError: If a tip is too flat, or its heights are beyond doubles.
     """
-    layer, law = scene.layer, power_law(scene.indenter)
-    kernel, unit, modulus = contact_kernel(layer), unit_of(layer), 2 * contact_modulus(layer)
+    layer, indenter = scene.layer, scene.indenter
     tabulated = None if layer.is_half_space or isinstance(flat_punch, IntegralEquation) else (layer, flat_punch)
-    if law is None or tabulated:
-        return Bed(kernel, unit, scene.indenter, tabulated), Units(1.0, 1.0, modulus)
-    exponent = law[1]
+    if tabulated or not is_power_law(indenter):
+        units = OwnUnits(layer, indenter, 1.0, 1.0, contact_modulus(layer))
+    else:
+        units = own_units(layer, indenter)
+    exponent = tip_of(indenter).exponent
     if exponent > _FLATTEST:
         raise UnsupportedSceneError(
             f"indenter: impacts are modelled for tips up to r^{_FLATTEST:g}, not r^{exponent:g}"
         )
-    # f(unit), since the coefficient may be beyond doubles
-    depth = float(scene.indenter.height(np.array([unit]))[0])
-    if not 0 < depth < math.inf:
+    if not 0 < units.depth < math.inf:
         raise UnsupportedSceneError(f"indenter: heights of a tip r^{exponent:g} over a thickness are beyond doubles")
-    return Bed(kernel, 1.0, _unit_power(exponent)), Units(unit, float(depth), modulus * unit)
-
-
-@lru_cache(maxsize=_KEPT)
-def _unit_power(exponent: float) -> PowerLaw:
-    return PowerLaw(exponent=exponent, reference_radius=1.0, reference_height=1.0)
+    return Bed(contact_kernel(units.layer), unit_of(units.layer), units.indenter, tabulated), units
 
 
 class Ladder:
-    """Depth, force and energy of elastic contacts over 2 E* at radii b + L 2^k, to a tenth.
+    """Depth and force of elastic contacts over 2 E* at radii b + L 2^k, to a tenth; none under a flat punch.
 
     Args:
         springs: Springs of layer and profile.
@@ -105,56 +243,49 @@ class Ladder:
 
     def __init__(self, springs: Springs) -> None:
         self.springs, self.tip = springs, springs.tip
-        self.excess, self.depth, self.force, self.energy = np.empty((4, 0))
-        self.is_whole = isinstance(self.tip.profile, FlatPunch)
-        if self.is_whole:
-            return
-        self.lowest = max(_LOWEST, int(_UNDERFLOW / exponent_of(self.tip.profile)))
-        self._grow(np.arange(self.lowest, _HIGHEST + 1.0 if springs.kernel.is_uniform else 1.0))
+        self.excess, self.depth, self.force = np.empty((3, 0))
+        end = min(self.tip.end * (1 - _NEAR_END * self.tip.profile.ends_upright), largest_radius(springs))
+        self._last = end - self.tip.flat
+        if not isinstance(self.tip.profile, FlatPunch):
+            self.lowest = max(_LOWEST, int(_UNDERFLOW / self.tip.exponent))
+            self._climb(np.arange(self.lowest, 1.0))
 
-    def _grow(self, levels: FloatArray) -> None:
-        """Add levels, none beyond the profile's end, the widest contact, or where g falls."""
-        tip = self.tip
+    @property
+    def is_whole(self) -> bool:
+        """Whether contacts cannot be wider."""
+        return not self.excess.size or self.excess[-1] >= self._last
+
+    def _climb(self, levels: FloatArray) -> None:
+        """Add levels, the last one at most at the widest contact."""
         grown = self.springs.unit * np.exp2(levels)
-        excess = grown / (1 + grown / (tip.end - tip.flat))
-        end = tip.end * (1 - _NEAR_END) if tip.profile.ends_upright else tip.end
-        last = min(end, largest_radius(self.springs)) - tip.flat
-        if excess[-1] > last * (1 - _NEAR_END) or levels[-1] == _HIGHEST:
-            self.is_whole = True
-            excess = np.append(excess[excess < last * (1 - _NEAR_END)], min(last, excess[-1]))
-        values = self.springs.coarse.at(tip.flat + excess, excess)
-        depth, force = np.append(self.depth, values.g), np.append(self.force, values.g * values.K - values.M)
-        falls = np.flatnonzero(np.diff(depth, prepend=0.0) <= 0)
-        self.is_whole |= bool(falls.size)
-        keep = slice(falls[0] + 1 if falls.size else None)
-        self.excess, self.depth, self.force = np.append(self.excess, excess)[keep], depth[keep], force[keep]
-        self.energy = np.cumsum(np.diff(self.depth, prepend=0.0) * (self.force + np.append(0.0, self.force[:-1])) / 2)
+        excess = grown / (1 + grown / (self.tip.end - self.tip.flat))
+        inner = excess < self._last * (1 - _NEAR_END)
+        excess = excess[inner] if inner.all() else np.append(excess[inner], self._last)
+        values = self.springs.coarse.at(self.tip.flat + excess, excess)
+        found = np.stack([excess, values.g, values.g * values.K - values.M])
+        self.excess, self.depth, self.force = np.hstack([[self.excess, self.depth, self.force], found])
 
-    def extend(self, level: int) -> None:
-        """Make sure that a level exists, if the ladder may go on."""
-        while self.excess.size <= level and not self.is_whole:
-            self._grow(np.array([self.lowest + float(self.excess.size)]))
+    def extend(self) -> None:
+        """Add a level, if contacts can be wider."""
+        if not self.is_whole:
+            self._climb(np.array([self.lowest + float(self.excess.size)]))
 
     def level(self, energy: float, impulse: float) -> int:
         """The level at which an elastic layer stores an energy, or a dashpot has taken an impulse, surely."""
         while True:
-            reached = (self.energy > 2 * energy) | (self.force > 2 * impulse)
+            reached = (self.force * self.depth > _MOST_WORK * energy) | (self.force > 2 * impulse)
             if reached.any() or self.is_whole:
                 return int(reached.argmax()) if reached.any() else max(self.excess.size - 1, 0)
-            self.extend(self.excess.size)
+            self.extend()
 
     def depth_of(self, energy: float, impulse: float) -> tuple[float, float]:
-        """Depths where that energy and that impulse are reached."""
+        """Depths where that energy and that impulse are reached, roughly."""
         self.level(energy, impulse)
-        found = []
-        for held, value in ((self.energy, energy), (self.force, impulse)):
-            with np.errstate(all="ignore"):
-                known, wanted, depth = np.log(held), np.log(value), np.log(self.depth)
-            use = np.isfinite(known)
-            below = min(wanted - known[use][0], 0.0) * np.diff(depth[use][:2])[0] / np.diff(known[use][:2])[0]
-            reached = np.interp(wanted, known[use], depth[use]) if value < np.inf else np.inf
-            found.append(float(np.exp(reached + below)))
-        return found[0], found[1]
+        with np.errstate(divide="ignore"):
+            depth, force = np.log(self.depth), np.log(self.force)
+        elastic = np.exp(np.interp(np.log(_USUAL_WORK * energy), force + depth, depth))
+        damped = np.exp(np.interp(np.log(impulse), force, depth)) if impulse < np.inf else np.inf
+        return float(elastic), float(damped)
 
 
 @lru_cache(maxsize=_KEPT)

@@ -6,7 +6,9 @@ from typing import Annotated
 import typer
 
 SceneFile = Annotated[Path, typer.Argument(help="Scene in TOML.")]
-Written = Annotated[list[Path] | None, typer.Option("--write", "-w", help="FILE.csv or FILE.svg. May be repeated.")]
+Written = Annotated[
+    list[Path] | None, typer.Option("--write", "-w", help="Also write FILE.csv, .svg, .png or .pdf. Repeatable.")
+]
 
 
 def fit(
@@ -23,18 +25,24 @@ def fit(
         str,
         typer.Option(
             "--fit",
-            help="What is fitted: youngs_modulus; of stacks layer[0].youngs_modulus, base.youngs_modulus; of scenes "
+            help="Moduli to fit: youngs_modulus; of stacks layer[0].youngs_modulus, base.youngs_modulus; of scenes "
             "that relax moduli,times (or moduli, which keeps the times).",
         ),
     ] = "",
     also: Annotated[
         str,
-        typer.Option("--with", help="Fitted beside: contact_point,baseline,tilt (all), thickness, work_of_adhesion."),
+        typer.Option(
+            "--with", help="What else is fitted: contact_point,baseline,tilt (all), thickness, work_of_adhesion."
+        ),
     ] = "all",
-    units: Annotated[str, typer.Option(help='Of columns whose heads have none, "nm,nN".')] = "",
-    spring_constant: Annotated[str, typer.Option(help='Of the cantilever, "0.05 N/m": for height, deflection.')] = "",
-    sensitivity: Annotated[str, typer.Option(help='Of the deflection, "50 nm/V".')] = "",
-    until: Annotated[str, typer.Option(help="Fitted up to a depth, force or share of it: 300nm, 2nN, 60%.")] = "",
+    units: Annotated[str, typer.Option(help='Units of columns whose heads have none, "nm,nN".')] = "",
+    spring_constant: Annotated[
+        str, typer.Option(help='Spring constant of the cantilever, "0.05 N/m", for columns of height and deflection.')
+    ] = "",
+    sensitivity: Annotated[str, typer.Option(help='Sensitivity of the deflection, "50 nm/V".')] = "",
+    until: Annotated[
+        str, typer.Option(help="Fit the curve up to this depth, force or share of the largest force: 300nm, 2nN, 60%.")
+    ] = "",
     curves: Annotated[
         bool,
         typer.Option(
@@ -43,34 +51,37 @@ def fit(
         ),
     ] = False,
     uncertain: Annotated[
-        str, typer.Option(help='What is known to a tolerance, "radius=5%, thickness=4e-6..6e-6"; joins the intervals.')
+        str,
+        typer.Option(
+            help='Uncertain inputs, "radius=5%, thickness=4e-6..6e-6". Their effect is added to the intervals.'
+        ),
     ] = "",
     number: Annotated[int, typer.Option("--curve", help="Which curve of a microscope's file, from 0.")] = 0,
-    confidence: Annotated[float, typer.Option(help="Of intervals and bands.")] = 0.95,
+    confidence: Annotated[float, typer.Option(help="Confidence of intervals and bands.")] = 0.95,
     write: Written = None,
 ) -> None:
     """Find Young's modulus from a force curve or from all curves of a map, or relaxation moduli over time.
 
     Every number has an interval. Prints what Hertz, Dimitriadis and other formulas would have found on the same curve.
     """
-    from reports.commands.bench import FitRequest, fit_file, fit_map_file  # noqa: PLC0415 - see the first lines
+    from reports.commands.bench import fit_file  # noqa: PLC0415 - where it is called
     from reports.terminal import progress_bar  # noqa: PLC0415
 
-    request = FitRequest(
-        fit=moduli,
-        also=also,
-        units=units,
-        spring_constant=spring_constant,
-        sensitivity=sensitivity,
-        until=until,
-        number=number,
-        confidence=confidence,
-        outputs=write or [],
-    )
     if uncertain and (curves or until):
         raise typer.BadParameter("--uncertain is for whole single curves; leave --map and --until out")
     with progress_bar("curves") as progress:
-        if curves:
-            fit_map_file(curve, scene, request, progress=progress)
-        else:
-            fit_file(curve, scene, request, uncertain=uncertain)
+        fit_file(
+            curve,
+            scene,
+            fit=moduli,
+            also=also,
+            until=until,
+            uncertain=uncertain,
+            number=None if curves else number,
+            confidence=confidence,
+            outputs=write or [],
+            progress=progress,
+            units=units,
+            spring_constant=spring_constant,
+            sensitivity=sensitivity,
+        )

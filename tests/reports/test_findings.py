@@ -74,9 +74,9 @@ def failing(errors, **changes):
 
 def test_failures_of_one_claim_are_one_finding_with_their_size():
     (found,) = findings(with_verdicts(*failing([1e-3] * 20)))
-    assert (found.where, found.size) == ("20 of 20 scenes", "+1.0e-03 each")
+    assert (found.where, found.size) == ("20 of 20 scenes", "+1.0e-3 each")
     (found,) = findings(with_verdicts(*failing([1e-3, -2e-9, 0.0])))
-    assert (found.where, found.size) == ("2 of 3 scenes", "-2.0e-09 to +1.0e-03")
+    assert (found.where, found.size) == ("2 of 3 scenes", "-2.0e-9 to +1.0e-3")
 
 
 def moved(changes, **names):
@@ -119,7 +119,7 @@ def test_a_method_that_all_others_contradict_is_named_with_the_place_to_look_at(
     ]
     (sentence,) = causes(with_verdicts(*verdicts))
     assert sentence.startswith("MDR: indentation depth is off against FEM, integral equation and closed form alike,")
-    assert "+1.0e-03 each in 3 comparisons, as by one factor 1.001 (a modulus, a unit)" in sentence
+    assert "+1.0e-3 each in 3 comparisons, as by one factor 1.001 (a modulus, a unit)" in sentence
     assert sentence.endswith("while contact stiffness passes: look at g, Eq. (8).")
 
 

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from cases.gate import spread
+from cases.gate.accept import WriteConditions
 from cases.gate.baseline import read_baselines
-from cases.gate.write_permission import WriteConditions
 from cases.run import executors, runner
 from cases.run.runner import RunOptions
 from cases.run.stamp import revision
@@ -17,7 +17,7 @@ from reports.commands import baselines
 from tests.cases.fake_case import FAST, SLOW, fake_case, spoiled
 from tests.cases.fake_method import FakeHertz
 
-CLEAN = WriteConditions(revision=revision(), changed=(), in_ci=False, date="2026-01-01")
+CLEAN = WriteConditions(revision=revision(), changed=(), in_ci=False)
 
 
 @pytest.fixture

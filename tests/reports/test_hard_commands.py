@@ -18,7 +18,7 @@ def scene(tmp_path):
 
 def test_advice_names_what_matters(scene, capsys):
     assert run(["solve", scene, "--advise", "--accuracy", "1e-2"]) == 0
-    assert "needed at 0.01: finite thickness" in capsys.readouterr().out
+    assert "Finite thickness matters at 1 %: without it " in capsys.readouterr().out
 
 
 def test_a_climbed_ladder_tells_its_digits_and_writes_its_table(tmp_path, capsys):

@@ -3,12 +3,14 @@
 import csv
 import dataclasses
 import re
+import warnings
 
 import pytest
 
+from cases.answers import Table
 from cases.runs import Run
 from reports.charts import front, of_case
-from reports.page import CASES, FIGURES, write_report
+from reports.page import CASES, FIGURES, unbroken, write_report
 from reports.style import figure_style, svg_text
 from tests.reports.example import FAILING, PASSING, example, only, verdict, with_verdicts
 
@@ -87,7 +89,7 @@ def test_an_interrupted_run_says_so(tmp_path):
 def test_a_method_to_blame_is_named_above_the_failures(tmp_path):
     wrong = [dataclasses.replace(verdict(), scene=f"scene {i}", error=1e-3) for i in range(20)]
     words = words_of(text_of(with_verdicts(*wrong, case=FAILING), tmp_path))
-    cause = "MDR: normal force is off against closed form, +1.0e-03 each in 20 comparisons"
+    cause = "MDR: normal force is off against closed form, +1.0e-3 each in 20 comparisons"
     assert words.index(cause) < words.index("20 of 20 scenes")
 
 
@@ -191,6 +193,45 @@ def test_pictures_are_byte_identical_on_a_second_run(name):
             first, second = (svg_text(picture.draw(), key=picture.name) for _ in range(2))
         assert first == second
         assert not re.search(r"\d{4}-\d\d-\d\d|nan", first)
+
+
+def test_panels_without_a_refused_step_fill_their_picture():
+    """The layout of all panels failed, with a warning, where every step of a stress test was completed."""
+    run = only(PASSING)
+    completed = next(test for test in run.judged.stress_tests if all(step.digits for step in test.steps))
+    run = only(PASSING, stress_tests=tuple(dataclasses.replace(completed, name=name) for name in "abc"))
+    drawn = next(one for one in of_case(run, run.judged.cases[0]) if "stress-tests" in one.name)
+    with figure_style(), warnings.catch_warnings(action="error"):
+        assert svg_text(drawn.draw(), key=drawn.name).startswith("<svg")
+
+
+def test_a_single_timed_setting_is_a_number_of_the_table_and_no_picture():
+    cost = only(PASSING).judged.costs[0]
+    for points, drawn in ((cost.points[:1], False), (cost.points[:2], True)):
+        run = only(PASSING, costs=(dataclasses.replace(cost, points=points),))
+        assert any("-cost-" in one.name for one in of_case(run, run.judged.cases[0])) is drawn
+
+
+def test_a_line_joins_scenes_that_differ_in_its_parameter_alone():
+    """Scenes of two profiles with equal parameters were joined by one zigzag line."""
+    places = [(profile, thin) for profile in ("cone", "sphere") for thin in (1.0, 2.0, 4.0)]
+    scenes = {f"bonded a/h={thin:g}, {profile}": {"a_over_h": thin} for profile, thin in places}
+    run = only(PASSING)
+    case = dataclasses.replace(run.judged.cases[0], scenes=scenes)
+    template = next(answer for answer in run.answers if answer.method == "mdr")
+    run = Run(judged=run.judged, answers=Table(dataclasses.replace(template, scene=scene) for scene in scenes))
+    drawn = next(one for one in of_case(run, case) if one.name.endswith("answers"))
+    with figure_style():
+        (axes,) = drawn.draw().axes
+    assert [list(line.get_xdata()) for line in axes.lines] == [[1.0, 2.0, 4.0]] * 2
+    assert [text.get_text() for text in axes.texts] == ["bonded cone", "bonded sphere"]
+
+
+def test_numbers_stay_on_one_line_and_with_their_units():
+    assert unbroken("took 3 min 27 s, of 1.6e-07 a < b") == (
+        "took <span class=nb>3\u00a0min</span> <span class=nb>27\u00a0s,</span> of <span class=nb>1.6e-07</span> "
+        "a &lt; b"
+    )
 
 
 def test_the_numbers_of_a_run_stand_in_one_table_with_all_their_digits(directory):

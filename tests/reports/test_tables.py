@@ -5,8 +5,7 @@ import dataclasses
 from cases.answers import Table
 from cases.runs import Run
 from reports import tables
-from reports.charts import of_case
-from reports.study_charts import relative_distance
+from reports.charts import of_case, relative_distance
 from reports.style import figure_style
 from tests.reports.example import FAILING, PASSING, example, only
 
@@ -69,10 +68,10 @@ def test_a_case_has_a_picture_of_each_study_and_failed_settings_spoil_none():
 def test_answers_over_a_parameter_leave_out_what_a_logarithmic_axis_cannot_show():
     run = only(PASSING)
     (case,) = run.judged.cases
-    scenes = {f"a/h={ratio}": {"a_over_h": ratio, "support": "bonded"} for ratio in (1.0, 2.0, 5.0, "none")}
+    scenes = {f"a/h={ratio}": {"a_over_h": ratio, "support": "bonded"} for ratio in (1.0, 2.0, 4.0, 5.0, "none")}
     first = next(answer for answer in run.answers if answer.method == "mdr")
     force = first.quantities["normal_force"]
-    sizes = dict(zip(scenes, (1.5, 3.0, 0.0, 1.0), strict=True))
+    sizes = dict(zip(scenes, (1.5, 3.0, 6.0, 0.0, 1.0), strict=True))
     answers = [
         dataclasses.replace(first, scene=name, quantities={"normal_force": dataclasses.replace(force, values=(size,))})
         for name, size in sizes.items()
@@ -81,4 +80,4 @@ def test_answers_over_a_parameter_leave_out_what_a_logarithmic_axis_cannot_show(
     run = Run(judged=dataclasses.replace(run.judged, cases=(case,)), answers=Table(answers))
     picture = next(one for one in of_case(run, case) if one.name == "example_cone-answers")
     (axes,) = picture.draw().axes
-    assert axes.lines[0].get_xydata().tolist() == [[1.0, 1.5], [2.0, 3.0]]
+    assert axes.lines[0].get_xydata().tolist() == [[1.0, 1.5], [2.0, 3.0], [4.0, 6.0]]

@@ -12,7 +12,7 @@ from SurfaceTopography import Topography
 # Higher than any depth: such cells never touch.
 HIGH = 1e3
 # Its iteration stands still at 15 of 200 depths of a paraboloid on 16 points, at 7 on 32; where it ends it takes at
-# most a tenth of these steps (2026-11-22). It starts again from the displacements of one deeper contact after another.
+# most a tenth of these steps. It starts again from the displacements of one deeper contact after another.
 MOST_STEPS, DEEPER = 500, (1.05, 1.1, 1.2, 1.5, 2.0)
 
 

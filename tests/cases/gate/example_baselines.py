@@ -3,14 +3,13 @@
 import dataclasses
 
 from cases.answers import Table
-from cases.gate.accept import accept, accepted_before, propose
+from cases.gate.accept import WriteConditions, accept, accepted_before, propose
 from cases.gate.baseline import read_baselines
 from cases.gate.gate import gate
-from cases.gate.write_permission import WriteConditions
 from cases.verdicts import Kind
 from tests.cases.example_run import CASE, passing_run
 
-NOW = WriteConditions(revision="0" * 40, changed=(), in_ci=False, date="2026-01-01")
+NOW = WriteConditions(revision="0" * 40, changed=(), in_ci=False)
 SPREAD = 1e-10  # tolerance 1e-9
 
 
