@@ -120,7 +120,7 @@ def order(**changes):
 def judged(claim, case):
     case = dataclasses.replace(case, claims=(claim,))
     answers = Table(solve(job_of(task)) for task in case.tasks())
-    return list(claim.judge(case, answers)), list(claim.studies(case, answers))
+    return list(claim.judge(case, answers)), list(claim.records(case, answers))
 
 
 @pytest.mark.parametrize("against", ["fast", MethodUse(label="finest", method="fake", settings={"stated": 1e-12})])

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from cases.accuracy import solve
 from cases.declare.methods import build
-from cases.measurements.accuracy import solve
 from contact import (
     ContactRadii,
     ExponentialDepth,

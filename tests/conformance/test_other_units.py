@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from cases.declare.methods import build
-from cases.measurements.ladders.units import Units, in_units
+from cases.units import Units, in_units
 from contact import (
     Adhesion,
     ContactRadii,

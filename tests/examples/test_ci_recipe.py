@@ -24,12 +24,10 @@ import sys
 sys.path.insert(0, {root!r})
 from cases.declare import methods
 methods.BUILT_IN["fake"] = methods.TableEntry(module="tests.cases.fake_method", attribute="FakeHertz")
-from cases.measurements import suites
 from reports.commands import baselines, runs
 from reports import page
-# Other tests look at pictures and at the studies of the suite, which take most of the time.
+# Other tests look at pictures, which take most of the time.
 page.svg_text = lambda drawing, key: "<svg></svg>"
-suites.QUICK = ()
 from tests.cases.fake_case import SLOW, fake_case, spoiled
 case = fake_case(slow=spoiled(SLOW, plant={plant!r}))
 runs.load_cases = baselines.load_cases = lambda: {{case.name: case}}

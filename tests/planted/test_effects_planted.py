@@ -7,7 +7,7 @@ from bem.branch import Branch
 from cases.verdicts import Status
 from contact import Adhesion, Detachment, Layer, Paraboloid, Scene
 from mdr import Mdr
-from mdr.adhesive_branch import Adhesive
+from mdr.adhesive import Adhesive
 from mdr.closed_forms import flat_punch_restitution
 from mdr.impact import history as impact_history
 from mdr.impact import solver as impact_solver
