@@ -182,7 +182,7 @@ class HistoryInterior:
     @property
     def singular_edge(self) -> bool:
         """Whether the pressure is infinite at the edge of contact."""
-        return self.stressed.contacts[0][1][0].edge > 0.0
+        return self.stressed.pair[0].edge > 0.0
 
     def at(self, radius: FloatArray, depth: FloatArray) -> InsideFields:
         """At points [m] of shape (n,)."""
@@ -217,7 +217,7 @@ class HistoryFields:
         known = KnownContact(a, 0.0, float(self.density_error[step]))
         pairs = zip(*(self._densities(*one, a, widest, step) for one in self._resolutions), strict=True)
         layer = self.problem.scene.layer
-        return HistoryInterior(*(Interior(layer, [(1.0, pair)], known, depth) for pair in pairs))
+        return HistoryInterior(*(Interior(layer, pair, known, depth) for pair in pairs))
 
     @cached_property
     def _resolutions(self) -> tuple[tuple[Springs, int], tuple[Springs, int]]:
