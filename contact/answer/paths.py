@@ -29,6 +29,9 @@ from contact.records.errors import InvalidInput
 from contact.records.validation import FloatArray
 from contact.scene.effects import Adhesion
 
+# Quantities whose magnitude is that of another one.
+_SCALED_BY = {"surface_displacement": "indentation_depth", "stick_radius": "contact_radius"}
+
 
 class Fields(Protocol):
     """Surface fields of one equilibrium."""
@@ -128,16 +131,18 @@ class ContactPath(Solution):
     def scale(self, quantity: str) -> FloatArray:
         """The quantity's own magnitude; with adhesion, where it may cross zero, its largest along the path.
 
-        That of the pressure is the mean pressure F/(pi a^2) under the contact, with adhesion at least that of a flat
-        punch at the same depth; that of the surface's displacement is the depth.
+        That of pressure and traction is the mean pressure F/(pi a^2) under the contact, with adhesion at least that of
+        a flat punch at the same depth; that of the surface's displacement the depth, of the radius of stick the contact
+        radius, of heat the product of force and depth.
         """
-        if quantity == "pressure":
+        quantity = {"surface_displacement": "indentation_depth", "stick_radius": "contact_radius"}.get(
+            quantity, quantity
+        )
+        if quantity in ("pressure", "tangential_traction"):
             return self._mean_pressure()
-        if quantity == "surface_displacement":
-            return self.scale("indentation_depth")
-        if self._adheres or not hasattr(self, quantity):
-            return super().scale(quantity)
-        return self._magnitude(quantity)
+        if quantity == "dissipated_energy":
+            return np.abs(self.normal_force * self.indentation_depth)
+        return super().scale(quantity) if self._adheres or not hasattr(self, quantity) else self._magnitude(quantity)
 
     def _mean_pressure(self) -> FloatArray:
         force, area = np.abs(self.normal_force), np.pi * self.contact_radius**2
@@ -219,14 +224,6 @@ class FrictionPath(ContactPath):
 
     stick_radius: Annotated[FloatArray, Quantity("c", "m")]
     dissipated_energy: Dissipation
-
-    def scale(self, quantity: str) -> FloatArray:
-        """The quantity's own magnitude; the contact radius for that of the stick, work for heat, p's for tractions."""
-        if quantity == "dissipated_energy":
-            return np.abs(self.normal_force * self.indentation_depth)
-        if quantity in ("pressure", "tangential_traction"):
-            return np.asarray(np.abs(self.normal_force) / (np.pi * self.contact_radius**2))
-        return self._magnitude("contact_radius" if quantity == "stick_radius" else quantity)
 
     def tangential_traction(self, radius: ArrayLike, step: int = 0) -> FloatArray:
         """Traction q(r) [Pa] of one step at radii [m], positive where it pushes the layer outward, zero outside."""

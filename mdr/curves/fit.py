@@ -34,14 +34,18 @@ from mdr.curves.families import (
     changed,
     check_parameters,
     elastic_family,
+    is_modulus,
 )
 from mdr.curves.force_curve import curve_to, longest_curve
 from mdr.curves.formulas import formulas_for
-from mdr.curves.result import CurveFit, FormulaFit, with_intervals
+from mdr.curves.result import ROUNDING, CurveFit, FormulaFit, with_intervals
 
 DEFAULT_PARAMETERS: Final = ("youngs_modulus", "contact_point", "baseline", "tilt")
 # Relative step of central differences by u. Errors grow as its square; at a tenth of it rounding shows.
 _STEP: Final = 1e-3
+# Widening of the interval of E by a free square of the depth in the background, from which the baseline is too short.
+# At twice that shifts of several intervals are silent; at half of it curves with a baseline of half the travel warn.
+_BENT: Final = 3.0
 # Points in contact beside the parameters of the contact. With one less the interval of E may be ten times too narrow.
 _SPARE_POINTS: Final = 2
 
@@ -188,6 +192,9 @@ def _stated(scene: Scene, data: Data, fitted: Fitted, confidence: float) -> Curv
     fitted_force = modulus * phi + line["baseline"] + line["tilt"] * shifted
     order = np.argsort(data.depth, kind="stable")
     warnings, notes = _words(scene, data, fitted, values, modulus)
+    scatter = float(np.std(data.force - fitted_force))
+    if scatter > ROUNDING * float(np.ptp(data.force)):
+        warnings = (*warnings, *_bent_background(jacobian, list(values), shifted))
     return with_intervals(
         jacobian,
         (data.force - fitted_force)[order],
@@ -206,6 +213,22 @@ def _stated(scene: Scene, data: Data, fitted: Fitted, confidence: float) -> Curv
         notes=notes,
         per_modulus=phi,
     )
+
+
+def _bent_background(jacobian: FloatArray, names: list[str], depth: FloatArray) -> tuple[str, ...]:
+    """Warning on curves with too short a baseline, on which a square of the depth in the background is not seen."""
+    if "tilt" not in names:
+        return ()
+    unit = jacobian / np.maximum(np.linalg.norm(jacobian, axis=0), np.finfo(float).tiny)
+    bend, inverse = (depth / np.ptp(depth)) ** 2, np.linalg.pinv(unit.T @ unit, hermitian=True)
+    shift = inverse @ (unit.T @ bend)
+    left, row = bend - unit @ shift, next(i for i, name in enumerate(names) if is_modulus(name))
+    wider = math.hypot(1.0, float(shift[row] / np.sqrt(left @ left * inverse[row, row] + np.finfo(float).tiny)))
+    text = (
+        f"the baseline is short: a bent background would change the modulus by up to {min(wider, 999):.2g} of its "
+        "intervals and not show in the residuals; measure more points before contact"
+    )
+    return (text,) if wider > _BENT else ()
 
 
 def _background(data: Data, remaining: FloatArray, shifted: FloatArray) -> dict[str, float]:
