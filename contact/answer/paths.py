@@ -43,19 +43,11 @@ class Fields(Protocol):
         """w(r) [m], positive into the layer."""
 
 
-class InstantInterior(InteriorFields, Protocol):
-    """Fields inside at one instant of a history."""
-
-    @property
-    def singular_edge(self) -> bool:
-        """Whether the pressure is infinite at the edge of contact."""
-
-
 class InstantFields(Protocol):
     """Fields of a method at the instants of a history."""
 
-    def inside(self, step: int) -> InstantInterior:
-        """At one of them, at which something touches."""
+    def inside(self, step: int) -> InteriorFields:
+        """At one of them, at which something touches; `singular_edge` says whether the pressure is infinite there."""
 
 
 @dataclass(frozen=True)
@@ -352,7 +344,7 @@ class HistoryPath(Solution):
         if radius <= 0.0:
             raise InvalidInput(f"step = {step}: nothing touches at t = {instant:g} s; ask for an instant of contact")
         fields = self.fields.inside(step % len(self))
-        singular = fields.singular_edge
+        singular = getattr(fields, "singular_edge", False)
         return Inside(fields=fields, scene=self.scene, contact_radius=radius, singular_edge=singular)
 
 

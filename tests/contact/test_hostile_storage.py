@@ -36,10 +36,3 @@ def test_what_cannot_be_stored_is_named_and_nothing_is_written(tmp_path, tree, m
     with pytest.raises(InvalidInput, match=message):
         write_tree(tmp_path / "tree.h5", {"good": np.ones(3), "group": tree})
     assert list(tmp_path.iterdir()) == []
-
-
-def test_a_tree_without_end_is_refused(tmp_path):
-    tree = {}
-    tree["again"] = tree
-    with pytest.raises(InvalidInput, match="at most 32 deep"):
-        write_tree(tmp_path / "tree.h5", tree)
