@@ -225,8 +225,8 @@ def _bent_background(jacobian: FloatArray, names: list[str], depth: FloatArray) 
     left, row = bend - unit @ shift, next(i for i, name in enumerate(names) if is_modulus(name))
     wider = math.hypot(1.0, float(shift[row] / np.sqrt(left @ left * inverse[row, row] + np.finfo(float).tiny)))
     text = (
-        f"the baseline is short: a bent background would change the modulus by up to {min(wider, 999):.2g} of its "
-        "intervals and not show in the residuals; measure more points before contact"
+        "the baseline is too short to show whether the background is straight: with a free square of the depth the "
+        f"interval of the modulus would be {min(wider, 999):.2g} times as wide; measure more points before contact"
     )
     return (text,) if wider > _BENT else ()
 

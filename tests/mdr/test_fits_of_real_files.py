@@ -155,7 +155,7 @@ def test_a_bent_background_that_no_baseline_shows_is_warned_of():
     found = fit_curve(HALF_SPACE, depth, with_noise(hertz(depth) + bend, 1e-3))
     half = np.diff(found.interval("youngs_modulus"))[0] / 2
     assert abs(found.youngs_modulus - 5e3) > 3 * half
-    assert any("the baseline is short" in line for line in found.warnings)
+    assert any("the baseline is too short" in line for line in found.warnings)
 
 
 @pytest.mark.parametrize(
