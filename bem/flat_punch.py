@@ -9,7 +9,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Annotated, Any, Final, Protocol, Self, runtime_checkable
+from typing import Annotated, Final, Protocol, Self, runtime_checkable
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -62,16 +62,12 @@ class IntegralEquation(Record):
 class FlatPunchSource(Protocol):
     """Settings of where the flat punches of MDR come from: `IntegralEquation`, or a table (`bem.tables`)."""
 
+    @property
+    def sizes(self) -> Sizes:
+        """Sizes of the discretisation of springs."""
+
     def refined(self) -> Self:
         """A copy with half the discretisation length."""
-
-
-@runtime_checkable
-class TableSource(FlatPunchSource, Protocol):
-    """Settings that make a table of flat punches."""
-
-    def solution(self, layer: ElasticLayer, largest_ratio: float, /) -> Any:
-        """The table of a layer up to at least a/h = largest_ratio."""
 
 
 class FlatPunchValues:

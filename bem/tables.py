@@ -22,6 +22,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from scipy.interpolate import BSpline, make_interp_spline
 
+from bem.equation import USUAL
 from bem.grid.discs import LARGEST_DEGREE, punch
 from bem.grid.operators import Boundary
 from bem.numerics import even_legendre
@@ -208,6 +209,7 @@ class FftTable(Record):
     radii: int = 500
 
     largest_ratio = LARGEST_RATIO
+    sizes = USUAL
 
     def __post_init__(self) -> None:
         """Refuse grids that cannot be halved."""
@@ -280,6 +282,8 @@ class TableFile(Record):
     """
 
     path: str
+
+    sizes = USUAL
 
     @property
     def largest_ratio(self) -> float:

@@ -29,7 +29,7 @@ from cases.verdicts import Kind, Origin, Status, Verdict, Why
 from contact import InvalidInput, Scene
 from contact.records.validation import FloatArray
 
-Expected: TypeAlias = Mapping[str, Sequence[float]] | Callable[[Scene], Sequence[float]]
+Expected: TypeAlias = Mapping[str, Sequence[float]] | Callable[[Scene], float | Sequence[float] | FloatArray]
 Norm: TypeAlias = Literal["", "weighted L2", "ring loads", "largest", "root mean square"]
 
 # On the half-space, MDR on a table uses no table and equals MDR by construction.
@@ -232,7 +232,7 @@ class Equal(PerScene):
     def values(self, scene: CaseScene) -> list[float]:
         """Return the expected values on one scene."""
         if not isinstance(self.to, Mapping):
-            return [float(value) for value in self.to(scene.scene)]
+            return [float(value) for value in np.atleast_1d(np.asarray(self.to(scene.scene)))]
         if scene.name not in self.to:
             raise InvalidInput(f"claim {self.name!r}: no expected value for scene {scene.name!r}")
         return list(self.to[scene.name])

@@ -63,6 +63,14 @@ class BranchPiece:
     graded: bool
     contacts: tuple[PrescribedContact, ...]
 
+    @classmethod
+    def solved(cls, low: float, high: float, solve: ContactSolver, nodes: int, *, graded: bool = False) -> BranchPiece:
+        """The piece between two radii [m], from so many contacts."""
+        s = chebyshev_points(nodes)
+        radii = low + (high - low) * s**2 if graded else low * (high / low) ** s
+        radii[0], radii[-1] = low, high
+        return cls(low, high, graded, tuple(solve(float(a)) for a in radii))
+
     @cached_property
     def _interpolants(self) -> dict[str, Chebyshev]:
         s, found = chebyshev_points(len(self.contacts)), {}
@@ -90,7 +98,7 @@ def chebyshev_points(count: int) -> FloatArray:
 
 
 @dataclass(frozen=True)
-class InterpolatedBranch:
+class Branch:
     """States in adhesive equilibrium.
 
     Attributes:
@@ -105,19 +113,23 @@ class InterpolatedBranch:
 
     @property
     def loads(self) -> dict[Controlled, Load]:
-        """The load that each control prescribes, over radii [m]."""
-        return {"displacement": self.depth, "force": self.force, "machine": self.displacement}
+        """The load that each control prescribes, over radii [m]: delta, F / E*, and delta + F/K of the machine."""
+        return {
+            "displacement": self.depth,
+            "force": self.force,
+            "machine": lambda radius: self.depth(radius) + self.machine * self.force(radius),
+        }
+
+    @property
+    def contacts(self) -> list[PrescribedContact]:
+        """All solved contacts."""
+        return [contact for piece in self.pieces for contact in piece.contacts]
 
     @property
     def is_rough(self) -> bool:
         """Whether the profile has breakpoints inside a piece: points between the solved ones err like the path."""
         breakpoints = self.contacts[-1].indenter.profile.breakpoints
         return any(p.low * (1 + 1e-9) < b < p.high * (1 - 1e-9) for p in self.pieces for b in breakpoints)
-
-    @property
-    def contacts(self) -> list[PrescribedContact]:
-        """All solved contacts."""
-        return [contact for piece in self.pieces for contact in piece.contacts]
 
     @cached_property
     def samples(self) -> FloatArray:
@@ -132,21 +144,14 @@ class InterpolatedBranch:
             values[inside] = piece.evaluate(name, np.clip(radius[inside], piece.low, piece.high))
         return values
 
-    def elongation(self, radius: FloatArray) -> FloatArray:
-        """Elongation dl = sqrt(4 pi a dgamma / k_N') [m], Eq. (40)."""
-        return np.asarray(np.sqrt(4 * np.pi * radius * self.work / self._evaluate("stiffness_slope", radius)))
-
     def depth(self, radius: FloatArray) -> FloatArray:
-        """Depth delta [m]."""
-        return self._evaluate("smooth_depth", radius) - self.elongation(radius)
+        """Depth delta = delta_0 - sqrt(4 pi a dgamma / k_N') [m], Eq. (40)."""
+        elongation = np.sqrt(4 * np.pi * radius * self.work / self._evaluate("stiffness_slope", radius))
+        return np.asarray(self._evaluate("smooth_depth", radius) - elongation)
 
     def force(self, radius: FloatArray) -> FloatArray:
-        """Force F / E* [m^2]."""
+        """Force F / E* = k_N delta + F_2 [m^2]."""
         return self._evaluate("stiffness", radius) * self.depth(radius) + self._evaluate("profile_force", radius)
-
-    def displacement(self, radius: FloatArray) -> FloatArray:
-        """Displacement delta + F/K [m] of the machine."""
-        return self.depth(radius) + self.machine * self.force(radius)
 
     def slope(self, load: Load, radius: FloatArray) -> FloatArray:
         """d load / d a by central differences inside the piece of each radius (the interpolants are smooth)."""
@@ -159,34 +164,14 @@ class InterpolatedBranch:
         return slopes
 
     def slope_root(self, load: Load, low: float, high: float) -> float:
-        """Radius [m] between two at which the slope of a load changes its sign."""
-
-        def slope(a: float) -> float:
-            return float(self.slope(load, np.array([a]))[0])
-
-        # The slope jumps at a kink.
-        return high if slope(low) * slope(high) >= 0 else float(brentq(slope, low, high, xtol=1e-12 * high))
+        """Radius [m] between two at which the slope of a load changes its sign; the outer one at a kink."""
+        jumps = np.prod(self.slope(load, np.array([low, high]))) >= 0
+        return high if jumps else root(lambda radius: self.slope(load, radius), low, high)
 
 
-def solve_branch(
-    breaks: Sequence[float], kinks: Sequence[float], work: float, solve: ContactSolver, nodes: int
-) -> InterpolatedBranch:
-    """Solve the branch on [breaks[0], breaks[-1]], in pieces that end at ``breaks``.
-
-    Args:
-        breaks: increasing radii [m], kinks inside the range among them.
-        kinks: radii where the profile's slope jumps; pieces beginning there are graded.
-        work: dgamma / E* [m].
-        solve: contact of a given radius [m].
-        nodes: Chebyshev points in each piece.
-    """
-    pieces = []
-    for low, high in pairwise(breaks):
-        s, graded = chebyshev_points(nodes), low in kinks
-        radii = low + (high - low) * s**2 if graded else low * (high / low) ** s
-        radii[0], radii[-1] = low, high
-        pieces.append(BranchPiece(low, high, graded, tuple(solve(float(a)) for a in radii)))
-    return InterpolatedBranch(tuple(pieces), work)
+def root(function: Load, low: float, high: float) -> float:
+    """Radius [m] between two at which a function of radii vanishes."""
+    return float(brentq(lambda a: function(np.array([a]))[0], low, high, xtol=1e-13 * high))
 
 
 def work_of_adhesion(scene: Scene) -> float:
@@ -235,7 +220,7 @@ def adhesive_equilibria(scene: Scene, solve: ContactSolver, growth: float) -> li
     return states
 
 
-def stable_radius(branch: InterpolatedBranch, load: Load, target: float) -> float:
+def stable_radius(branch: Branch, load: Load, target: float) -> float:
     """The largest radius at which a load (that grows with the radius there) has the target value.
 
     Raises:
@@ -252,23 +237,16 @@ def stable_radius(branch: InterpolatedBranch, load: Load, target: float) -> floa
             f"no stable adhesive state at this load ({target:g} in units of E*); pull-off is at {values[last]:g}"
         )
     i = int(below[0])
-    if values[i] == target:
-        return float(radii[i])
-    return float(brentq(lambda a: load(np.array([a]))[0] - target, radii[i], radii[i - 1], xtol=1e-13 * radii[i]))
+    return float(radii[i]) if values[i] == target else root(lambda a: load(a) - target, radii[i], radii[i - 1])
 
 
-def branch_of(
-    scene: Scene, start: float | None, solve: ContactSolver, growth: float, span: float = SPANS[0]
-) -> InterpolatedBranch:
+def branch_of(scene: Scene, start: float | None, solve: ContactSolver, growth: float, span: float = SPANS[0]) -> Branch:
     """The branch from a radius [m] (by default one where the contact is pressed) down to one ``span`` times smaller."""
     indenter, work = scene.indenter, work_of_adhesion(scene)
-    is_punch = isinstance(indenter, FlatPunch)
-    # Where f exceeds twice the elongation of a half-space, contact presses.
-    high = (
-        start or indenter.flat_radius
-        if is_punch
-        else start or first_radius(indenter, lambda r: height(indenter, r) >= 2 * np.sqrt(2 * np.pi * r * work))
-    )
+    is_punch, high = isinstance(indenter, FlatPunch), start or indenter.flat_radius
+    if not start and not is_punch:
+        # Where f exceeds twice the elongation of a half-space, contact presses.
+        high = first_radius(indenter, lambda r: height(indenter, r) >= 2 * np.sqrt(2 * np.pi * r * work))
     kinks = [k for k in indenter.kinks if k < high]
     smallest = min([high / 3, scene.layer.surface.thickness, *kinks])
     low = 3 * smallest / span if is_punch or kinks else high / span
@@ -276,7 +254,8 @@ def branch_of(
     ends = sorted({*kinks, *(breakpoints if len(breakpoints) <= MOST_BREAKPOINTS else [])})
     breaks = [low]
     for end in (*ends, high):
-        pieces = max(1, int(np.ceil(np.log(end / breaks[-1]) / np.log(WIDEST_PIECE))))
-        breaks += [*np.geomspace(breaks[-1], end, pieces + 1)[1:-1], end]
-    nodes = max(4, round(NODES * (0.5 / growth) ** NODE_POWER))
-    return solve_branch(breaks, kinks, work, cache(solve), nodes)
+        count = max(1, int(np.ceil(np.log(end / breaks[-1]) / np.log(WIDEST_PIECE))))
+        breaks += [*np.geomspace(breaks[-1], end, count + 1)[1:-1], end]
+    nodes, solve = max(4, round(NODES * (0.5 / growth) ** NODE_POWER)), cache(solve)
+    pairs = pairwise(map(float, breaks))
+    return Branch([BranchPiece.solved(*pair, solve, nodes, graded=pair[0] in kinks) for pair in pairs], work)

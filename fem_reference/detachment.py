@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 from functools import cache
 
 import numpy as np
-from scipy.optimize import brentq
 
 from contact import (
     CriticalPoint,
@@ -24,7 +23,7 @@ from contact.answer.solution import Setting
 from contact.records.validation import FloatArray
 from contact.scene.loading import Controlled
 from contact.stated import stated_error
-from fem_reference.adhesion import SPANS, InterpolatedBranch, adhesive_equilibrium, branch_of
+from fem_reference.adhesion import SPANS, Branch, adhesive_equilibrium, branch_of, root
 from fem_reference.materials import contact_modulus
 from fem_reference.prescribed_contact import ContactSolver, PrescribedContact
 from fem_reference.settings import Discretisation
@@ -47,7 +46,7 @@ class Separation:
     """
 
     scene: Scene
-    branch: InterpolatedBranch
+    branch: Branch
     solve: ContactSolver
 
     @classmethod
@@ -101,22 +100,17 @@ class Separation:
         is_punch, flat = isinstance(self.scene.indenter, FlatPunch), self.scene.indenter.flat_radius
         # A flat punch holds its radius until detachment begins at its edge.
         points = [self.point(flat, control, "start") for control in self.controls if is_punch]
+        landings, radius = [], self.radius
         for control in self.controls:
-            load, radius = self.branch.loads[control], self.radius
-            slope = self.branch.slope(load, radius)
+            load = self.branch.loads[control]
+            slope, values = self.branch.slope(load, radius), load(radius)
             for i in np.flatnonzero(np.sign(slope[1:]) != np.sign(slope[:-1])):
                 kind = "pull-off" if slope[i] > 0 else "snap-in"
                 points.append(self.point(self.branch.slope_root(load, radius[i + 1], radius[i]), control, kind))
-        for control in () if is_punch else self.controls:
             # First touch lands on the smallest stable contact at zero depth, force or displacement of the machine.
-            load, radius = self.branch.loads[control], self.radius
-            values = load(radius)
-            for i in np.flatnonzero((values[:-1] > 0.0) & (values[1:] <= 0.0))[-1:]:
-                found = brentq(
-                    lambda a, load=load: load(np.array([a]))[0], radius[i + 1], radius[i], xtol=1e-12 * radius[i]
-                )
-                points.append(self.point(float(found), control, "snap-in"))
-        return points
+            lands = np.flatnonzero((values[:-1] > 0.0) & (values[1:] <= 0.0))[-1:]
+            landings += [self.point(root(load, radius[i + 1], radius[i]), control, "snap-in") for i in lands]
+        return points if is_punch else points + landings
 
     def _load(self, point: CriticalPoint) -> float:
         """The controlled load of a point."""

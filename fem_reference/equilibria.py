@@ -33,7 +33,7 @@ from contact.scene.extent import first_radius
 from fem_reference.materials import contact_modulus
 from fem_reference.prescribed_contact import ContactSolver, PrescribedContact, quick_solution
 from fem_reference.profiles import height
-from fem_reference.settings import NARROW, NARROWEST, narrowest_radius
+from fem_reference.settings import NARROWEST, narrowest_radius
 
 # Relative load that is left to the first-order correction, whose error is its square.
 LEFT_OVER = 1e-4
@@ -41,6 +41,9 @@ LEFT_OVER = 1e-4
 ATTEMPTS = 3
 # Relative load that the last of them may still leave to the correction.
 MOST_LEFT = 0.03
+# Width of a ring, over flat radius and thickness, below which its load grows like the root of the width and steps of
+# the search are not limited. With half of it searches take more steps, with twice of it they may overshoot.
+NARROW = 0.1
 # Steps of the search for a radius by quick solutions; five usually suffice.
 STEPS = 16
 # Relative error of the depth in a quick solution: about three times the largest, that of tabulated profiles.

@@ -30,14 +30,12 @@ class DiscreteLayer:
         pair: elements.
         parts: material over depth, and how the base is held.
         sticks: whether the top within radius one is held in the radial direction.
-        backend: linear solver, a key of `solver.BACKENDS`.
     """
 
     section: Section
     pair: ElementPair
     parts: Parts
     sticks: bool = False
-    backend: str = "superlu"
 
     @cached_property
     def space(self) -> Space:
@@ -95,7 +93,7 @@ class DiscreteLayer:
 
     def solver(self, held: IntArray) -> RestrictedSolver:
         """Factorise once with these unknowns prescribed."""
-        return RestrictedSolver(self.space, self.elements, self.edge, held, self.backend)
+        return RestrictedSolver(self.space, self.elements, self.edge, held)
 
     def derivative_by_radius(self, solutions: FloatArray, eta: FloatArray) -> FloatArray:
         """A'(u_i, u_j), the derivative of ``u_i . K u_j`` when vertices move by ``(eta, 0)`` and carry the unknowns.

@@ -49,7 +49,6 @@ from fem_reference.fields import FemFields
 from fem_reference.materials import contact_modulus
 from fem_reference.prescribed_contact import ContactSolver, solve_contact
 from fem_reference.settings import Discretisation
-from fem_reference.solver import BACKENDS
 from fem_reference.stated import meshes_that_fit, path_with_errors, settings_for, solve_to_accuracy
 
 Answer: TypeAlias = ContactPath | DetachmentPath | ImpactHistory | HistoryPath
@@ -73,7 +72,6 @@ class Fem:
         half_space_thickness: thickness, in contact radii, of the layer that stands for a half-space; an elastic base
             below a stack is meshed to its power of 0.8.
         outer_distance: from contact edge to outer edge, in thicknesses; None for what ``truncation`` requires.
-        solver: "superlu", "superlu-pivoting" or "mumps".
     """
 
     name: ClassVar[str] = "fem"
@@ -86,7 +84,6 @@ class Fem:
     truncation: float = 1e-8
     half_space_thickness: float = 1e8
     outer_distance: float | None = None
-    solver: str = "superlu"
 
     def __post_init__(self) -> None:
         """Refuse settings outside their ranges."""
@@ -96,8 +93,6 @@ class Fem:
                 raise InvalidInput(f"{name} must lie in [1e-9, 0.1], got {wanted}")
         if self.pressure_accuracy is not None and self.accuracy is None:
             raise InvalidInput("pressure_accuracy is asked besides an accuracy of the numbers; give both")
-        if self.solver not in BACKENDS:
-            raise InvalidInput(f"solver must be one of {', '.join(BACKENDS)}, got {self.solver!r}")
         _ = self.discretisation
 
     @property
@@ -175,14 +170,10 @@ class Fem:
             from fem_reference.friction.answers import rubbed_history, rubbed_path  # noqa: PLC0415
 
             return partial(rubbed_history if in_time else rubbed_path, scene, written=written, log=log)
-        if isinstance(scene.loading, Impact):
-            from fem_reference.impacts import ImpactSolver  # noqa: PLC0415
+        if in_time:
+            from fem_reference.histories import history, impact  # noqa: PLC0415
 
-            return ImpactSolver(scene, scene.loading, written, log).attempt
-        if isinstance(scene.loading, DepthHistory | ForceHistory):
-            from fem_reference.histories import HistorySolver  # noqa: PLC0415
-
-            return HistorySolver(scene, scene.loading, written, log).attempt
+            return partial(impact if isinstance(scene.loading, Impact) else history, scene, written=written, log=log)
         if isinstance(scene.loading, Detachment):
             from fem_reference.detachment import detachment_path  # noqa: PLC0415
 
@@ -222,7 +213,7 @@ class Fem:
     def _solver(self, scene: Scene, log: StageLog, settings: Discretisation) -> ContactSolver:
         """Function that solves the contact of a given radius [m]; an indenter with friction sticks."""
         sticks = scene.effect(Friction) is not None
-        return lambda radius: solve_contact(scene, radius, settings, log, backend=self.solver, sticks=sticks)
+        return lambda radius: solve_contact(scene, radius, settings, log, sticks=sticks)
 
     def refined(self) -> Self:
         """A copy with cells half as large; the edge cell shrinks by 2^(2k), so that errors fall at the formal order 2k.

@@ -11,11 +11,12 @@ the depth disappears, and a step is one complementarity problem with the matrix
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import Self
+from typing import NamedTuple, Self
 
 import numpy as np
+from scipy.interpolate import make_interp_spline
 from scipy.optimize import brentq
 
 from contact import FlatPunch, InvalidInput, NotConvergedError, Scene, StageLog
@@ -72,73 +73,60 @@ class CondensedLayer:
     radius: float
     unknowns: int
 
+    def sample(
+        self, time: float, depth: float, velocity: float, pressure: FloatArray, *, dashpot: float = 0.0
+    ) -> Sample:
+        """The instant with these pressures at the vertices."""
+        top, edge = self.surface, edge_radius(self.radii, pressure)
+        force = float(top.resultants @ pressure)
+        return Sample(time, depth, velocity, force, edge, top.stored_energy, top.dissipated_energy, dashpot)
 
-@dataclass(frozen=True, kw_only=True)
-class FallingBody:
-    """The impacting body in the units of its condensed layer.
+
+class Sample(NamedTuple):
+    """One instant of a motion, in the units of its condensed layer.
 
     Attributes:
-        mass: M / (G_0 L) [s^2].
-        velocity: v_0 / L [1/s].
+        time: t.
+        depth: delta.
+        velocity: of a falling body.
+        force: F.
+        radius: of the contact.
+        stored: energy of the layer.
+        dissipated: energy lost so far.
+        dashpot: share of the dashpot in the force.
     """
 
-    mass: float
+    time: float
+    depth: float
     velocity: float
+    force: float
+    radius: float = 0.0
+    stored: float = 0.0
+    dissipated: float = 0.0
+    dashpot: float = 0.0
 
 
-@dataclass
-class Samples:
-    """Samples of a motion, in the units of its condensed layer; the last two columns are energies."""
-
-    condensed: CondensedLayer
-    rows: list[tuple[float, ...]] = field(default_factory=list)
-
-    def add(self, time: float, depth: float, velocity: float, pressure: FloatArray, dashpot: float = 0.0) -> None:
-        """Append one sample; ``dashpot`` is the dashpot's share of the force."""
-        surface = self.condensed.surface
-        force, edge = float(surface.resultants @ pressure), edge_radius(self.condensed.radii, pressure)
-        energies = surface.stored_energy, surface.dissipated_energy
-        self.rows.append((time, depth, velocity, force, edge, *energies, dashpot))
-
-    def column(self, name: str) -> FloatArray:
-        """One of time, depth, velocity, force, radius, stored, dissipated, dashpot."""
-        names = ("time", "depth", "velocity", "force", "radius", "stored", "dissipated", "dashpot")
-        return np.array([row[names.index(name)] for row in self.rows])
-
-    def smooth_dashpot(self, first: int, marks: Sequence[tuple[float, float]]) -> None:
-        """Make the dashpot's share linear between the middles of the intervals from touch to touch.
-
-        It is constant in each interval, and right in its middle.
-
-        Args:
-            first: row after the start of a segment.
-            marks: instants of touches in the segment, with the share in the interval before each.
-        """
-        if len(marks) < FEWEST_TOUCHES:
-            return
-        ends, shares = np.array(marks).T
-        middles, shares = (ends[1:] + ends[:-1]) / 2, shares[1:]
-        time, share = self.column("time")[first:], self.column("dashpot")[first:]
-        place = np.clip(np.searchsorted(middles, time), 1, len(middles) - 1)
-        slope = np.diff(shares)[place - 1] / np.diff(middles)[place - 1]
-        smooth = shares[place] + slope * (time - middles[place])
-        for i in np.flatnonzero(time >= middles[0]):
-            row = self.rows[first + i]
-            self.rows[first + i] = (*row[:3], max(0.0, row[3] + smooth[i] - share[i]), *row[4:])
+def columns(samples: Sequence[Sample]) -> dict[str, FloatArray]:
+    """Samples as one array per quantity."""
+    return dict(zip(Sample._fields, np.array(samples).T, strict=True))
 
 
-def simulate_impact(condensed: CondensedLayer, body: FallingBody, duration: float) -> Samples:
+def simulate_impact(condensed: CondensedLayer, mass: float, velocity: float, duration: float) -> list[Sample]:
     """Steps of ``duration`` [s] from first touch to the loss of contact.
+
+    Args:
+        condensed: the layer at rest and its indenter.
+        mass: M / (G_0 L) [s^2].
+        velocity: v_0 / L [1/s].
+        duration: of a step [s].
 
     Raises:
         NotConvergedError: the body never comes off (a layer without long-term elasticity may hold it).
     """
-    surface, record = condensed.surface, Samples(condensed)
-    w, kappa = surface.resultants, duration**2 / (4 * body.mass)
-    pressure = _touch(condensed, body, INSTANT * duration)
-    depth, velocity, force, time = 0.0, body.velocity, float(w @ pressure), 0.0
-    record.rows.append((0.0, 0.0, velocity, force, 0.0, 0.0, 0.0))
-    active, overlaps = None, (0.0, 0.0, 0.0)
+    surface = condensed.surface
+    w, kappa = surface.resultants, duration**2 / (4 * mass)
+    depth, force, time = 0.0, float(w @ _touch(condensed, velocity, INSTANT * duration)), 0.0
+    samples, active, overlaps = [Sample(0.0, 0.0, velocity, force)], None, (0.0, 0.0, 0.0)
     for _ in range(MAX_STEPS):
         matrix, offset = surface.begin(duration)
         ballistic = depth + duration * velocity - kappa * force
@@ -147,24 +135,24 @@ def simulate_impact(condensed: CondensedLayer, body: FallingBody, duration: floa
         surface.accept(state.pressure)
         following, overlaps = float(w @ state.pressure), (*overlaps[1:], float((approach / w).max()))
         mean, active = (force + following) / 2, state.active
-        is_free = following == 0 and velocity - duration * mean / body.mass < 0
+        is_free = following == 0 and velocity - duration * mean / mass < 0
         part = duration * (_release_fraction(*overlaps) if is_free else 1.0)
-        depth += part * velocity - part * duration * mean / (2 * body.mass)
-        velocity -= part * mean / body.mass
+        depth += part * velocity - part * duration * mean / (2 * mass)
+        velocity -= part * mean / mass
         force, time = following, time + part
-        record.add(time, depth, velocity, state.pressure)
+        samples.append(condensed.sample(time, depth, velocity, state.pressure))
         if is_free:
-            return record
+            return samples
     raise NotConvergedError("the body does not come off", {"last_force": force, "last_velocity": velocity})
 
 
-def _touch(condensed: CondensedLayer, body: FallingBody, instant: float) -> FloatArray:
+def _touch(condensed: CondensedLayer, velocity: float, instant: float) -> FloatArray:
     """Pressures at first touch: those of the dashpot under the part of the profile that is flat."""
     surface = condensed.surface
     if surface.viscosity == 0:
         return np.zeros_like(condensed.profile)
     matrix, offset = surface.begin(instant)
-    approach = instant * body.velocity * surface.resultants - condensed.profile - offset
+    approach = instant * velocity * surface.resultants - condensed.profile - offset
     pressure = solve_complementarity(matrix, approach).pressure
     surface.accept(pressure)
     return pressure
@@ -202,7 +190,7 @@ def segments(time: FloatArray, per_octave: int) -> list[FloatArray]:
 
 def simulate_prescribed(
     condensed: CondensedLayer, time: FloatArray, values: FloatArray, steps: Sequence[FloatArray], *, by_depth: bool
-) -> Samples:
+) -> list[Sample]:
     """Response to depths or forces that are linear between the given instants; a first load above zero acts at once.
 
     Args:
@@ -215,7 +203,8 @@ def simulate_prescribed(
     Raises:
         NotConvergedError: no depth carries the force.
     """
-    record, surface, depth = Samples(condensed), condensed.surface, 0.0
+    samples: list[Sample] = []
+    surface, depth = condensed.surface, 0.0
     active: BoolArray | None = None
 
     def advance(duration: float, load: float) -> FloatArray:
@@ -234,12 +223,12 @@ def simulate_prescribed(
     pressure = np.zeros_like(condensed.profile)
     if values[0] > 0:
         pressure = advance(INSTANT * float(steps[0][0] - time[0]), float(values[0]))
-    record.add(float(time[0]), float(values[0]) if by_depth else depth, 0.0, pressure)
+    samples.append(condensed.sample(float(time[0]), float(values[0]) if by_depth else depth, 0.0, pressure))
     for ends, (t0, t1), (v0, v1) in zip(steps, pairwise(time), pairwise(values), strict=True):
         if by_depth:
             surface.restart()
         marks: list[tuple[float, float]] = []
-        active, first = None, len(record.rows)
+        active, first = None, len(samples)
         for before, now in pairwise([t0, *ends]):
             load = v1 if now == t1 else v0 + (v1 - v0) * (now - t0) / (t1 - t0)
             if by_depth and surface.viscosity and v1 > v0 and active is not None:
@@ -248,9 +237,29 @@ def simulate_prescribed(
                 depth = float(load)
             else:
                 pressure = advance(float(now - before), float(load))
-            record.add(float(now), depth, 0.0, pressure, surface.dashpot_force)
-        record.smooth_dashpot(first, marks)
-    return record
+            samples.append(condensed.sample(float(now), depth, 0.0, pressure, dashpot=surface.dashpot_force))
+        samples[first:] = smooth_dashpot(samples[first:], marks)
+    return samples
+
+
+def smooth_dashpot(samples: list[Sample], marks: Sequence[tuple[float, float]]) -> list[Sample]:
+    """Samples of a segment, the dashpot's force linear between the middles of the intervals from touch to touch.
+
+    It is constant in each interval, and right in its middle.
+
+    Args:
+        samples: of the segment.
+        marks: instants of touches in the segment, with the dashpot's force in the interval before each.
+    """
+    if len(marks) < FEWEST_TOUCHES:
+        return samples
+    ends, forces = np.array(marks).T
+    middles, time = (ends[1:] + ends[:-1]) / 2, columns(samples)["time"]
+    smooth = make_interp_spline(middles, forces[1:], k=1)(time)
+    return [
+        each if each.time < middles[0] else each._replace(force=max(0.0, each.force + float(force) - each.dashpot))
+        for each, force in zip(samples, smooth, strict=True)
+    ]
 
 
 @dataclass(frozen=True)
@@ -375,21 +384,20 @@ class Resolution:
 class HistorySetup:
     """Condensed layers of one scene at one resolution, a fresh one for every motion that is simulated."""
 
-    def __init__(self, scene: Scene, settings: Discretisation, backend: str, log: StageLog) -> None:
+    def __init__(self, scene: Scene, settings: Discretisation, log: StageLog) -> None:
         self.scene, self.log, self.relaxation = scene, log, relaxation_of(scene)
         self.resolution = Resolution.of(settings)
         self._settings = replace(settings, truncation=max(settings.truncation, TRUNCATION * settings.coarsening**6))
-        self._backend = backend
         relaxes = bool(np.any(self.relaxation.moduli)) or self.relaxation.viscosity > 0
         self._modes: dict[tuple[float, int], Modes] = {}
         self._needs_field = relaxes and scene.layer.poissons_ratio < 0.5
 
     @classmethod
     def resolutions(
-        cls, scene: Scene, settings: Discretisation, backend: str, log: StageLog
+        cls, scene: Scene, settings: Discretisation, log: StageLog
     ) -> list[tuple[HistorySetup, Resolution]]:
         """Setups and resolutions with half the cells and steps, with half the cells, and of the answer."""
-        coarser, setup = (cls(scene, each, backend, log) for each in (settings.coarser(), settings))
+        coarser, setup = (cls(scene, each, log) for each in (settings.coarser(), settings))
         cells = coarser.resolution
         return [(coarser, cells.half_the_steps()), (coarser, cells), (setup, setup.resolution)]
 
@@ -405,13 +413,13 @@ class HistorySetup:
         per_shear = (1 - self.scene.layer.poissons_ratio) / 2  # E* = 2 G / (1 - nu)
         if self._needs_field:
             with self.log.stage("factor"):
-                return compressible_modes(*self._mesh(radius, cells), self._backend)
+                return compressible_modes(*self._mesh(radius, cells))
         if isinstance(self.scene.indenter, FlatPunch):
             # It moves as one: its force is the only unknown, 1 / k_N its compliance.
-            contact = solve_contact(self.scene, radius, self._settings, self.log, backend=self._backend)
+            contact = solve_contact(self.scene, radius, self._settings, self.log)
             compliance = np.array([[per_shear / contact.stiffness]])
             return proportional_modes(compliance, np.ones(1), np.ones(1), contact.unknowns)
-        strip = condense(*self._mesh(radius, cells), self._backend, self.log)
+        strip = condense(*self._mesh(radius, cells), self.log)
         return proportional_modes(strip.pressed * per_shear, strip.resultants, strip.radii, strip.unknowns)
 
     def _mesh(self, radius: float, cells: int) -> tuple[Parts, Section]:
@@ -428,7 +436,9 @@ class HistorySetup:
         inside = np.minimum(space.gauss(4)[0] * radius, min(radius, self.scene.indenter.max_radius))
         return space.moments(shape(self.scene.indenter, inside).height / radius, 4)
 
-    def fitted_radius(self, guess: float, simulate: Callable[[CondensedLayer], Samples]) -> tuple[float, Samples]:
+    def fitted_radius(
+        self, guess: float, simulate: Callable[[CondensedLayer], list[Sample]]
+    ) -> tuple[float, list[Sample]]:
         """A strip a quarter larger than the largest contact, and the record of the pilot simulation on it.
 
         Raises:
@@ -441,7 +451,7 @@ class HistorySetup:
         radius = min(guess, indenter.max_radius)
         for _ in range(12):
             record = simulate(self.condensed(radius, PILOT_CELLS))
-            largest = float(record.column("radius").max())
+            largest = max(sample.radius for sample in record)
             if largest == 0:
                 raise NotConvergedError(
                     "the pilot simulation presses at no step: a strong dashpot stops the body, or nothing presses"

@@ -31,7 +31,7 @@ from contact.answer.accuracy import shortfalls
 from contact.records.validation import FloatArray
 from contact.stated import SAFETY
 from fem_reference.equilibria import FemEquilibrium, change_beside
-from fem_reference.settings import NARROW, Discretisation
+from fem_reference.settings import Discretisation
 
 S = TypeVar("S", bound=Solution)
 
@@ -40,9 +40,6 @@ FLOOR = 1e-12
 # Least change of a number of a state, over the largest of them: two meshes may agree in one number by accident. With a
 # tenth one stiffness in a hundred is missed by three, twice of it widens half of all stated errors.
 LEAST_SHARE = 0.3
-# Factor on changes next to an upright end nearer than `NARROW`, where meshes are uneven. With half of it a sphere
-# 1e-9 before its equator is missed.
-BEFORE_END = 16.0
 # Stated errors of P4P3 fall like this power of the growth on graded meshes.  It chooses the next mesh only: a wrong
 # value costs attempts, no accuracy.
 ERROR_ORDER = 7.0
@@ -83,8 +80,7 @@ def path_with_errors(
     coarser: Sequence[FemEquilibrium],
 ) -> ContactPath:
     """The path with its stated errors; the states are those of both paths."""
-    uneven = np.array([BEFORE_END if s.contact.indenter.left_to_upright_end < NARROW else 1.0 for s in states])
-    changes = {name: uneven * _with_neighbours(relative_change(answer, companion, name)) for name in answer.ARRAYS}
+    changes = {name: _with_neighbours(relative_change(answer, companion, name)) for name in answer.ARRAYS}
     exact = set() if answer.scene.effect(Adhesion) is not None else exact_names(answer.scene)
     least = LEAST_SHARE * np.max([changes[name] for name in answer.ARRAYS if name != "contact_radius"], axis=0)
     # The stiffness of a load errs with its radius, too.

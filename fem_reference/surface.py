@@ -113,19 +113,18 @@ def strip_loads(layer: DiscreteLayer, stride: int, *, tangential: bool = False) 
 def condense(
     parts: Parts,
     section: Section,
-    backend: str,
     log: StageLog,
     *,
     stride: int = STRIDE,
     tangential: bool = False,
 ) -> Surface:
     """Factorise the layer once and load it by every traction of the strip of radius one."""
-    layer = DiscreteLayer(section, taylor_hood(STRIP_ORDER), parts, backend=backend)
+    layer = DiscreteLayer(section, taylor_hood(STRIP_ORDER), parts)
     with log.stage("assemble"):
         log.hold(layer.elements.nbytes)
     with log.stage("factor"):
         solver = layer.solver(layer.supported_unknowns)
-    log.count("factorisations", solver.checked.factorisations)
+    log.count("factorisations", solver.factorisations)
     with log.stage("condense"):
         loads, tractions = strip_loads(layer, stride, tangential=tangential)
         solution = solver.solve_loaded(loads, inside=False)

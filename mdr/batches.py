@@ -26,9 +26,9 @@ from contact import (
 from contact.answer.one_thread import one_thread
 from contact.answer.small_strains import refuse_deep
 from contact.records.validation import FloatArray
-from mdr.equilibria import sizes_of, solve_elastic
+from mdr.equilibria import solve_elastic
 from mdr.many_layers import equilibria_on_layers, takes_part
-from mdr.own_units import OwnUnits, own_units, power_law
+from mdr.own_units import OwnUnits, is_power_law, own_units
 
 if TYPE_CHECKING:
     from mdr.impact.results import ImpactResults
@@ -173,7 +173,7 @@ def _refuse(number: int, scene: Scene) -> None:
 
 def _kind(number: int, scene: Scene) -> Hashable:
     """What scenes of one group have in common; who takes part in none is a group of its own."""
-    if power_law(scene.indenter) is None:
+    if not is_power_law(scene.indenter):
         layer = scene.layer.surface
         alike = type(scene.loading), layer.poissons_ratio, scene.layer.support, scene.indenter
         return alike if takes_part(scene) else number
@@ -183,7 +183,7 @@ def _kind(number: int, scene: Scene) -> Hashable:
 
 def _together(scenes: list[Scene], flat_punch: FlatPunchSource) -> FloatArray:
     """Radius, depth, force and stiffness of one group, shape (4, n), from one solution of the shared problem."""
-    if power_law(scenes[0].indenter) is None:
+    if not is_power_law(scenes[0].indenter):
         return _on_layers(scenes, flat_punch)
     units = [own_units(scene.layer, scene.indenter) for scene in scenes]
     length, depth, stiffness = (np.array([getattr(one, name) for one in units]) for name in OwnUnits.SCALES)
@@ -201,7 +201,7 @@ def _on_layers(scenes: list[Scene], flat_punch: FlatPunchSource) -> FloatArray:
     """The same of one indenter that is no power law, scenes that must be solved by themselves one by one."""
     found = np.full((4, len(scenes)), np.nan)
     if isinstance(flat_punch, IntegralEquation) and takes_part(scenes[0]) and len(scenes) >= _SEVERAL:
-        found = equilibria_on_layers(scenes, sizes_of(flat_punch))
+        found = equilibria_on_layers(scenes, flat_punch.sizes)
     for number in np.flatnonzero(np.isnan(found).any(axis=0)):
         path = solve_elastic(scenes[number], flat_punch, {})
         answers = path.contact_radius, path.indentation_depth, path.normal_force, path.contact_stiffness

@@ -14,7 +14,6 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from bem.equation import USUAL, Sizes
 from bem.flat_punch import FlatPunchSource, IntegralEquation
 from bem.numerics import EPS, gauss
 from contact import (
@@ -54,11 +53,6 @@ _FIELD_ROUNDING = 2e-13
 _GRADED_EDGE = 2e-9
 
 
-def sizes_of(source: IntegralEquation) -> Sizes:
-    """Resolution that belongs to the settings of a flat-punch source."""
-    return USUAL.scaled(source.nodes / 24 / source.panel_width)
-
-
 def solve_elastic(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[str, Setting]) -> ContactPath:
     """Contact radius, depth, force and stiffness, with pressure and displacement on demand.
 
@@ -74,7 +68,7 @@ def solve_elastic(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
     with log.stage("force"):
         values = springs.at(radius)
         state = _states(scene, springs, radius, values)
-        _refuse_inadmissible(scene, springs, state)
+        refuse_inadmissible(scene, springs, state)
         errors = StatedErrors(ElasticErrors(scene, springs, state, values).stated(), "mdr")
     return ContactPath(
         scene=scene,
@@ -110,7 +104,7 @@ def springs_on(layer: ElasticLayer, indenter: Profile, flat_punch: FlatPunchSour
         InvalidInput: If a stored table is of another layer.
     """
     if isinstance(flat_punch, IntegralEquation):
-        return Springs.of(layer, indenter, sizes_of(flat_punch))
+        return Springs.of(layer, indenter, flat_punch.sizes)
     if layer.is_half_space:
         return Springs.of(layer, indenter)
     from mdr.table_bed import TableSprings  # noqa: PLC0415 - loads the boundary elements
@@ -140,7 +134,8 @@ def _radii(scene: Scene, springs: Springs) -> FloatArray:
             search.refuse_falls(largest)
         return loading.values
     quantity: Quantity = "depth" if isinstance(loading, IndentationDepths) else "force"
-    return search.radii(quantity, loading.values, lambda a: _refuse_circle(scene, springs, a))
+    is_contact = lambda a: refuse_inadmissible(scene, springs, springs.states(np.array([a])))  # noqa: E731
+    return search.radii(quantity, loading.values, is_contact)
 
 
 def _refuse_unrisen(indenter: Profile) -> None:
@@ -172,17 +167,13 @@ def is_singular(scene: Scene, radius: float) -> bool:
     return isinstance(scene.indenter, FlatPunch) or radius <= scene.indenter.flat_radius
 
 
-def _refuse_circle(scene: Scene, springs: Springs, radius: float) -> None:
-    state = springs.states(np.array([radius]))
-    surface = surface_of(springs, radius, float(state.depth[0]), is_singular=is_singular(scene, radius))
-    refuse_pulling(surface, float(state.force[0]))
-    refuse_touching_outside(scene, surface)
-
-
-def _refuse_inadmissible(scene: Scene, springs: Springs, state: State) -> None:
+def refuse_inadmissible(scene: Scene, springs: Springs, state: State) -> None:
     """Refuse paths of which some contact pulls or is touched outside.
 
     Where g rises the widest contact has the smallest gaps of all, so it alone is looked at for those.
+
+    Raises:
+        UnsupportedSceneError: With the contact radius and the place.
     """
     if is_simple(scene):
         return

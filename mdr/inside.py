@@ -294,9 +294,7 @@ class Interior:
         floor = _ROUNDINGS * float(surface.springs.floor(np.array([surface.a]))[1][0])
         near = np.hypot(radius - self.known.radius, np.maximum(z, _NEAREST * self.known.radius))
         errors = SAFETY * np.abs(values - other) + (floor + _ROUNDINGS * EPS * self.known.radius / near) * sizes
-        rises = 1 / min(
-            1.0, max(getattr(surface.tip, "exponent", 2.0) - 1, 0.1)
-        )  # stress at a tip r^n goes with z^(n-1)
+        rises = 1 / min(1.0, max(surface.tip.exponent - 1, 0.1))  # stress at a tip r^n goes with z^(n-1)
         raised = 2 * rises * np.maximum(_NEAREST * self.known.radius - z, 0.0)
         errors[:2] += raised * np.abs(values[2:6]).max(axis=0) / self.layer.contact_modulus
         errors[2:7] += raised * np.abs(values[7:]).max(axis=0)

@@ -10,9 +10,12 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import ClassVar
 
+import numpy as np
+
 from bem.kernels.moduli import contact_modulus
-from contact import Cone, ElasticLayer, Layer, Paraboloid, PowerLaw, Profile
+from contact import ElasticLayer, Layer, PowerLaw, Profile
 from contact.scene.layer import Support
+from mdr.profiles import PowerTip, tip_of
 
 
 @dataclass(frozen=True)
@@ -36,16 +39,9 @@ class OwnUnits:
     stiffness: float
 
 
-def power_law(indenter: Profile) -> tuple[float, float] | None:
-    """C and n of f = C r^n; None for other profiles."""
-    match indenter:
-        case Paraboloid():
-            return 0.5 / indenter.radius_of_curvature, 2.0
-        case Cone():
-            return indenter.slope, 1.0
-        case PowerLaw():
-            return indenter.reference_height / indenter.reference_radius**indenter.exponent, indenter.exponent
-    return None
+def is_power_law(indenter: Profile) -> bool:
+    """Whether f = C r^n."""
+    return isinstance(tip_of(indenter), PowerTip)
 
 
 def own_units(layer: ElasticLayer, indenter: Profile, length: float = 1.0) -> OwnUnits:
@@ -59,14 +55,12 @@ def own_units(layer: ElasticLayer, indenter: Profile, length: float = 1.0) -> Ow
     Raises:
         TypeError: If the indenter is no power law.
     """
-    law = power_law(indenter)
-    if law is None:
+    if not is_power_law(indenter):
         raise TypeError(f"{type(indenter).__name__} is no power law")
-    coefficient, exponent = law
     length = length if layer.is_half_space else layer.thickness
-    depth, stiffness = coefficient * length**exponent, contact_modulus(layer) * length
+    depth, stiffness = float(indenter.height(np.array([length]))[0]), contact_modulus(layer) * length
     alike = _uniform(layer.support, layer.poissons_ratio, layer.is_half_space) if isinstance(layer, Layer) else None
-    return OwnUnits(alike or layer.in_own_units(), _unit_power(exponent), length, depth, stiffness)
+    return OwnUnits(alike or layer.in_own_units(), _unit_power(tip_of(indenter).exponent), length, depth, stiffness)
 
 
 @lru_cache(maxsize=64)

@@ -64,6 +64,15 @@ class Tip:
         found = {*profile.breakpoints, *((self.flat,) if self.flat else ())}
         self.breaks = tuple(sorted(b for b in found if b < self.end))
 
+    @cached_property
+    def exponent(self) -> float:
+        """n of a tip that starts like r^n; 1 with a flat end."""
+        if self.flat:
+            return 1.0
+        r = np.array([1e-6 * min([*self.breaks[:1], self.end, 1.0])])
+        n = float((r * self.slope(r) / self.height(r))[0])
+        return float(round(n)) if abs(n - round(n)) < 1e-3 else n
+
     @property
     def cuts(self) -> tuple[float, ...]:
         """Radii [m] at which quadratures are cut: breaks, and steps towards a singularity."""

@@ -20,8 +20,8 @@ from contact import Detachment, ElasticLayer, Profile, Scene
 from contact.records.validation import FloatArray
 from mdr.adhesive_branch import FIRST_WAY, balance_radius, work_of_adhesion
 from mdr.detachment import solve_detachment
-from mdr.equilibria import is_simple, sizes_of
-from mdr.own_units import OwnUnits, own_units, power_law
+from mdr.equilibria import is_simple
+from mdr.own_units import OwnUnits, is_power_law, own_units
 from mdr.spring_bed import Springs
 
 # Points at which the lowest depth or force is looked for, before bisection between its neighbours.
@@ -105,7 +105,7 @@ def pull_off_groups(
             balance = balance_radius(scene)
             units[number] = one = own_units(scene.layer, scene.indenter, balance)
             radius = float(2.0 ** np.ceil(np.log2(FIRST_WAY * balance / one.length)))
-            tables[number] = pull_off_table(one.layer, one.indenter, radius, sizes_of(flat_punch))
+            tables[number] = pull_off_table(one.layer, one.indenter, radius, flat_punch.sizes)
 
     def together(chunk: list[int]) -> FloatArray:
         return pull_off(tables[chunk[0]], [scenes[i] for i in chunk], [units[i] for i in chunk])
@@ -125,4 +125,4 @@ def pull_off_groups(
 def _is_shared(scene: Scene) -> bool:
     """Whether a shared table answers the scene: a power law that adheres, on one layer, held by a rigid machine."""
     held = isinstance(scene.loading, Detachment) and scene.loading.controlled != "machine"
-    return held and is_simple(scene) and power_law(scene.indenter) is not None and work_of_adhesion(scene) > 0.0
+    return held and is_simple(scene) and is_power_law(scene.indenter) and work_of_adhesion(scene) > 0.0

@@ -12,6 +12,8 @@ from collections.abc import Callable, Iterator
 from typing import Literal
 
 import numpy as np
+from scipy.interpolate import CubicSpline
+from scipy.optimize.elementwise import bracket_root, find_root
 
 from bem.numerics import EPS
 from contact import InvalidInput, NotConvergedError, Profile, UnsupportedSceneError
@@ -24,10 +26,12 @@ Quantity = Literal["depth", "force"]
 _NEAR_END, _CLOSER = 0.7, (0.2, 0.05, 0.01, 1e-3, 1e-6)
 # Radii per e-fold of the rough table. Half as many cost one more secant step.
 _DENSITY = 6
-# Secant steps before a search gives up; four are usual.
-_MOST_STEPS = 40
-# Largest last step over the radius with which a search ends; a thousandth of it is usual.
-_MOVED = 1e-10
+# ln(load) missed by a cubic between knots up to which one step of Newton suffices: their slopes are good to 1e-6.
+_NEAR = 1e-10
+# First interval over the first step. With half of it every second interval has to grow, twice of it takes a step more.
+_WIDER = 2.0
+# Steps before a search gives up; four are usual, and halving alone needs sixty.
+_MOST_STEPS = 200
 # ln(a/h) below which the layers under the first change g too little to let it fall.
 _WITHIN_LAYER = -5.0
 # Places around each maximum of g. Half as many miss depths within 0.3 % of the maximum.
@@ -241,8 +245,22 @@ class RadiusSearch:
         if y.size <= _MANY:
             return self.refined(quantity, y, np.interp(y, table, z), np.interp(y, table, slope))
         knots = np.linspace(y.min(), y.max(), _KNOTS)
-        inner = self.refined(quantity, knots, np.interp(knots, table, z), np.interp(knots, table, slope))
-        return self.refined(quantity, y, *_between(knots, self.scale(inner), y))
+        inner = self.scale(self.refined(quantity, knots, np.interp(knots, table, z), np.interp(knots, table, slope)))
+        place, parts = CubicSpline(knots, inner), np.array_split(y, y.size // _KNOTS)
+        return np.concatenate([self._between(quantity, part, place) for part in parts])
+
+    def _between(self, quantity: Quantity, y: FloatArray, place: CubicSpline) -> FloatArray:
+        """Radii [m] with these logarithms by one step of Newton from cubics z(y), where it suffices."""
+        z, slope = place(y), 1 / np.maximum(place(y, 1), 1e-300)
+        missed = self.logarithm(self.springs, quantity, z) - y
+        radius, far = self._radius(z - missed / slope), np.abs(missed) > _NEAR
+        radius[far] = self.refined(quantity, y[far], z[far], slope[far]) if far.any() else 0.0
+        return radius
+
+    def _radius(self, z: FloatArray) -> FloatArray:
+        """Radii [m] at z; what doubles cannot tell from the flat end is put there."""
+        radius, flat = self.place(z), self.springs.tip.flat
+        return np.where(radius - flat < 8 * EPS * flat, flat, radius)
 
     def _beyond_falls(
         self,
@@ -282,36 +300,27 @@ class RadiusSearch:
         raise objection
 
     def refined(self, quantity: Quantity, y: FloatArray, z: FloatArray, slope: FloatArray) -> FloatArray:
-        """Radii [m] with these logarithms by secants from a start and its slope."""
-        tip = self.springs.tip
-        slope = np.maximum(slope, 1e-3)
-        least, most, missed = 0.5 * slope, 2 * slope, np.inf
-        new, old, f_old = z, z, z
-        for number in range(_MOST_STEPS):
-            f = self.logarithm(self.springs, quantity, new) - y
-            worst = float(np.abs(f).max(initial=0.0))
-            if number > 0:
-                with np.errstate(all="ignore"):
-                    secant = np.nan_to_num((f - f_old) / (new - old), nan=1.0)
-                slope = np.where(np.abs(new - old) > 1e-8, np.clip(secant, least, most), slope)
-            old, f_old, new = new, f, new - f / slope
-            if worst < 1e-13 or (worst < 1e-12 and worst > 0.5 * missed):
-                break
-            missed = worst
-        found = self.place(new)
-        moved = float((np.abs(found - self.place(old)) / np.maximum(found, 1e-300)).max(initial=0.0))
-        if moved > _MOVED:
-            raise NotConvergedError("the contact radius was not found", {"last step over the radius": moved})
-        # What doubles cannot tell from the flat end is put there.
-        return np.where(found - tip.flat < 8 * EPS * tip.flat, tip.flat, found)
+        """Radii [m] with these logarithms, from a start and its slope, by Chandrupatla's method.
 
+        Raises:
+            NotConvergedError: If one was not found.
+        """
 
-def _between(knots: FloatArray, z: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """z at y by cubics with mean slopes between equidistant knots, and dy/dz."""
-    step, rise, pace = knots[1] - knots[0], np.diff(z), np.gradient(z)
-    before, after = pace[:-1] - rise, pace[1:] - rise
-    s = (y - knots[0]) / step
-    i = np.minimum(s.astype(int), rise.size - 1)
-    s -= i
-    found = z[i] + s * (pace[i] - s * ((2 * before + after)[i] - s * (before + after)[i]))
-    return found, step / np.maximum(pace[i] + s * (after - before)[i], 1e-300)
+        def missed(z: FloatArray, y: FloatArray) -> FloatArray:
+            return self.logarithm(self.springs, quantity, z) - y
+
+        first = missed(z, y)
+        step = _WIDER * np.abs(first) / np.maximum(slope, 1e-3) + EPS * (1 + np.abs(z))
+        low, high = np.where(first < 0, z, z - step), np.where(first < 0, z + step, z)
+        bracket = bracket_root(missed, low, high, args=(y,)).bracket
+        found = find_root(
+            missed,
+            bracket,
+            args=(y,),
+            # In the place, and in the logarithm of the load.
+            tolerances={"xatol": 4 * EPS, "xrtol": EPS, "fatol": 8 * EPS, "frtol": 0.0},
+            maxiter=_MOST_STEPS,
+        )
+        if not found.success.all():
+            raise NotConvergedError("the contact radius was not found", {"ln(load) missed by": np.abs(found.f_x).max()})
+        return self._radius(found.x)

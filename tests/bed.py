@@ -10,7 +10,6 @@ from numpy.typing import ArrayLike
 from bem.flat_punch import IntegralEquation
 from contact import ElasticLayer, Profile
 from contact.records.validation import FloatArray
-from mdr.equilibria import sizes_of
 from mdr.spring_bed import Springs, SpringValues
 
 
@@ -51,4 +50,4 @@ class Bed:
 
 def bed_of(layer: ElasticLayer, indenter: Profile, source: IntegralEquation | None = None) -> Bed:
     """Springs of a layer under an indenter."""
-    return Bed(Springs.of(layer, indenter, sizes_of(source or IntegralEquation())))
+    return Bed(Springs.of(layer, indenter, (source or IntegralEquation()).sizes))

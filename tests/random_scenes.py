@@ -20,16 +20,7 @@ from typing import Any, Final, Literal
 import numpy as np
 
 import contact
-from contact import (
-    AnyScene,
-    CoatedPair,
-    ElasticBase,
-    ElasticLayer,
-    FlatPunch,
-    Profile,
-    Scene,
-    TabulatedDepth,
-)
+from contact import AnyScene, CoatedPair, ElasticBase, ElasticLayer, FlatPunch, Profile, Scene, TabulatedDepth
 from contact.records.record import Record
 
 Draw = np.random.Generator

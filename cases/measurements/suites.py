@@ -94,7 +94,7 @@ def all_ladders() -> Part:
 
 def code_verification() -> Part:
     """Orders, stability and locking of the finite elements."""
-    from cases.library._code_verification.finite_elements import finite_element_case  # noqa: PLC0415
+    from cases.library._finite_elements import finite_element_case  # noqa: PLC0415
 
     return finite_element_case()
 

@@ -124,7 +124,7 @@ def rubbed_path(
         InvalidInput: the contact would reach the end of the profile.
     """
     values: FloatArray = scene.loading.values  # type: ignore[attr-defined]  # `Fem.supports` lets equilibria pass only
-    maker = StripMaker(scene, settings, str(written["solver"]), log)
+    maker = StripMaker(scene, settings, log)
     modulus, open_steps = contact_modulus(scene.layer), set(range(len(values)))
     name = {ContactRadii: "radius", IndentationDepths: "depth", NormalForces: "force"}[type(scene.loading)]
     scaled = values / (modulus if name == "force" else 1.0)
@@ -201,7 +201,7 @@ def rubbed_history(
     if largest <= 0.0 or (not by_depth and targets.min() < 0.0):
         raise InvalidInput(f"a history from {targets.min():g} to {largest:g}: press, and do not pull")
     pressed = scene.replace(loading=(IndentationDepths if by_depth else NormalForces)([largest]))
-    contacts = StripMaker(pressed, settings, str(written["solver"]), log).fitted(largest)
+    contacts = StripMaker(pressed, settings, log).fitted(largest)
     modulus = contact_modulus(scene.layer)
     with log.stage("follow"):
         both = [_states(contact, targets, modulus, by_depth=by_depth) for contact in contacts]

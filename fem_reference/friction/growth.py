@@ -59,13 +59,11 @@ class StripMaker:
     Attributes:
         scene: with one effect, friction.
         settings: decide how many cells there are.
-        backend: linear solver.
         log: of stages.
     """
 
     scene: Scene
     settings: Discretisation
-    backend: str
     log: StageLog
 
     @property
@@ -85,7 +83,7 @@ class StripMaker:
         scene, friction = self.scene, self.scene.effect(Friction)
         kinks = scene.indenter.breakpoints
         section = strip_section(scene.layer, radius, cells, kinks, self.settings, outside=AWAY, stride=RUBBED_STRIDE)
-        surface = condense(*section, self.backend, self.log, stride=RUBBED_STRIDE, tangential=True)
+        surface = condense(*section, self.log, stride=RUBBED_STRIDE, tangential=True)
         profile = surface.moments(_heights(scene.indenter, surface.tractions.gauss(4)[0] * radius) / radius)
         return RubbedContact(surface, profile, friction.coefficient if friction else 0.0, radius)
 

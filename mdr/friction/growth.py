@@ -110,13 +110,10 @@ class Growth:
         # Rounded up by a fifth at most, so that scenes share tables.
         above = end if kernel.is_half_space else float(1.2 ** np.ceil(np.log(end) / np.log(1.2) - 1e-9))
         self.punches = punches_of(kernel, above, extra)
-        e = 1e-5 * end
-        lead = 1.0 if tip.flat else float(np.round(np.log2(self._height(2 * e) / self._height(e))))
-        lead = getattr(tip, "exponent", lead)
-        self.rule = towards_one(16 + extra, 0 if lead % 1 == 0 else 6)
+        self.rule = towards_one(16 + extra, 0 if tip.exponent % 1 == 0 else 6)
         usual = _UNKNOWNS[0] + _UNKNOWNS[1] * self.punches.size
         count = int(max(usual, min(usual + _UNKNOWNS_PER_ROOT * self.punches.root, _MOST)))
-        self._follow(lead, count + extra)
+        self._follow(tip.exponent, count + extra)
 
     def _height(self, x: FloatArray | float) -> FloatArray:
         return self.tip.transform(np.asarray(x, dtype=np.float64) * self.unit) / self.unit

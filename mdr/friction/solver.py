@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import brentq
 
-from bem.flat_punch import FlatPunchSource, IntegralEquation
+from bem.flat_punch import FlatPunchSource
 from bem.kernels.moduli import contact_modulus
 from bem.kernels.of_layer import stack_kernel
 from bem.numerics import EPS
@@ -30,7 +30,6 @@ from contact import (
 from contact.answer.solution import Setting
 from contact.records.validation import FloatArray
 from contact.stated import stated_error
-from mdr.equilibria import sizes_of
 from mdr.friction.adhered_punch import Adhered
 from mdr.friction.growth import Growth
 from mdr.profiles import Tip, tip_of
@@ -55,7 +54,7 @@ def solve_stick(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[str
         NotConvergedError: If the growth is not resolved.
     """
     log = StageLog()
-    extra = sizes_of(flat_punch).extra if isinstance(flat_punch, IntegralEquation) else 0
+    extra = flat_punch.sizes.extra
     kind = _Punch if isinstance(scene.indenter, FlatPunch) else _Grown
     with log.stage("stick"):
         own, coarser = kind.of(scene, extra + _MORE), kind.of(scene, extra)

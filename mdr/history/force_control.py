@@ -189,7 +189,7 @@ class March:
             np.zeros(count, dtype=np.bool_),
         )
         self.depth = np.zeros((count, degree))
-        trace = Trace(self.layout.radius)
+        touched, passed = np.zeros((count, degree), dtype=np.bool_), [np.zeros((2, 1))]
         for k, span in enumerate(np.diff(steps.time).tolist()):
             free[k] = not self.known[k] and steps.force[k + 1] <= 0
             if free[k]:
@@ -203,11 +203,12 @@ class March:
             pressed = steps.force[k + 1] > 0 or self.known[k]
             depth[k + 1] = ways[k].sum() if pressed else np.min(bed.surface + bed.g)
             self.depth[k] = np.vander(steps.nodes, degree + 1, increasing=True) @ ways[k] if pressed else depth[k + 1]
-            trace.instants.append(steps.instants[k])
-            trace.first.append(np.argmin(np.pad(touching, ((0, 0), (0, 1))), axis=1))
-            trace.times += [steps.time[k] + span * share for share, _ in bed.events]
-            trace.springs += [spring for _, spring in bed.events]
-        self.fronts = trace.fronts().reshape(count, degree)
+            touched[k] = touching.any(axis=1)
+            for share, spring in bed.events:
+                passed.append(np.stack([steps.time[k] + span * share, self.layout.radius[spring]]))
+        time, radius = np.concatenate(passed, axis=1)
+        order = np.argsort(time, kind="stable")
+        self.fronts = np.where(touched, _fronts(time[order], radius[order], steps.instants), -1.0)
         return Path(steps.time, depth, ways, free)
 
     @cached_property
@@ -265,53 +266,19 @@ class March:
         return best[1], best[2], best[3]
 
 
-@dataclass
-class Trace:
-    """Springs beside the fronts at many instants, and when springs were touched or released.
+def _fronts(time: FloatArray, radius: FloatArray, instants: FloatArray) -> FloatArray:
+    """Front [m] at instants [s], linear in time between passing springs at some radii [m], when these touch or let go.
 
-    Attributes:
-        radius: Where springs stand [m], shape (n,).
-        instants: Instants [s].
-        first: Number of the first free spring at each.
-        times: Instants of touches and releases [s].
-        springs: Numbers of the springs.
+    A front that turns passes the same spring twice, and goes on beyond it as fast as before and after.
     """
-
-    radius: FloatArray
-    instants: list[FloatArray] = field(default_factory=list)
-    first: list[NDArray[np.intp]] = field(default_factory=list)
-    times: list[FloatArray] = field(default_factory=lambda: [np.zeros(0)])
-    springs: list[NDArray[np.intp]] = field(default_factory=lambda: [np.zeros(0, dtype=np.intp)])
-
-    def fronts(self) -> FloatArray:
-        """Radii [m] at which contact ends at all instants, negative where nothing touches."""
-        instants, first = np.concatenate(self.instants), np.concatenate(self.first)
-        time, spring = np.concatenate(self.times), np.concatenate(self.springs)
-        found = [self._front(t, n, time, spring) if n else -1.0 for t, n in zip(instants, first, strict=True)]
-        return np.array(found)
-
-    def _front(self, t: float, first: int, time: FloatArray, spring: NDArray[np.intp]) -> float:
-        """Radius [m] at a time [s], interpolated in time between the springs beside the front.
-
-        Where the front turns before it passes the next spring, it is extrapolated from the last two.
-        """
-        inner, outer = first - 1, min(first, self.radius.size - 1)
-        last = [time[(spring == j) & (time <= t)].max(initial=-np.inf) for j in (inner, outer)]
-        later = [time[(spring == j) & (time > t)].min(initial=np.inf) for j in (inner, outer)]
-        recedes = last[1] > last[0]
-        passed, coming = (outer, inner) if recedes else (inner, outer)
-        before, after = max(last), later[0 if recedes else 1]
-        if not np.isfinite(before):
-            return float((self.radius[inner] + self.radius[outer]) / 2)
-        way = self.radius[coming] - self.radius[passed]
-        if after < later[1 if recedes else 0]:
-            return float(self.radius[passed] + way * (t - before) / (after - before))
-        beyond = min(max(2 * passed - coming, 0), self.radius.size - 1)
-        earlier = time[(spring == beyond) & (time < before)].max(initial=-np.inf)
-        if not (np.isfinite(earlier) and way):
-            return float(self.radius[passed] + way / 2)
-        share = (self.radius[passed] - self.radius[beyond]) / (before - earlier) * (t - before) / way
-        return float(self.radius[passed] + way * min(max(share, 0.0), 1.0))
+    apart = time[-1] + instants.max()
+    time, radius = np.concatenate([[-2 * apart, -apart], time, [apart, 2 * apart]]), np.pad(radius, 2, mode="edge")
+    i = np.clip(np.searchsorted(time, instants) - 1, 1, time.size - 3)
+    with np.errstate(all="ignore"):
+        pace = np.diff(radius) / np.diff(time)
+    turns = (pace[i] == 0) & (pace[i - 1] * pace[i + 1] < 0)
+    beyond = np.minimum(np.abs(pace[i - 1]) * (instants - time[i]), np.abs(pace[i + 1]) * (time[i + 1] - instants))
+    return np.interp(instants, time, radius) + np.where(turns, np.sign(pace[i - 1]) * np.maximum(beyond, 0.0), 0.0)
 
 
 def resting_depth(law: SpringLaw, g: FloatArray, path: Path, k: int) -> float:

@@ -48,6 +48,7 @@ class SpringTip:
     profile: Profile
     breaks: tuple[float, ...]
     density: SpringDensity
+    exponent = 2.0
     kinks = ()
 
     def transform_slope(self, t: FloatArray) -> FloatArray:

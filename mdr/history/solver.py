@@ -29,10 +29,8 @@ from contact import (
 from contact.answer.solution import Setting
 from contact.records.validation import FloatArray
 from contact.stated import stated_error
-from mdr.admissible import refuse_pulling, refuse_touching_outside
-from mdr.contact_surface import surface_of
 from mdr.dispatch import DEFAULT_ACCURACY
-from mdr.equilibria import is_simple, is_singular, springs_on
+from mdr.equilibria import is_simple, refuse_inadmissible, springs_on
 from mdr.history.force_control import March, Steps, never_larger, resting_depth, steps_of
 from mdr.history.fronts import fronts, layout, panel_ends, refuse_open_inside
 from mdr.history.inside import HistoryFields
@@ -114,7 +112,7 @@ class Problem(NamedTuple):
     def elastic_radii(self, quantity: Quantity, values: FloatArray) -> FloatArray:
         """Contact radii [m] under depths [m] or forces [N] > 0 of the elastic layer."""
         search = RadiusSearch(self.springs, may_fall=not is_simple(self.scene))
-        return search.radii(quantity, values, lambda a: self.refuse_circle(a, 0.0))
+        return search.radii(quantity, values, self.refuse_circle)
 
     def radii(self, gamma: FloatArray) -> FloatArray:
         """Contact radii [m] of fronts gamma [m], zero where gamma < 0.
@@ -151,13 +149,10 @@ class Problem(NamedTuple):
         depth[some] = self.springs.depth_of(load[some], self.springs.at(radius))
         return depth
 
-    def refuse_circle(self, radius: float, depth: float) -> None:
+    def refuse_circle(self, radius: float, depth: float = 0.0) -> None:
         """Refuse an elastic contact of a radius [m], under a flat punch at a depth [m], that is no disc."""
-        values = self.springs.at([radius])
-        own = self.springs.state(np.array([radius]), values, np.maximum(values.g, depth))
-        surface = surface_of(self.springs, radius, float(own.depth[0]), is_singular=is_singular(self.scene, radius))
-        refuse_pulling(surface, float(own.force[0]))
-        refuse_touching_outside(self.scene, surface)
+        a, values = np.array([radius]), self.springs.at([radius])
+        refuse_inadmissible(self.scene, self.springs, self.springs.state(a, values, np.maximum(values.g, depth)))
 
 
 def solve_history(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[str, Setting]) -> HistoryPath:
@@ -181,7 +176,7 @@ def solve_history(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
         else:
             steps = [steps_of(problem.law, loading, _substeps(settings), degree) for degree in _DEGREES]
             answer, other = _by_force(problem.finer, loading, steps[0]), _by_force(problem, loading, steps[1])
-        if (widest := float(answer.radius.max())) > 0 and not is_simple(scene):
+        if (widest := float(answer.radius.max())) > 0:
             problem.refuse_circle(widest, 0.0 if problem.punch is None else float(answer.path.peaks[-1]))
     errors = _errors(springs, answer, other)
     errors["indentation_depth" if isinstance(loading, DepthHistory) else "normal_force"][:] = 0.0

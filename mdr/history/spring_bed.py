@@ -111,14 +111,6 @@ class Motion:
         dashpot = law.viscosity / self.span * polynomial(bend, s) if bend.size else 0.0
         return np.asarray(elastic + dashpot - _weighted(law.weights * self.span / law.times, self.strains(s)))
 
-    def approach(self, s: FloatArray) -> FloatArray:
-        """C of free springs, at shares of the interval."""
-        return -self.depth(s)
-
-    def approach_slope(self, s: FloatArray) -> FloatArray:
-        """Slope of C of free springs, at shares of the interval."""
-        return -polynomial(self.rise, s)
-
 
 def polynomial(coefficients: FloatArray, s: FloatArray) -> FloatArray:
     """A polynomial at any shape of s."""
@@ -178,60 +170,22 @@ class Course(NamedTuple):
 def first_fall(course: Course) -> FloatArray:
     """First shares of the interval from which courses that begin at zero or above are negative, or inf, shape (n,)."""
     event = np.full(course.constant.size, np.inf)
-    s = course.start + (1 - course.start) * _shares(float(course.rates.max(initial=1.0)))[:, None]
+    fastest = max(float(course.rates.max(initial=1.0)), 1.0)
+    halves = int(np.clip(np.ceil(np.log2(fastest)) + _HALVES_MORE, 4, _MOST_HALVES))
+    shares = np.unique(np.concatenate([[0.0], 0.5 ** np.arange(halves), np.arange(1, _PARTS) / _PARTS]))
+    s = course.start + (1 - course.start) * shares[:, None]
+    # Exponentials fade, so that no value is less than all terms at their least.
     shared = course.shared(s)
     least = course.fading(s[[0, -1]]).min(axis=1).sum(axis=0) + course.constant + shared.min(axis=0)
     some = np.flatnonzero(least <= course.rounding)
-    if not some.size:
-        return event
     few = course.among(some)
-    if s.shape[1] > 1:
-        s, shared = s[:, some], shared[:, some]
-    values = few.constant + shared + few.fading(s).sum(axis=0)
-    event[some] = _first_root(few, np.broadcast_to(s, values.shape), values)
-    return event
-
-
-def _shares(fastest: float) -> FloatArray:
-    """Shares of what is left of an interval at which signs are taken: halves of one and sixteenths."""
-    halves = int(np.clip(np.ceil(np.log2(max(fastest, 1.0))) + _HALVES_MORE, 4, _MOST_HALVES))
-    return np.unique(np.concatenate([[0.0], 0.5 ** np.arange(halves), np.arange(1, _PARTS) / _PARTS]))
-
-
-def _first_root(course: Course, s: FloatArray, values: FloatArray) -> FloatArray:
-    """First roots from values at shares, each of shape (q, n); inf where there is none."""
-    falls = values < -course.rounding
-    first = np.where(falls.any(axis=0), np.argmax(falls, axis=0), len(s))
-    every = np.arange(first.size)
-    low, high = (s[np.clip(first + k, 0, len(s) - 1), every] for k in (-1, 0))
-    which, dip = _dips(values, first)
+    s = np.broadcast_to(s, (s.shape[0], event.size))[:, some]
+    falls = few.values(s) < -few.rounding
+    ends = falls.any(axis=0)
+    first, which = np.argmax(falls, axis=0)[ends], np.flatnonzero(ends)
     if which.size:
-        three = dip + np.arange(-1, 2)[:, None]
-        t, v = s[three, which], values[three, which]
-        lowest = _vertex(t, v)
-        below = course.among(which).values(lowest[None])[0] < -course.rounding[which]
-        first[which[below]], low[which[below]], high[which[below]] = 0, t[0][below], lowest[below]
-    event = np.full(first.size, np.inf)
-    some = np.flatnonzero(first < len(s))
-    if some.size:
-        event[some] = _root(course.among(some), low[some], high[some])
+        event[some[ends]] = _root(few.among(which), s[np.maximum(first - 1, 0), which], s[first, which])
     return event
-
-
-def _dips(values: FloatArray, first: NDArray[np.intp]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """Springs with a low positive minimum among samples before number `first`, and the number of the sample there."""
-    before, here, after = values[:-2], values[1:-1], values[2:]
-    dips = (here > 0) & (before + after > 4 * here) & (before > here) & (after > here)
-    dips &= np.arange(1, len(values) - 1)[:, None] < first
-    which = np.flatnonzero(dips.any(axis=0))
-    return which, 1 + np.argmax(dips[:, which], axis=0)
-
-
-def _vertex(t: FloatArray, v: FloatArray) -> FloatArray:
-    """Where parabolas through three points each are lowest, of shapes (3, n)."""
-    left, right = (v[1] - v[0]) / (t[1] - t[0]), (v[2] - v[1]) / (t[2] - t[1])
-    bend = (right - left) / (t[2] - t[0])
-    return np.asarray(np.clip((t[0] + t[1]) / 2 - left / (2 * bend), t[0], t[2]))
 
 
 def _root(course: Course, low: FloatArray, high: FloatArray) -> FloatArray:
@@ -433,7 +387,9 @@ class SpringBed:
         """Gap between surface and indenter of free springs."""
         fading = self.law.modes.amplitudes(self.surface[i], self.strains[:, i])
         rates, own = motion.span * self.law.modes.rates, self._rounding(i, motion, fading)
-        return Course(self.g[i], fading, rates, start, motion.approach, motion.approach_slope, own)
+        return Course(
+            self.g[i], fading, rates, start, lambda s: -motion.depth(s), lambda s: -polynomial(motion.rise, s), own
+        )
 
     def _rounding(self, i: NDArray[np.intp], motion: Motion, fading: FloatArray) -> FloatArray:
         """Values whose sign is rounding, shape (n,)."""

@@ -28,7 +28,7 @@ from mdr.impact.rules import interpolated, rule
 def history(blow: Blow, attempt: Attempt, log: StageLog, settings: Mapping[str, Setting]) -> ImpactHistory:
     """Samples of an attempt with one impact at its touch, the nodes of all phases, its turn and its release, in SI."""
     rows, phases = samples(attempt.course), _phases(attempt.course)
-    length, depth, stiffness = blow.units
+    length, depth, stiffness = blow.units.length, blow.units.depth, 2 * blow.units.stiffness
     force, peak_depth, radius = in_si(blow, attempt, 0)[2:].tolist()
     energy, unit = blow.speed**2 * stiffness / (2 * blow.pull), stiffness * depth**2
     log.count("nodes", sum(phase.speed.size for phase in phases))

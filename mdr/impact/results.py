@@ -15,11 +15,11 @@ from bem.numerics import EPS
 from contact import Impact, InvalidInput, NotConvergedError, Scene, UnsupportedSceneError
 from contact.records.validation import FloatArray
 from contact.stated import stated_error
-from mdr.impact.beds import Bed, Units, bed_of, ladder_of, track_of
+from mdr.impact.beds import Bed, bed_of, ladder_of, track_of
 from mdr.impact.course import Course, course
 from mdr.impact.motion import Bodies
-from mdr.impact.track import exponent_of
-from mdr.own_units import power_law
+from mdr.own_units import OwnUnits, is_power_law
+from mdr.profiles import tip_of
 from mdr.radius_search import SeveralContacts, refuse_too_wide
 
 # Share of the instantaneous modulus to which a layer is expected to relax on the way in. Softer ones may need a second
@@ -81,7 +81,7 @@ class Blow(NamedTuple):
 
     scene: Scene
     bed: Bed
-    units: Units
+    units: OwnUnits
     speed: float
     velocity: float
     pull: float
@@ -112,7 +112,7 @@ def blow_of(scene: Scene, flat_punch: FlatPunchSource) -> Blow:
     modulus = law.instantaneous_modulus
     weights, rates = np.append(law.long_term_modulus, law.moduli) / modulus, np.append(0.0, 1 / law.times)
     loading = scene.loading
-    velocity, pull = loading.velocity / units.depth, units.stiffness / loading.mass
+    velocity, pull = loading.velocity / units.depth, 2 * units.stiffness / loading.mass
     return Blow(scene, bed, units, loading.velocity, velocity, pull, weights, rates, law.viscosity / modulus)
 
 
@@ -177,7 +177,7 @@ def time_power(blow: Blow, sizes: Sizes) -> int:
     With p a multiple of the tip's exponent the radius is a power of s; 5 is smooth enough for any other exponent. Where
     p = 1 would do, 2 resolves branches that relax at once, and tips whose shape changes near their end.
     """
-    n, law = exponent_of(blow.bed.indenter), power_law(blow.bed.indenter)
+    n, law = tip_of(blow.bed.indenter).exponent, is_power_law(blow.bed.indenter)
     is_fast = bool((blow.rates * _guess(blow, sizes)[0] > _FAST).any())
     if n == 1 and law and not is_fast:
         return 1
@@ -198,8 +198,8 @@ def _guess(blow: Blow, sizes: Sizes) -> tuple[float, float]:
 
 def in_si(blow: Blow, attempt: Attempt, place: int) -> FloatArray:
     """Five outcomes of an impact of an attempt in SI units."""
-    length, depth, stiffness = blow.units
-    found = attempt.values[:, place] * [1.0, 1.0, stiffness * depth, depth, length]
+    units = blow.units
+    found = attempt.values[:, place] * [1.0, 1.0, 2 * units.stiffness * units.depth, units.depth, units.length]
     # Rounded as the quotient of two speeds [m/s], which it is in a history.
     found[0] = found[0] * blow.speed / blow.speed
     return np.asarray(found)
@@ -296,8 +296,8 @@ def _next_level(blow: Blow, sizes: Sizes, level: int) -> int:
     fall = track_of(blow.bed, sizes, _excess(blow, sizes, level)).fall
     if fall is not None:
         raise SeveralContacts(fall * blow.units.length)
-    if level + 1 < ladder.excess.size or not ladder.is_whole:
-        ladder.extend(level + 1)
+    if level + 1 == ladder.excess.size:
+        ladder.extend()
     if level + 1 < ladder.excess.size:
         return level + 1
     indenter = blow.scene.indenter

@@ -11,14 +11,12 @@ from typing import TypeAlias
 
 import numpy as np
 
-from bem.equation import USUAL, Sizes
-from bem.flat_punch import FlatPunchSource, IntegralEquation
+from bem.equation import Sizes
+from bem.flat_punch import FlatPunchSource
 from contact import FlatPunch, ImpactHistory, InvalidInput, Scene, StageLog
 from contact.answer.small_strains import refuse_deep
 from contact.answer.solution import Setting
-from mdr.admissible import refuse_pulling, refuse_touching_outside
-from mdr.contact_surface import surface_of
-from mdr.equilibria import is_simple, is_singular, sizes_of, springs_on
+from mdr.equilibria import is_simple, refuse_inadmissible, springs_on
 from mdr.impact.history import history
 from mdr.impact.results import OUTCOMES, Blow, ImpactResults, blow_of, in_si, solved, time_power
 from mdr.radius_search import RadiusSearch
@@ -49,7 +47,7 @@ def solve_impact(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[st
     log, known = StageLog(), {"accuracy": _DEFAULT_ACCURACY, **settings}
     accuracy = _checked(float(known["accuracy"] or _DEFAULT_ACCURACY))
     with log.stage("equivalent_system"):
-        blow, sizes = blow_of(scene, flat_punch), _sizes(flat_punch)
+        blow, sizes = blow_of(scene, flat_punch), flat_punch.sizes
     with log.stage("impact"):
         attempt, _ = solved([blow], sizes, accuracy)[0]
     _refuse_inadmissible(scene, flat_punch, in_si(blow, attempt, 0)[4])
@@ -74,7 +72,7 @@ def impact_batch(
     Returns:
         Arrays in the order of the scenes. Each entry is what the scene alone would give, to the last digit.
     """
-    sizes, accuracy = _sizes(flat_punch), _checked(accuracy)
+    sizes, accuracy = flat_punch.sizes, _checked(accuracy)
     blows = [blow_of(scene, flat_punch) for scene in scenes]
     values, errors, done = np.empty((5, len(blows))), np.empty((5, len(blows))), 0
     kinds = [_kind(blow, sizes) for blow in blows]
@@ -104,10 +102,6 @@ def _checked(accuracy: float) -> float:
     return accuracy
 
 
-def _sizes(flat_punch: FlatPunchSource) -> Sizes:
-    return sizes_of(flat_punch) if isinstance(flat_punch, IntegralEquation) else USUAL
-
-
 def _kind(blow: Blow, sizes: Sizes) -> tuple[bool, int, int, bool]:
     """What impacts that are solved together have in common."""
     return isinstance(blow.bed.indenter, FlatPunch), time_power(blow, sizes), blow.rates.size, blow.viscosity == 0
@@ -126,13 +120,5 @@ def _refuse_inadmissible(scene: Scene, flat_punch: FlatPunchSource, radius: floa
     springs = springs_on(scene.layer, indenter, flat_punch)
     if not is_punch:
         RadiusSearch(springs, may_fall=True).refuse_falls(radius)
-    shares = np.arange(_CONTACTS, 0, -1) / _CONTACTS
-    for share in shares[:1] if is_punch or scene.layer.is_uniform else shares:
-        a = radius if is_punch else flat + share * (radius - flat)
-        depth, K, M = (float(one[0]) for one in springs.at([a])[1:])
-        depth = radius if is_punch else depth
-        surface = surface_of(springs, a, depth, is_singular=is_singular(scene, a))
-        if share == 1:
-            refuse_touching_outside(scene, surface)
-        if not scene.layer.is_uniform:
-            refuse_pulling(surface, 2 * springs.modulus * (depth * K - M))
+    radii = np.array([radius]) if is_punch else flat + np.arange(1, _CONTACTS + 1) / _CONTACTS * (radius - flat)
+    refuse_inadmissible(scene, springs, springs.state(radii, springs.at(radii), radii if is_punch else None))

@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial import legendre
 
-from contact import FlatPunch, PowerLaw, Profile
+from contact import FlatPunch
 from contact.records.validation import FloatArray
 from mdr.spring_bed import Springs
 
@@ -128,7 +128,7 @@ def _piece(
     if not panels:
         return None, stiffness, fall
     depth, K, a = (one[: panels * count] for one in (values.g, values.K, radius))
-    power = exponent_of(springs.tip.profile) if is_tip else 2.0
+    power = springs.tip.exponent if is_tip else 2.0
     z, rows = (depth - start) ** (1 / power), np.stack([K, a])
     if is_tip:
         rows = rows / z
@@ -162,14 +162,3 @@ def _series(place: FloatArray, rows: FloatArray, ends: FloatArray) -> FloatArray
     basis = legendre.legvander((place - ends[0]) / half - 1, place.size - 1)
     fit = np.linalg.solve(basis, rows.T)
     return np.column_stack([fit, np.append(legendre.legder(fit[:, 0]), 0.0) / half])
-
-
-def exponent_of(profile: Profile) -> float:
-    """n of a tip that starts like r^n; 1 of a flat end."""
-    if isinstance(profile, PowerLaw):
-        return profile.exponent
-    if profile.flat_radius:
-        return 1.0
-    r = np.array([1e-6 * min([*profile.breakpoints[:1], profile.max_radius, 1.0])])
-    n = float((r * profile.slope_at(r) / profile.height(r))[0])
-    return float(round(n)) if abs(n - round(n)) < 1e-3 else n

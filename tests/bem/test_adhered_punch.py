@@ -108,9 +108,16 @@ def test_values_of_another_program(example):
     assert 2.0 * ratio * k0 - moved == pytest.approx(2.0 * punch.stiffness, rel=1e-7, abs=0)
 
 
-@pytest.mark.parametrize("nu", [0.0, 0.3, 0.45, 0.4999, 0.5])
-@pytest.mark.parametrize("support", ["bonded", "unbonded"])
-@pytest.mark.parametrize("ratio", [0.02, 0.5, 5.0, 50.0])
+@pytest.mark.parametrize(
+    ("nu", "support", "ratio"),
+    [
+        (0.0, "bonded", 0.02),
+        (0.3, "unbonded", 0.5),
+        (0.4999, "bonded", 5.0),
+        (0.5, "bonded", 50.0),
+        (0.5, "unbonded", 50.0),
+    ],
+)
 def test_the_surface_below_neither_sinks_unevenly_nor_slides(nu, support, ratio, monkeypatch):
     """Then what the surface beside the punch leaves of its depth goes on analytically from the density below it."""
     punch = Adhered(StackKernel.single(support, nu), ratio, far=1.01)

@@ -44,7 +44,7 @@ def with_noise(force, share=0.01, seed=0):
     return force + np.random.default_rng(seed).normal(0, share * np.ptp(force), force.size)
 
 
-@pytest.mark.parametrize("part", [0.5, 0.1, 0.05, 0.03, 0.01, 0.003])
+@pytest.mark.parametrize("part", [0.5, 0.03, 0.003])
 def test_a_long_baseline_changes_no_modulus_and_no_formula(part):
     depth = np.linspace(0.5e-6 * (1 - 1 / part), 0.5e-6, 2000)
     force = with_noise(hertz(depth))
@@ -70,7 +70,7 @@ def film(modulus, base=1e9):
     return Scene(layer=stack, indenter=TIP, loading=IndentationDepths([3e-7]))
 
 
-@pytest.mark.parametrize("guess", [1e9, 2e9, 8e9])
+@pytest.mark.parametrize("guess", [pytest.param(1e9, marks=pytest.mark.slow), 8e9])
 def test_the_modulus_of_a_film_does_not_follow_its_guess(guess):
     path = Mdr().solve(film(2e9).replace(loading=IndentationDepths(np.linspace(5e-9, 3e-7, 60))))
     names = ("layer[0].youngs_modulus", "contact_point", "baseline", "tilt")
@@ -117,7 +117,7 @@ def test_curves_of_a_map_keep_their_own_points():
 
 
 @pytest.mark.filterwarnings("error")
-@pytest.mark.parametrize("seed", range(10))
+@pytest.mark.parametrize("seed", range(3))
 @pytest.mark.parametrize("effects", [(), (Adhesion(work_of_adhesion=1e-4),)], ids=["elastic", "adhesive"])
 def test_noise_and_drift_show_no_contact(seed, effects):
     draw = np.random.default_rng(seed)
@@ -206,7 +206,7 @@ def johnson_kendall_roberts(modulus, work, radius, depth):
     return np.interp(depth, depths[stable], forces[stable], left=0.0)
 
 
-@pytest.mark.parametrize("deep", [0.1, 0.5, 2.0, 20.0, 500.0])
+@pytest.mark.parametrize("deep", [0.1, 2.0, 500.0])
 @pytest.mark.parametrize("scatter", [0.0, 1e-2])
 def test_curves_of_withdrawal_give_modulus_and_work_however_strong_the_adhesion(deep, scatter):
     """The depth is in units of the adhesive length (w^2 R/E*^2)^(1/3)."""
@@ -325,8 +325,7 @@ def modulus_in(text):
     return 1e3 * float(line.split()[2].partition("(")[0])
 
 
-@pytest.mark.parametrize("name", FILES)
-@pytest.mark.parametrize("encoding", ["utf-8", "utf-16"])
+@pytest.mark.parametrize(("name", "encoding"), [*((name, "utf-8") for name in FILES), ("underscore", "utf-16")])
 def test_tables_as_people_write_them_give_the_modulus(tmp_path, scene_file, capsys, name, encoding):
     file = tmp_path / "curve.csv"
     file.write_text("\n".join(FILES[name]), encoding=encoding)

@@ -56,8 +56,15 @@ def in_sublayers(layer, count):
     return StackKernel(tuple(Sheet(1.0, float(G), float(n), slip) for G, n, slip in rows), base), shear
 
 
-@pytest.mark.parametrize("support", SUPPORTS, ids=["bonded", "unbonded", "elastic"])
-@pytest.mark.parametrize("nu", [0.3, 0.5, TabulatedDepth(depths=[0.0, 0.5, 1.0], values=[0.2, 0.3, 0.45])])
+@pytest.mark.parametrize(
+    ("nu", "support"),
+    [
+        (0.5, "bonded"),
+        (0.3, "unbonded"),
+        (TabulatedDepth(depths=[0.0, 0.5, 1.0], values=[0.2, 0.3, 0.45]), FOUNDATION),
+    ],
+    ids=["bonded", "unbonded", "elastic"],
+)
 def test_stacks_of_more_and_more_sublayers_come_to_the_same_waves(nu, support):
     """Second order: every doubling of the sublayers leaves a quarter of the distance."""
     layer = graded(nu, support).in_own_units()
@@ -80,7 +87,7 @@ def test_stacks_of_more_and_more_sublayers_come_to_the_same_waves(nu, support):
 @pytest.mark.parametrize(
     ("support", "indenter"),
     [
-        ("bonded", ROUND),
+        pytest.param("bonded", ROUND, marks=pytest.mark.slow),
         pytest.param("unbonded", ROUND, marks=pytest.mark.slow),
         pytest.param(FOUNDATION, ROUND, marks=pytest.mark.slow),
         pytest.param("bonded", FlatPunch(radius=0.7), marks=pytest.mark.slow),
@@ -202,6 +209,7 @@ def test_more_waves_change_nothing_beyond_what_is_stated(indenter, radius, monke
         assert apart(found, finer, names, scale) <= found.error_estimate[kind], kind
 
 
+@pytest.mark.slow
 def test_hardly_any_grading_is_the_uniform_layer():
     nearly = graded(modulus=ExponentialDepth(surface=1.0, base=1.0 + 1e-9))
     plain = Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.3, support="bonded")

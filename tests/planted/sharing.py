@@ -332,7 +332,7 @@ FAULTS = (
             what,
             wrong_reduction(**change),
             ("pair",),
-            ("cases.library.elastic.coated_pair",),
+            ("cases.library.coated_pair",),
         )
         for what, change in (
             ("curvature, Eq. (23)", {"indenter": "radius_of_curvature"}),

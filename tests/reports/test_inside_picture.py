@@ -3,15 +3,7 @@
 import numpy as np
 import pytest
 
-from contact import (
-    Adhesion,
-    ContactRadii,
-    Layer,
-    LayerStack,
-    Paraboloid,
-    Scene,
-    Sublayer,
-)
+from contact import Adhesion, ContactRadii, Layer, LayerStack, Paraboloid, Scene, Sublayer
 from mdr import Mdr
 from reports.inside import draw_inside
 

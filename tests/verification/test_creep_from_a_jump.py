@@ -115,7 +115,9 @@ def test_released_after_a_first_jump_the_depth_is_that_of_a_fast_ramp():
     assert np.all(np.abs(jump.indentation_depth[1:] - fast.indentation_depth[2:]) <= stated + 1e-7 * DEPTH)
 
 
-@pytest.mark.parametrize("cycles", [0, 16], ids=["a straight line", "a sine of many segments"])
+@pytest.mark.parametrize(
+    "cycles", [0, pytest.param(16, marks=pytest.mark.slow)], ids=["a straight line", "a sine of many segments"]
+)
 def test_kelvin_voigt_under_many_depths_that_begin_above_zero(cycles):
     if cycles:
         time = np.linspace(0.0, 1.0, 128 * 20 + 1)

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from cases.convergence import behaviour_of_errors
-from cases.library._code_verification import finite_elements
-from cases.library._code_verification.finite_elements import (
+from cases.library import _finite_elements as finite_elements
+from cases.library._finite_elements import (
     MIXED,
     finite_element_case,
     inf_sup_claims,

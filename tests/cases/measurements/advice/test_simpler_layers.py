@@ -5,13 +5,7 @@ import pytest
 
 from cases.declare.methods import build
 from cases.measurements.advice.advise import advise
-from cases.measurements.advice.simpler_layers import (
-    ELASTIC_BASE,
-    GRADING,
-    THICKNESS,
-    layer_parts,
-    simpler,
-)
+from cases.measurements.advice.simpler_layers import ELASTIC_BASE, GRADING, THICKNESS, layer_parts, simpler
 from contact import (
     ElasticBase,
     ExponentialDepth,

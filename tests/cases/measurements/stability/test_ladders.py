@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from cases.measurements.ladders import ladders
-from cases.measurements.ladders.invariants import LAWS, invariant_residuals
+from cases.measurements.ladders.invariants import invariant_residuals
 from cases.measurements.ladders.ladder_study import breakdown, climbs, ladder_case, no_silent_failure, worse_than
 from cases.measurements.ladders.ladder_table import LADDERS, contact_ratio, damped_punch, truncated
 from cases.measurements.ladders.ladders import LadderPlan, climb
-from cases.measurements.ladders.repeats import DOUBLE_DIGITS, digits_of, nudged, relative_spread, repeated
+from cases.measurements.ladders.repeats import nudged, repeated
 from cases.studies import Step, StressTest
 from cases.verdicts import Status
 from contact import InvalidInput, NotConvergedError, Supported
@@ -55,16 +55,6 @@ def broken(path):
 
 def crashing(path):
     raise ZeroDivisionError("planted")
-
-
-def digits_of_values(values):
-    return digits_of(relative_spread(values))
-
-
-def test_digits_of_values_that_differ_in_the_ninth_place():
-    assert digits_of_values([1.0, 1.0 + 1e-9, 1.0]) == pytest.approx(9.0, abs=0.01)
-    assert digits_of_values([2.5, 2.5]) == DOUBLE_DIGITS
-    assert digits_of_values([1.0, -1.0, 3.0]) == 0.0
 
 
 def test_a_nudge_moves_numbers_by_one_unit_in_the_last_place_and_nothing_else():
@@ -163,18 +153,6 @@ def test_a_silent_failure_fails_its_claim():
     claim = no_silent_failure(climb(PLAN, Faulty(wrong), "faulty"))
     assert (claim.status, claim.error) == (Status.FAIL, 2.0)
     assert "more than both state" in claim.message
-
-
-def test_every_ladder_starts_with_a_scene_that_the_fast_method_supports():
-    assert len({plan.name for plan in LADDERS}) == len(LADDERS)
-    for plan in LADDERS:
-        assert Mdr().supports(plan.scene(plan.values[0])), plan.name
-
-
-@pytest.mark.parametrize("law", ["twice the modulus", "unbonded does not see nu", "no tension"])
-def test_laws_hold_for_the_fast_method(law):
-    answer = Mdr().solve(contact_ratio(1.0, nu=0.3, support="unbonded"))
-    assert LAWS[law](Mdr(), answer) < 1e-12
 
 
 def test_a_modulus_in_the_wrong_place_breaks_a_law():
