@@ -23,7 +23,6 @@ from mdr.curves.contact_point import (
     Data,
     Fitted,
     least_squares,
-    modulus_and_residual,
     rough_indentation,
     trial_indentations,
 )
@@ -170,7 +169,7 @@ def _check_inside(family: Solved, u: float, value: float) -> None:
 def _stated(scene: Scene, data: Data, fitted: Fitted, confidence: float) -> CurveFit:
     """Covariance, intervals, band and warnings of the values of least squares."""
     family, u = fitted.family, fitted.u
-    modulus, _ = modulus_and_residual(data, family, fitted.indentation, u)
+    modulus = fitted.modulus
     point = data.deepest - fitted.indentation
     pressed = family.attached if isinstance(family, Adhering) else data.depth > point
     contact_names = [name for name in data.names if name not in ("baseline", "tilt")]
@@ -302,6 +301,5 @@ def _by_formulas(scene: Scene, data: Data, own: float) -> tuple[FormulaFit, ...]
     found, rough = [], rough_indentation(data)
     for formula in formulas_for(scene):
         best = _search(data, Family(formula), rough, math.inf)
-        modulus, _ = modulus_and_residual(data, best.family, best.indentation, best.u)
-        found.append(FormulaFit(formula=formula, youngs_modulus=modulus, bias=modulus / own - 1.0))
+        found.append(FormulaFit(formula=formula, youngs_modulus=best.modulus, bias=best.modulus / own - 1.0))
     return tuple(found)
