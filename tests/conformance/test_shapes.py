@@ -4,7 +4,6 @@ import dataclasses
 
 import numpy as np
 import pytest
-from cases.referees.calculix.method import CalculiX
 
 from bem import Bem
 from bem.direct_method import IntegralEquationMethod
