@@ -104,7 +104,7 @@ def steps_of(law: SpringLaw, loading: ForceHistory, substeps: int, degree: int) 
             way = ends_at_zero if force[k] > 0 else np.ones(1)
         time.append(np.append(ends[k] + durations[k] * way[:-1], ends[k + 1]))
     every = np.concatenate(time)
-    nodes: FloatArray = (1 - np.cos(np.pi * np.arange(1, degree + 1) / degree)) / 2
+    nodes = (1 - np.cos(np.pi * np.arange(1, degree + 1) / degree)) / 2
     instants = every[:-1, None] + np.diff(every)[:, None] * nodes
     all_instants = np.append(every[0], instants)
     found = law.elastic_force(all_instants, np.interp(all_instants, loading.time, loading.force))
@@ -116,7 +116,7 @@ def steps_of(law: SpringLaw, loading: ForceHistory, substeps: int, degree: int) 
         instants=instants,
         load=found[1:].reshape(-1, degree),
         start=float(found[0]),
-        from_rises=np.linalg.inv(np.vander(nodes, degree + 1, increasing=True)[:, 1:]),
+        from_rises=np.asarray(np.linalg.inv(np.vander(nodes, degree + 1, increasing=True)[:, 1:])),
     )
 
 
