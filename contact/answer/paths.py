@@ -30,6 +30,9 @@ from contact.records.validation import FloatArray
 from contact.scene.effects import Adhesion
 from contact.scene.shapes import Shape
 
+# Quantities whose magnitude is that of another one.
+_SCALED_BY = {"surface_displacement": "indentation_depth", "stick_radius": "contact_radius"}
+
 
 class Fields(Protocol):
     """Surface fields of one equilibrium."""
@@ -51,19 +54,11 @@ class ShapedFields(Protocol):
         """p(r, phi) [Pa], zero outside the contact."""
 
 
-class InstantInterior(InteriorFields, Protocol):
-    """Fields inside at one instant of a history."""
-
-    @property
-    def singular_edge(self) -> bool:
-        """Whether the pressure is infinite at the edge of contact."""
-
-
 class InstantFields(Protocol):
     """Fields of a method at the instants of a history."""
 
-    def inside(self, step: int) -> InstantInterior:
-        """At one of them, at which something touches."""
+    def inside(self, step: int) -> InteriorFields:
+        """At one of them, at which something touches; `singular_edge` says whether the pressure is infinite there."""
 
 
 @dataclass(frozen=True)
@@ -141,16 +136,18 @@ class ContactPath(Solution):
     def scale(self, quantity: str) -> FloatArray:
         """The quantity's own magnitude; with adhesion, where it may cross zero, its largest along the path.
 
-        That of the pressure is the mean pressure F/(pi a^2) under the contact, with adhesion at least that of a flat
-        punch at the same depth; that of the surface's displacement is the depth.
+        That of pressure and traction is the mean pressure F/(pi a^2) under the contact, with adhesion at least that of
+        a flat punch at the same depth; that of the surface's displacement the depth, of the radius of stick the contact
+        radius, of heat the product of force and depth.
         """
-        if quantity == "pressure":
+        quantity = {"surface_displacement": "indentation_depth", "stick_radius": "contact_radius"}.get(
+            quantity, quantity
+        )
+        if quantity in ("pressure", "tangential_traction"):
             return self._mean_pressure()
-        if quantity == "surface_displacement":
-            return self.scale("indentation_depth")
-        if self._adheres or not hasattr(self, quantity):
-            return super().scale(quantity)
-        return self._magnitude(quantity)
+        if quantity == "dissipated_energy":
+            return np.abs(self.normal_force * self.indentation_depth)
+        return super().scale(quantity) if self._adheres or not hasattr(self, quantity) else self._magnitude(quantity)
 
     def _mean_pressure(self) -> FloatArray:
         force, area = np.abs(self.normal_force), np.pi * self.contact_radius**2
@@ -252,14 +249,6 @@ class FrictionPath(ContactPath):
 
     stick_radius: Annotated[FloatArray, Quantity("c", "m")]
     dissipated_energy: Dissipation
-
-    def scale(self, quantity: str) -> FloatArray:
-        """The quantity's own magnitude; the contact radius for that of the stick, work for heat, p's for tractions."""
-        if quantity == "dissipated_energy":
-            return np.abs(self.normal_force * self.indentation_depth)
-        if quantity in ("pressure", "tangential_traction"):
-            return np.asarray(np.abs(self.normal_force) / (np.pi * self.contact_radius**2))
-        return self._magnitude("contact_radius" if quantity == "stick_radius" else quantity)
 
     def tangential_traction(self, radius: ArrayLike, step: int = 0) -> FloatArray:
         """Traction q(r) [Pa] of one step at radii [m], positive where it pushes the layer outward, zero outside."""
@@ -388,7 +377,7 @@ class HistoryPath(Solution):
         if radius <= 0.0:
             raise InvalidInput(f"step = {step}: nothing touches at t = {instant:g} s; ask for an instant of contact")
         fields = self.fields.inside(step % len(self))
-        singular = fields.singular_edge
+        singular = getattr(fields, "singular_edge", False)
         return Inside(fields=fields, scene=self.scene, contact_radius=radius, singular_edge=singular)
 
 
