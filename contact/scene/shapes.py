@@ -258,7 +258,7 @@ class Harmonic(Record):
     """
 
     order: Annotated[int, Field(ge=2, le=LARGEST_ORDER)]
-    share: Annotated[float, *number("give the factor of the term", low=-math.inf)] = 1.0
+    share: Annotated[float, *number("give the factor of the term", low=-math.inf)]
     profile: Annotated[Profile, OneOf(*PROFILES)] | None = None
 
 
@@ -267,7 +267,9 @@ def _terms(given: Any) -> Any:
     if not isinstance(given, Mapping):
         return tuple(given) if isinstance(given, list) else given
     return tuple(
-        Harmonic(order=order, **{"profile" if isinstance(term, Profile) else "share": term})
+        Harmonic(order=order, share=1.0, profile=term)
+        if isinstance(term, Profile)
+        else Harmonic(order=order, share=term)
         for order, term in given.items()
     )
 
@@ -333,18 +335,22 @@ class PolygonalPunch(Flat):
     Attributes:
         sides: Number of sides, 3 to 12.
         inscribed_radius: Distance [m] of the sides from the axis: half the side of a square.
-        corner_radius: Radius [m] of the corners; zero for sharp ones, `inscribed_radius` for a circle.
+        corner_radius: Radius [m] of the corners, at most `inscribed_radius`; none for sharp ones.
     """
 
     inscribed_radius: PositiveLength
     sides: Annotated[int, Field(ge=3, le=12)] = 4
-    corner_radius: Annotated[float, *number("give the radius of the corners in metres", "m")] = 0.0
+    corner_radius: PositiveLength | None = None
 
     @model_validator(mode="after")
     def _check(self) -> PolygonalPunch:
-        if self.corner_radius > self.inscribed_radius:
-            raise ValueError(f"corner_radius = {self.corner_radius:g}: must be at most inscribed_radius")
+        if self._rounding > self.inscribed_radius:
+            raise ValueError(f"corner_radius = {self._rounding:g}: must be at most inscribed_radius")
         return self
+
+    @property
+    def _rounding(self) -> float:
+        return self.corner_radius or 0.0
 
     @property
     def symmetry(self) -> int:
@@ -354,15 +360,15 @@ class PolygonalPunch(Flat):
     @property
     def corners(self) -> tuple[float, ...]:
         """Where a side ends [rad]."""
-        straight = (self.inscribed_radius - self.corner_radius) * math.tan(math.pi / self.sides)
+        straight = (self.inscribed_radius - self._rounding) * math.tan(math.pi / self.sides)
         end = math.atan2(straight, self.inscribed_radius)
-        return (end,) if 0.0 < self.corner_radius < self.inscribed_radius else ()
+        return (end,) if 0.0 < self._rounding < self.inscribed_radius else ()
 
     def outline(self, angle: ArrayLike) -> FloatArray:
         """a(phi) [m]: a side, or the circle about the centre of a corner."""
         half = math.pi / self.sides
         phi = np.abs(np.asarray(angle) - 2.0 * half * np.round(np.asarray(angle) / (2.0 * half)))
-        centre, c = (self.inscribed_radius - self.corner_radius) / math.cos(half), self.corner_radius
+        centre, c = (self.inscribed_radius - self._rounding) / math.cos(half), self._rounding
         sine = centre * np.sin(half - phi)
         round_part = centre * np.cos(half - phi) + np.sqrt(np.maximum((c - sine) * (c + sine), 0.0))
         end = math.atan2((self.inscribed_radius - c) * math.tan(half), self.inscribed_radius)

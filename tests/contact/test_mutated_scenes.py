@@ -90,7 +90,7 @@ def in_base_units(place, value):
         return value
     try:
         return UNITS.Quantity(value).to_base_units().magnitude
-    except pint.PintError:
+    except (pint.PintError, ValueError):  # an empty text is no quantity
         return None
 
 

@@ -281,7 +281,7 @@ def random_scene(draw):
         Harmonics(profile=power, terms={n: term}),
         Pyramid(slope=0.1, tip_radius=float(a * draw.uniform(0.3, 4.0)) if draw.random() < 0.5 else None),
         PolygonalPunch(
-            inscribed_radius=a, sides=int(draw.integers(4, 8)), corner_radius=float(a * draw.uniform(0.0, 0.5))
+            inscribed_radius=a, sides=int(draw.integers(4, 8)), corner_radius=float(a * draw.uniform(0.01, 0.5))
         ),
         EllipticPunch(first_half_axis=a, second_half_axis=a * (1.0 + 2 * eps)),
     ][draw.integers(6)]
