@@ -372,6 +372,8 @@ def _friction(scene: Scene, answer: Solution) -> Number | None:
     path = Mdr().solve(scene.replace(loading=IndentationDepths([_largest(answer, "indentation_depth")])))
     effect = friction_effect(path, _TYPICAL_FRICTION)
     low, high = float(effect.lower[0]), float(effect.upper[0])
+    if high == 0.0:  # no point of an incompressible half-space moves in the radial direction
+        return None
     order = f", to first order by {100 * effect.first_order[0]:+.2g} %" if effect.one_direction[0] else ""
     # The bound at a coefficient mu is mu U/(1 - mu U).
     slip = high / (1 + high) / _TYPICAL_FRICTION if math.isfinite(high) else 1 / _TYPICAL_FRICTION

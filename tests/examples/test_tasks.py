@@ -10,7 +10,7 @@ import jsonschema
 import numpy as np
 import pytest
 
-from contact import ContactPath, Friction, load_scene
+from contact import ContactPath, Friction, Shape, load_scene
 from contact.files.scene_file import scene_schema
 from mdr import Mdr
 from reports.command_line import run
@@ -56,7 +56,8 @@ def test_a_scene_is_solved_with_small_stated_errors(name, folder):
     # The quiet scenes are solved as they come; a weight that is put on costs seconds at the usual accuracy.
     answer = Mdr(accuracy=1e-4 if name == "creep.toml" else 1e-9).solve(scene)
     error = answer.error_estimate["normal_force"] if "normal_force" in answer.error_estimate else np.zeros(1)
-    assert np.max(error) < 1e-3
+    # An expansion to second order states its third.
+    assert np.max(error) < (0.03 if isinstance(scene.indenter, Shape) else 1e-3)
     if isinstance(answer, ContactPath) and scene.effect(Friction) is None:
         assert np.all(np.diff(answer.normal_force) > 0.0)
 

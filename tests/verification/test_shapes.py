@@ -112,6 +112,13 @@ def test_a_square_punch_has_the_capacity_of_a_square(method):
     assert abs(path.contact_stiffness[0] - 2.304606) < path.uncertainty("contact_stiffness")[0]
 
 
+@pytest.mark.parametrize("nu", [0.3, 0.5])
+def test_a_square_punch_on_a_layer_is_that_of_cells(nu):
+    punch = PolygonalPunch(inscribed_radius=1.0)
+    mdr, bem = (solved(method, layer(1.0, nu), punch).contact_stiffness[0] for method in (MDR, Bem(points=256)))
+    assert mdr == pytest.approx(bem, rel=3e-3, abs=0.0)
+
+
 def test_a_triangular_punch_is_no_slight_deviation_for_mdr_and_has_its_capacity_on_cells():
     """k_N = pi E* C with the capacity C = 0.251 of an equilateral triangle of side 1."""
     punch = PolygonalPunch(sides=3, inscribed_radius=1.0 / (2.0 * np.sqrt(3.0)))
@@ -239,6 +246,13 @@ def test_advice_on_a_pyramid_is_that_on_its_cone():
     assert any("Friction with mu = 0.1" in line for line in validity_lines(path.scene, path))
 
 
+def test_friction_changes_nothing_on_an_incompressible_half_space():
+    """Once a division by zero: no point of its surface moves in the radial direction."""
+    body = Layer.half_space(youngs_modulus=1.0, poissons_ratio=0.5)
+    path = solved(MDR, body, Paraboloid(radius_of_curvature=1.0))
+    assert not any("Friction" in line for line in validity_lines(path.scene, path))
+
+
 def random_scene(draw):
     """A shape that mdr may answer, on any layer it models."""
     nu, h, a = float(draw.choice([0.0, 0.3, 0.45, 0.5])), 1.0, float(draw.uniform(0.1, 3.0))
@@ -298,10 +312,14 @@ def test_stated_errors_cover_forty_random_scenes(seed):
     assert min(*covered.values(), pressures) >= 0.95 * total, (covered, pressures)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("nu", [0.3, 0.5])
-@pytest.mark.parametrize("ratio", [0.0, 0.3, 1.0, 3.0])
-@pytest.mark.parametrize("order", [2, 3, 4])
+@pytest.mark.parametrize(
+    ("order", "ratio", "nu"),
+    [
+        pytest.param(n, ratio, nu, marks=() if (n, ratio, nu) == (2, 1.0, 0.5) else pytest.mark.slow)
+        for n in (2, 3, 4)
+        for ratio, nu in ((0.0, 0.3), (0.3, 0.3), (0.3, 0.5), (1.0, 0.3), (1.0, 0.5), (3.0, 0.3), (3.0, 0.5))
+    ],
+)
 def test_the_second_order_of_the_force_is_that_of_cells(order, ratio, nu):
     """(F/F_circle - 1)/eps^2, extrapolated to eps = 0, within 0.5 % of a ratio of forces on the same cells."""
     body = layer(ratio, nu) if ratio else Layer.half_space(youngs_modulus=1.0, poissons_ratio=nu)
@@ -313,7 +331,7 @@ def test_the_second_order_of_the_force_is_that_of_cells(order, ratio, nu):
     )
     coefficients = []
     for method, sizes in ((MDR, (0.02,)), (Bem(points=256 if order % 2 == 0 else 192), (0.1, 0.2))):
-        round_ = solved(MDR, body, mean, IndentationDepths([depth])).normal_force[0]
+        round_ = solved(method, body, mean, IndentationDepths([depth])).normal_force[0]
         found = [
             solved(method, body, Harmonics(profile=mean, terms={order: eps}), IndentationDepths([depth]))
             for eps in sizes
