@@ -4,10 +4,10 @@ import dataclasses
 
 import numpy as np
 import pytest
-from cases.referees.calculix.method import CalculiX
 
 from bem import Bem
 from bem.direct_method import IntegralEquationMethod
+from cases.referees.calculix import CalculiX
 from cases.referees.contact_mechanics import ContactMechanics
 from cases.referees.tamaas import Tamaas
 from contact import (
