@@ -138,9 +138,3 @@ def test_several_mistakes_are_named_at_once(tmp_path):
     message = message_of(tmp_path, text)
     for mistake in several:
         assert MISTAKES[mistake][2] in message
-
-
-def test_a_single_value_stands_for_a_list(tmp_path):
-    file = tmp_path / "scene.toml"
-    file.write_text(GOOD.replace(VALUES, 'values = "100 nm"'))
-    assert load_scene(file).loading.values.tolist() == [1e-7]

@@ -149,6 +149,16 @@ def test_residuals_that_are_not_noise_widen_the_interval_and_warn():
     assert low <= 5e3 <= high
 
 
+def test_a_bent_background_that_no_baseline_shows_is_warned_of():
+    """A square of the depth is nearly the curve itself where all points are in contact."""
+    depth = np.linspace(0, 5e-7, 400)
+    bend = 0.05 * hertz(depth).max() * (depth / 5e-7) ** 2
+    found = fit_curve(HALF_SPACE, depth, with_noise(hertz(depth) + bend, 1e-3))
+    half = np.diff(found.interval("youngs_modulus"))[0] / 2
+    assert abs(found.youngs_modulus - 5e3) > 3 * half
+    assert any("the baseline is too short" in line for line in found.warnings)
+
+
 @pytest.mark.parametrize(
     ("limit", "deepest"),
     [(Limit("depth", 3e-7), 3e-7), (Limit("force", hertz(2e-7)), 2e-7), (Limit("fraction", 0.5), 3.15e-7)],
