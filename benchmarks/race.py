@@ -23,7 +23,7 @@ from pathlib import Path
 
 import numpy as np
 
-from cases.gate.write_permission import SOURCE, git
+from cases.gate.accept import SOURCE, git
 from cases.run.timing import SAMPLES
 from cases.verdicts import ExitCode, Status
 from contact import InvalidInput
@@ -113,6 +113,16 @@ scene = scene.replace(loading=IndentationDepths(np.linspace(1e-7, 1e-4, 1_000_00
 Mdr().solve(scene.replace(loading=IndentationDepths(scene.loading.values[::100_000])))
 numbers = lambda path: np.concatenate([path.normal_force[::1000], path.contact_radius[::1000]]).tolist()
 """
+MAP = """
+from mdr.curves import ForceCurve, fit_map
+gel = scene.replace(layer=Layer(thickness=5e-6, youngs_modulus=5e3, poissons_ratio=0.5), indenter=Sphere(radius=1e-5))
+gel = gel.replace(loading=IndentationDepths([2.5e-6]))
+rng, depth = np.random.default_rng(1), np.linspace(-5e-7, 1.87e-6, 126)
+clean = np.exp(0.5 * rng.standard_normal((4096, 1))) * ForceCurve(gel)(depth)
+force = clean + 0.01 * clean.max(axis=1, keepdims=True) * rng.standard_normal(clean.shape)
+solve = lambda: fit_map(gel, depth, force)
+numbers = lambda found: found.youngs_modulus.tolist()
+"""
 
 
 def _with(loading: str) -> str:
@@ -131,6 +141,7 @@ ROWS: dict[str, tuple[str, float]] = {
     "warm, 1 000 impacts": (MDR + IMPACTS + MANY_IMPACTS + WARM, 2.0),
     "batch, 1 000 thicknesses": (THICKNESSES + ONCE, 2.0),
     "batch, a million depths": (MDR + MILLION + ONCE, 2.0),
+    "batch, a map of 4 096 curves": (MAP + ONCE, 2.0),
     "warm, Bem 512": (BEM + WARM, 2.0),
     "warm, Fem 1e-4": (FEM.format(accuracy=1e-4) + WARM, 2.0),
     "warm, Fem 1e-6": (FEM.format(accuracy=1e-6) + WARM, 2.0),

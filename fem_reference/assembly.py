@@ -54,6 +54,17 @@ class ElementPair:
         """Whether the pressure is an unknown."""
         return self.pressure is not None
 
+    @property
+    def inner(self) -> list[int]:
+        """Places, among a triangle's unknowns, of those inside it that can be condensed.
+
+        Pressures are condensed only beside displacements.
+        """
+        moved, inside = 2 * len(self.displacement.doflocs), int(self.displacement.interior_dofs)
+        last = moved + len(self.pressure.doflocs) if self.pressure else moved
+        pressed = int(self.pressure.interior_dofs) if self.pressure and inside else 0
+        return [*range(moved - 2 * inside, moved), *range(last - pressed, last)]
+
 
 # All element pairs by name: the stable ones, displacement formulations, and two unstable pairs for tests.
 PAIRS = {
@@ -153,24 +164,10 @@ class Space:
 
     @cached_property
     def element_unknowns(self) -> IntArray:
-        """All unknowns of each triangle, in the order of `block_order`."""
-        kinds = [self.element_displacements, *([self.element_pressures] if self.pair.is_mixed else [])]
-        return np.hstack([kinds[kind][:, part] for kind, part in block_order(self.pair)])
-
-
-def inner_counts(pair: ElementPair) -> tuple[int, int]:
-    """How many displacements and pressures inside a triangle can be condensed; pressures only beside displacements."""
-    displacements = 2 * int(pair.displacement.interior_dofs)
-    return displacements, int(pair.pressure.interior_dofs) if pair.pressure and displacements else 0
-
-
-def block_order(pair: ElementPair) -> list[tuple[int, slice]]:
-    """Parts of a triangle's displacements (0) and pressures (1): the shared ones, then the inner ones."""
-    counts = (2 * len(pair.displacement.doflocs), len(pair.pressure.doflocs) if pair.pressure else 0)
-    ends = [count - inner for count, inner in zip(counts, inner_counts(pair), strict=True)]
-    parts = [(kind, slice(0, end)) for kind, end in enumerate(ends)]
-    parts += [(kind, slice(end, None)) for kind, end in enumerate(ends)]
-    return parts if pair.is_mixed else parts[::2]
+        """All unknowns of each triangle, displacements first."""
+        if not self.pair.is_mixed:
+            return self.element_displacements
+        return np.hstack([self.element_displacements, self.element_pressures])
 
 
 def barycentric(points: FloatArray) -> FloatArray:
@@ -227,7 +224,7 @@ def measures(jacobian: FloatArray, radius: FloatArray, weights: FloatArray) -> F
 
 
 def element_matrices(pair: ElementPair, corners: FloatArray, moduli: PointModuli) -> FloatArray:
-    """Matrix ``[[A, B^T], [B, -C]]`` of each triangle, in the order of `block_order`.
+    """Matrix ``[[A, B^T], [B, -C]]`` of each triangle, in the order of `Space.element_unknowns`.
 
     Args:
         pair: elements.
@@ -248,8 +245,7 @@ def element_matrices(pair: ElementPair, corners: FloatArray, moduli: PointModuli
         return shear + _strain_products(pair, strain, measure / moduli.compressibility, radius, np.outer(TRACE, TRACE))
     constraint, pressures = _constraints(pair, strain, measure, radius), _products(pair)[2]
     compliance = (pressures * (moduli.compressibility * measure)[:, None, :]) @ pressures.T
-    kinds, order = ((shear, constraint.transpose(0, 2, 1)), (constraint, -compliance)), block_order(pair)
-    return np.block([[kinds[i][j][:, rows, columns] for j, columns in order] for i, rows in order])
+    return np.block([[shear, constraint.transpose(0, 2, 1)], [constraint, -compliance]])
 
 
 def _strain_products(

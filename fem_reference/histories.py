@@ -1,20 +1,27 @@
-"""Prescribed depths or forces in time, in SI units."""
+"""Impacts, and prescribed depths or forces in time, in SI units, with errors from half the cells and half the steps."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
+from functools import partial
+from typing import Any, TypeVar
 
 import numpy as np
 
 from contact import (
     DepthHistory,
     FlatPunch,
-    ForceHistory,
     HistoryPath,
+    Impact,
+    ImpactHistory,
     InvalidInput,
+    KelvinVoigt,
+    NotConvergedError,
     Scene,
     StageLog,
     UnsupportedSceneError,
+    Viscoelasticity,
 )
 from contact.answer.solution import Setting
 from contact.records.validation import FloatArray
@@ -22,116 +29,255 @@ from contact.scene.extent import first_radius
 from contact.stated import SAFETY
 from fem_reference.equilibria import refuse_touching_at
 from fem_reference.materials import contact_modulus, shear_modulus
-from fem_reference.motions import CondensedLayer, HistorySetup, Resolution, Samples, segments, simulate_prescribed
+from fem_reference.motions import (
+    CondensedLayer,
+    HistorySetup,
+    Resolution,
+    Sample,
+    columns,
+    segments,
+    simulate_impact,
+    simulate_prescribed,
+)
 from fem_reference.profiles import height
 from fem_reference.settings import Discretisation
-from fem_reference.stated import FLOOR, exact_names
+from fem_reference.stated import FLOOR, exact_names, relative_change
 
+# Steps of a pilot in the time that an impact is expected to take; fewer than half as many are repeated. And of each
+# octave of the pilot of a history.
+PILOT_STEPS, PILOT_OCTAVE = 60, 4
+# Largest change of velocity in a step of the pilot and in one of two hundred steps, over the first velocity: a strong
+# dashpot stops a body far sooner than the layer throws it back.
+LARGEST_CHANGE, WANTED_CHANGE = 0.2, 0.05
+# Most steps over those of an impact on an elastic layer.
+MOST = 16
+# Least restitution. Below, contact ends after its force has fallen under its roundings.
+LEAST_LEFT = 3e-8
+# Share of the peak below which a force may be roundings: the time that contact still lasts is stated of its end.
+ROUNDING_FORCE = 1e-12
+# A channel counts as near its peak from this share of it on: the largest change there is stated of the peak.
+NEAR_PEAK = 0.9
+# The channel of each peak.
+PEAKS = {"peak_force": "normal_force", "peak_depth": "indentation_depth", "peak_contact_radius": "contact_radius"}
+# Share of a cell by which the edge is read from pressures on cells; at a kink, and where layers relax, it is one cell.
+EDGE_READING = 0.1
 # Instants of the companion to either side, among which the largest change is stated.
 WINDOW = 6
 # Contact narrower than so many cells states the largest change while it is; the first cells err in every way.
 NARROW = 8.0
 # Least stated change over the mean of all instants.
 SHARE_OF_MEAN = 0.5
-# Steps of each octave of a pilot.
-PILOT_STEPS = 4
+
+A = TypeVar("A", ImpactHistory, HistoryPath)
 
 
-class HistorySolver:
-    """One prescribed history at any resolution."""
+def impact(scene: Scene, settings: Discretisation, *, written: Mapping[str, Setting], log: StageLog) -> ImpactHistory:
+    """An impact from first touch to the loss of contact."""
+    setups = HistorySetup.resolutions(scene, settings, log)
+    radius, span = _pilot(setups[0][0])
 
-    def __init__(
-        self, scene: Scene, loading: DepthHistory | ForceHistory, settings: dict[str, Setting], log: StageLog
-    ) -> None:
-        self._scene, self._loading, self._settings, self._log = scene, loading, settings, log
-        self._by_depth = isinstance(loading, DepthHistory)
-        self._values: FloatArray = loading.depth if isinstance(loading, DepthHistory) else loading.force
-        self._radius: float | None = None
+    def answer(setup: HistorySetup, resolution: Resolution) -> ImpactHistory:
+        condensed = setup.condensed(radius, resolution.cells)
+        return _impact_in_si(setup, condensed, _fall(setup, span / resolution.steps, condensed), written)
 
-    def attempt(self, settings: Discretisation) -> HistoryPath:
-        """The answer with its stated errors."""
-        setups = HistorySetup.resolutions(self._scene, settings, str(self._settings["solver"]), self._log)
-        half_both, half_cells, path = (self.answer(*each) for each in setups)
-        return self.with_errors(path, half_cells, half_both, setups[-1][0])
+    half_both, half_cells, found = (answer(*each) for each in setups)
+    pairs = (found, half_cells), (half_cells, half_both)
+    refuse_touching_at(scene, found.peak_contact_radius, log)
+    # Half the cells and half the steps may cancel: both changes count.
+    errors = {
+        name: np.full(len(found), SAFETY * sum(_change(*pair, name).max() for pair in pairs) + FLOOR)
+        for name in found.ARRAYS
+        if name != "time"
+    }
+    for name in (*found.SCALARS, "coefficient_of_restitution", "contact_time"):
+        errors[name] = np.array([SAFETY * sum(_scalar_change(*pair, name) for pair in pairs) + FLOOR])
+    errors["coefficient_of_restitution"] += _energy_lost(found)
+    errors["contact_time"] += _end_by_roundings(found)
+    cell, peak_radius = radius / setups[-1][1].cells, found.peak_contact_radius
+    at_kink = any(abs(peak_radius - kink) < 2 * cell for kink in scene.indenter.kinks)
+    for name in ("contact_radius", "peak_contact_radius"):
+        errors[name] = errors[name] + (1.0 if at_kink else EDGE_READING) * cell / peak_radius
+    return _with_errors(found, errors)
 
-    def answer(self, setup: HistorySetup, resolution: Resolution) -> HistoryPath:
-        """The response at the steps of this resolution; it states no errors yet.
 
-        Raises:
-            UnsupportedSceneError: a dashpot would take an infinite force.
-        """
-        if self._by_depth and self._values[0] > 0 and setup.relaxation.viscosity > 0:
-            raise UnsupportedSceneError(
-                f"loading.depth begins at {self._values[0]:g} m: a dashpot answers this jump by an infinite force; "
-                "begin at zero and give the ramp"
-            )
-        if self._radius is None:
-            guess = 1.6 * self._first_radius()
-            self._radius, _ = setup.fitted_radius(guess, lambda layer: self._simulated(setup, layer, PILOT_STEPS))
-        condensed = setup.condensed(self._radius, resolution.cells)
-        return self._in_si(setup, condensed, self._simulated(setup, condensed, resolution.per_octave))
+def history(scene: Scene, settings: Discretisation, *, written: Mapping[str, Setting], log: StageLog) -> HistoryPath:
+    """The response to prescribed depths or forces.
 
-    def _simulated(self, setup: HistorySetup, condensed: CondensedLayer, per_octave: int) -> Samples:
-        unit = condensed.radius
-        if not self._by_depth:
-            unit *= shear_modulus(setup.scene.layer) * condensed.radius
-        time, steps = self._loading.time, segments(self._loading.time, per_octave)
-        with setup.log.stage("time_steps"):
-            record = simulate_prescribed(condensed, time, self._values / unit, steps, by_depth=self._by_depth)
-        setup.log.count("steps", len(record.rows))
-        return record
-
-    def _first_radius(self) -> float:
-        """A contact radius [m] for the largest load: f(r) = delta, or 4 E* r f(r) = F."""
-        indenter, largest = self._scene.indenter, float(self._values.max())
-        if isinstance(indenter, FlatPunch):
-            return indenter.radius
-        if largest <= 0:
-            raise InvalidInput("the history never presses; give a positive depth or force somewhere")
-        if self._by_depth:
-            return first_radius(indenter, lambda r: height(indenter, r) >= largest)
-        load = largest / (4 * contact_modulus(self._scene.layer))
-        return first_radius(indenter, lambda r: r * height(indenter, r) >= load)
-
-    def _in_si(self, setup: HistorySetup, condensed: CondensedLayer, record: Samples) -> HistoryPath:
-        length, force = condensed.radius, record.column("force")
-        radius = np.maximum(record.column("radius") * length, self._scene.indenter.flat_radius)
-        return HistoryPath(
-            scene=self._scene,
-            method="fem",
-            settings=self._settings,
-            error_estimate={},
-            cost=setup.log.cost(unknowns=condensed.unknowns),
-            stages=setup.log.records,
-            time=record.column("time"),
-            indentation_depth=record.column("depth") * length,
-            normal_force=force * shear_modulus(self._scene.layer) * length**2,
-            contact_radius=np.where(force > 0, radius, 0.0),
+    Raises:
+        InvalidInput: nothing is ever pressed.
+        UnsupportedSceneError: a dashpot would take an infinite force.
+    """
+    setups = HistorySetup.resolutions(scene, settings, log)
+    values = scene.loading.depth if isinstance(scene.loading, DepthHistory) else scene.loading.force  # type: ignore[attr-defined]
+    if isinstance(scene.loading, DepthHistory) and values[0] > 0 and setups[0][0].relaxation.viscosity > 0:
+        raise UnsupportedSceneError(
+            f"loading.depth begins at {values[0]:g} m: a dashpot answers this jump by an infinite force; begin at zero "
+            "and give the ramp"
         )
+    guess = _radius_of_load(scene, float(values.max()))
+    radius, _ = setups[0][0].fitted_radius(1.6 * guess, partial(_follow, setups[0][0], values, PILOT_OCTAVE))
 
-    def with_errors(
-        self, answer: HistoryPath, half_cells: HistoryPath, half_both: HistoryPath, setup: HistorySetup
-    ) -> HistoryPath:
-        """The answer with stated errors for every instant, shape (n,): what half the cells change, and half the steps.
+    def answer(setup: HistorySetup, resolution: Resolution) -> HistoryPath:
+        condensed = setup.condensed(radius, resolution.cells)
+        return _history_in_si(setup, condensed, _follow(setup, values, resolution.per_octave, condensed), written)
 
-        Both at once may cancel.
-        """
-        largest = float(answer.contact_radius.max())
-        refuse_touching_at(self._scene, largest, setup.log)
-        cell = self._radius / setup.resolution.cells if self._radius else 0.0
-        exact, errors = exact_names(answer.scene), {}
-        for name in (name for name in answer.ARRAYS if name != "time"):
-            values = getattr(answer, name)
-            near = np.zeros(len(answer))
-            for fine, coarse in ((answer, half_cells), (half_cells, half_both)):
-                change = np.abs(np.interp(coarse.time, fine.time, getattr(fine, name)) - getattr(coarse, name))
-                near += _largest_near(change, coarse, answer, NARROW * cell) + SHARE_OF_MEAN * change.mean()
-            error = SAFETY * near / max(np.abs(values).max(), np.finfo(float).tiny) + FLOOR
-            if name == "contact_radius":
-                # Pressures of a layer that relaxes do not end like sqrt(a - r): radii are read to a cell.
-                error = error + (1.0 if answer.scene.effects else 0.1) * cell / largest
-            errors[name] = 0.0 * error if name in exact else error
-        return replace(answer, error_estimate=errors)
+    half_both, half_cells, found = (answer(*each) for each in setups)
+    largest, cell = float(found.contact_radius.max()), radius / setups[-1][1].cells
+    refuse_touching_at(scene, largest, log)
+    errors = {}
+    for name in (name for name in found.ARRAYS if name != "time"):
+        changes = [(_change(*pair, name), pair[1]) for pair in ((found, half_cells), (half_cells, half_both))]
+        near = [
+            _largest_near(change, companion, found, NARROW * cell) + SHARE_OF_MEAN * change.mean()
+            for change, companion in changes
+        ]
+        errors[name] = SAFETY * sum(near) + FLOOR
+    # Pressures of a layer that relaxes do not end like sqrt(a - r).
+    errors["contact_radius"] = errors["contact_radius"] + (1.0 if scene.effects else EDGE_READING) * cell / largest
+    return _with_errors(found, errors)
+
+
+def _pilot(setup: HistorySetup) -> tuple[float, float]:
+    """Radius of the strip [m], and the time in which the answer makes as many steps as its resolution says [s].
+
+    Raises:
+        NotConvergedError: equal steps that follow the stop are too many, or hardly any velocity is left.
+    """
+    guess, span = _scales(setup.scene)
+    step = span / PILOT_STEPS
+    while True:
+        radius, samples = setup.fitted_radius(1.6 * guess, partial(_fall, setup, step))
+        velocity, contact = columns(samples)["velocity"], samples[-1].time
+        change = float(np.abs(np.diff(velocity)).max() / velocity[0])
+        finer = max(1.0, change * contact / (200 * step) / WANTED_CHANGE)
+        is_fine = len(samples) > PILOT_STEPS // 2 and change <= LARGEST_CHANGE
+        if finer > MOST and (is_fine or step < span / PILOT_STEPS):
+            raise NotConvergedError(
+                "a strong dashpot stops the body far sooner than contact ends: equal steps that follow its stop are "
+                f"{finer:.3g} times as many as an elastic layer needs, {MOST} times at most are made; the method mdr "
+                "adapts its steps",
+                {"steps_over_usual": finer},
+            )
+        if is_fine:
+            break
+        step /= 4
+    left = abs(velocity[-1] / velocity[0])
+    if left < LEAST_LEFT:
+        raise NotConvergedError(
+            f"a strong dashpot leaves the body {left:.1g} of its velocity: below {LEAST_LEFT:g} roundings decide when "
+            "contact ends; the method mdr goes further",
+            {"restitution": left},
+        )
+    return radius, contact / finer
+
+
+def _scales(scene: Scene) -> tuple[float, float]:
+    """A contact radius [m] with E* r f(r)^2 = kinetic energy, and the time [s] to reach the depth f(r)."""
+    indenter, loading, modulus = scene.indenter, scene.loading, contact_modulus(scene.layer)
+    assert isinstance(loading, Impact)
+    if isinstance(indenter, FlatPunch):
+        return indenter.radius, float(np.pi * np.sqrt(loading.mass / (2 * modulus * indenter.radius)))
+    volume = loading.mass * loading.velocity**2 / 2 / modulus
+    r = first_radius(indenter, lambda r: r * height(indenter, r) ** 2 >= volume)
+    return r, 3 * height(indenter, r) / loading.velocity
+
+
+def _radius_of_load(scene: Scene, largest: float) -> float:
+    """A contact radius [m] for the largest load: f(r) = delta, or 4 E* r f(r) = F."""
+    indenter, load = scene.indenter, largest / (4 * contact_modulus(scene.layer))
+    if isinstance(indenter, FlatPunch):
+        return indenter.radius
+    if largest <= 0:
+        raise InvalidInput("the history never presses; give a positive depth or force somewhere")
+    if isinstance(scene.loading, DepthHistory):
+        return first_radius(indenter, lambda r: height(indenter, r) >= largest)
+    return first_radius(indenter, lambda r: r * height(indenter, r) >= load)
+
+
+def _fall(setup: HistorySetup, duration: float, condensed: CondensedLayer) -> list[Sample]:
+    """The impact with time steps of this duration [s]."""
+    loading: Any = setup.scene.loading
+    mass = loading.mass / (shear_modulus(setup.scene.layer) * condensed.radius)
+    with setup.log.stage("time_steps"):
+        samples = simulate_impact(condensed, mass, loading.velocity / condensed.radius, duration)
+    setup.log.count("steps", len(samples))
+    return samples
+
+
+def _follow(setup: HistorySetup, values: FloatArray, per_octave: int, condensed: CondensedLayer) -> list[Sample]:
+    """The response to depths [m] or forces [N] in the units of the condensed layer."""
+    loading: Any = setup.scene.loading
+    by_depth = isinstance(loading, DepthHistory)
+    unit = condensed.radius * (1.0 if by_depth else shear_modulus(setup.scene.layer) * condensed.radius)
+    with setup.log.stage("time_steps"):
+        steps = segments(loading.time, per_octave)
+        samples = simulate_prescribed(condensed, loading.time, values / unit, steps, by_depth=by_depth)
+    setup.log.count("steps", len(samples))
+    return samples
+
+
+def _channels(setup: HistorySetup, condensed: CondensedLayer, samples: list[Sample]) -> dict[str, Any]:
+    """What both kinds of answers consist of; radii are at least that of a flat end."""
+    length, found = condensed.radius, columns(samples)
+    return {
+        "scene": setup.scene,
+        "method": "fem",
+        "error_estimate": {},
+        "cost": setup.log.cost(unknowns=condensed.unknowns),
+        "stages": setup.log.records,
+        "time": found["time"],
+        "indentation_depth": found["depth"] * length,
+        "normal_force": found["force"] * shear_modulus(setup.scene.layer) * length**2,
+        "contact_radius": np.maximum(found["radius"] * length, setup.scene.indenter.flat_radius),
+    }
+
+
+def _impact_in_si(
+    setup: HistorySetup, condensed: CondensedLayer, samples: list[Sample], written: Mapping[str, Setting]
+) -> ImpactHistory:
+    loading: Any = setup.scene.loading
+    channels, found = _channels(setup, condensed, samples), columns(samples)
+    peaks: dict[str, Any] = {name: peak(channels[channel]) for name, channel in PEAKS.items()}
+    velocity, energy = found["velocity"] * condensed.radius, shear_modulus(setup.scene.layer) * condensed.radius**3
+    return ImpactHistory(
+        **channels,
+        settings=written,
+        velocity=velocity,
+        kinetic_energy=loading.mass * velocity**2 / 2,
+        stored_energy=found["stored"] * energy,
+        dissipated_energy=found["dissipated"] * energy,
+        **peaks,
+    )
+
+
+def _history_in_si(
+    setup: HistorySetup, condensed: CondensedLayer, samples: list[Sample], written: Mapping[str, Setting]
+) -> HistoryPath:
+    channels = _channels(setup, condensed, samples)
+    channels["contact_radius"] = np.where(channels["normal_force"] > 0, channels["contact_radius"], 0.0)
+    return HistoryPath(**channels, settings=written)
+
+
+def _with_errors(answer: A, errors: Mapping[str, FloatArray]) -> A:
+    """The answer with errors, zero for what is prescribed."""
+    exact = exact_names(answer.scene)
+    return replace(answer, error_estimate={n: 0.0 * error if n in exact else error for n, error in errors.items()})
+
+
+def _change(answer: A, companion: A, name: str) -> FloatArray:
+    """|answer - companion| at the companion's instants, over the largest value."""
+    values, others = getattr(answer, name), getattr(companion, name)
+    change = np.abs(np.interp(companion.time, answer.time, values) - others)
+    return np.asarray(change / max(np.abs(values).max(), np.finfo(float).tiny))
+
+
+def _scalar_change(answer: ImpactHistory, companion: ImpactHistory, name: str) -> float:
+    """Relative change of a number; of a peak the largest one of its channel near the peak, where two may agree."""
+    change = float(relative_change(answer, companion, name).max())
+    if name not in PEAKS:
+        return change
+    values = getattr(companion, PEAKS[name])
+    return max(change, float(_change(answer, companion, PEAKS[name])[values >= NEAR_PEAK * values.max()].max()))
 
 
 def _largest_near(change: FloatArray, companion: HistoryPath, answer: HistoryPath, narrow: float) -> FloatArray:
@@ -141,3 +287,27 @@ def _largest_near(change: FloatArray, companion: HistoryPath, answer: HistoryPat
     near: FloatArray = np.max([change[np.clip(place + k, 0, len(change) - 1)] for k in shifts], axis=0)
     at_narrow = change[companion.contact_radius < narrow]
     return np.asarray(np.where(answer.contact_radius < narrow, np.maximum(near, at_narrow.max(initial=0.0)), near))
+
+
+def _energy_lost(answer: ImpactHistory) -> float:
+    """Relative error of the restitution by the energy that motion, layer and dissipation lack in the end together."""
+    if isinstance(answer.scene.effect(Viscoelasticity), KelvinVoigt):
+        return 0.0  # a dashpot's dissipation is summed to first order in the steps
+    total = answer.kinetic_energy + answer.stored_energy + answer.dissipated_energy
+    return float(abs(total[-1] - total[0]) / (2.0 * answer.kinetic_energy[-1]))
+
+
+def _end_by_roundings(answer: ImpactHistory) -> float:
+    """Share of the contact time in which the force is roundings: a strong dashpot lets it fade like e^-st."""
+    presses = np.flatnonzero(answer.normal_force > ROUNDING_FORCE * answer.peak_force)
+    return float(1.0 - answer.time[min(presses[-1] + 1, len(answer) - 1)] / answer.time[-1])
+
+
+def peak(values: FloatArray) -> float:
+    """Largest value of a smooth sampled function: the vertex of the parabola through the three highest samples."""
+    i = int(np.argmax(values))
+    if i in (0, len(values) - 1):
+        return float(values[i])
+    left, top, right = values[i - 1 : i + 2]
+    curvature = left - 2 * top + right
+    return float(top - (right - left) ** 2 / (8 * curvature)) if curvature < 0 else float(top)

@@ -143,7 +143,7 @@ def proportional_modes(compliance: FloatArray, resultants: FloatArray, radii: Fl
     return Modes(factor, 0.0 * ones, ones, resultants, radii, unknowns)
 
 
-def compressible_modes(parts: Parts, section: Section, backend: str) -> Modes:
+def compressible_modes(parts: Parts, section: Section) -> Modes:
     """Modes of a uniform layer with a constant bulk modulus, on a section with a strip of radius one.
 
     A layer of effective shear modulus G* and bulk modulus K has the matrix ``K_v + G* D``. It is solved as a layer of
@@ -155,7 +155,7 @@ def compressible_modes(parts: Parts, section: Section, backend: str) -> Modes:
     for modulus in SPANNING_MODULI:
         effective = (3 * bulk - 2 * modulus) / (2 * (3 * bulk + modulus))
         material = replace(parts, parts=uniform(effective, parts.parts[0].thickness).parts)
-        layer = DiscreteLayer(section, taylor_hood(STRIP_ORDER), material, backend=backend)
+        layer = DiscreteLayer(section, taylor_hood(STRIP_ORDER), material)
         loads, tractions = strip_loads(layer, STRIDE)
         count = layer.space.displacement_count
         deviator = layer.matrix[:count, :count] / float(layer.moduli.shear[0, 0])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, fields, replace
 from functools import cache, partial
 from typing import ClassVar, Self, TypeAlias, overload
 
@@ -34,6 +34,7 @@ from contact import (
     other_layer,
 )
 from contact.answer.accuracy import told_where_less
+from contact.answer.method import not_round
 from contact.answer.no_contact import without_contact
 from contact.answer.one_thread import one_thread
 from contact.answer.small_strains import within_small_strains
@@ -49,8 +50,7 @@ from fem_reference.fields import FemFields
 from fem_reference.materials import contact_modulus
 from fem_reference.prescribed_contact import ContactSolver, solve_contact
 from fem_reference.settings import Discretisation
-from fem_reference.solver import BACKENDS
-from fem_reference.stated import meshes_that_fit, path_with_errors, settings_for, solve_to_accuracy
+from fem_reference.stated import path_with_errors, settings_for, solve_to_accuracy
 
 Answer: TypeAlias = ContactPath | DetachmentPath | ImpactHistory | HistoryPath
 MOTIONS = Impact, DepthHistory, ForceHistory
@@ -73,7 +73,6 @@ class Fem:
         half_space_thickness: thickness, in contact radii, of the layer that stands for a half-space; an elastic base
             below a stack is meshed to its power of 0.8.
         outer_distance: from contact edge to outer edge, in thicknesses; None for what ``truncation`` requires.
-        solver: "superlu", "superlu-pivoting" or "mumps".
     """
 
     name: ClassVar[str] = "fem"
@@ -86,7 +85,6 @@ class Fem:
     truncation: float = 1e-8
     half_space_thickness: float = 1e8
     outer_distance: float | None = None
-    solver: str = "superlu"
 
     def __post_init__(self) -> None:
         """Refuse settings outside their ranges."""
@@ -96,8 +94,6 @@ class Fem:
                 raise InvalidInput(f"{name} must lie in [1e-9, 0.1], got {wanted}")
         if self.pressure_accuracy is not None and self.accuracy is None:
             raise InvalidInput("pressure_accuracy is asked besides an accuracy of the numbers; give both")
-        if self.solver not in BACKENDS:
-            raise InvalidInput(f"solver must be one of {', '.join(BACKENDS)}, got {self.solver!r}")
         _ = self.discretisation
 
     @property
@@ -105,17 +101,13 @@ class Fem:
         """The settings that make meshes."""
         if self.accuracy is not None:
             return settings_for(self.accuracy)
-        return Discretisation(
-            order=self.order,
-            edge_cell=self.edge_cell,
-            growth=self.growth,
-            truncation=self.truncation,
-            half_space_thickness=self.half_space_thickness,
-            outer_distance=self.outer_distance,
-        )
+        written = asdict(self)
+        return Discretisation(**{f.name: written[f.name] for f in fields(Discretisation) if f.name in written})
 
     def supports(self, scene: Scene) -> Supported | Unsupported:
         """Whether this method models the scene."""
+        if (other := not_round("fem", scene)) is not None:
+            return other
         if scene.effect(Friction) is not None:
             punch = isinstance(scene.indenter, FlatPunch)
             other = other_layer("full stick of a FlatPunch by fem", scene.layer) if punch else None
@@ -153,8 +145,12 @@ class Fem:
         support = self.supports(scene)
         if isinstance(support, Unsupported):
             raise UnsupportedSceneError(support.reason)
-        with meshes_that_fit():
+        try:
             answer = self._solve(scene, StageLog())
+        except MemoryError:
+            raise UnsupportedSceneError(
+                "the mesh does not fit into memory: ask fem for a less strict accuracy, or give it a larger growth"
+            ) from None
         return answer if self.accuracy is None else told_where_less(answer, self.accuracy, self.pressure_accuracy)
 
     def _solve(self, scene: Scene, log: StageLog) -> Answer:
@@ -175,16 +171,12 @@ class Fem:
             from fem_reference.friction.answers import rubbed_history, rubbed_path  # noqa: PLC0415
 
             return partial(rubbed_history if in_time else rubbed_path, scene, written=written, log=log)
-        if isinstance(scene.loading, Impact):
-            from fem_reference.impacts import ImpactSolver  # noqa: PLC0415
+        if in_time:
+            from fem_reference.histories import history, impact  # noqa: PLC0415
 
-            return ImpactSolver(scene, scene.loading, written, log).attempt
-        if isinstance(scene.loading, DepthHistory | ForceHistory):
-            from fem_reference.histories import HistorySolver  # noqa: PLC0415
-
-            return HistorySolver(scene, scene.loading, written, log).attempt
+            return partial(impact if isinstance(scene.loading, Impact) else history, scene, written=written, log=log)
         if isinstance(scene.loading, Detachment):
-            from fem_reference.detachment import detachment_path  # noqa: PLC0415
+            from fem_reference.adhesion import detachment_path  # noqa: PLC0415
 
             return partial(detachment_path, scene, partial(self._solver, scene, log), written, log)
         return partial(self._at_rest, scene, cache(partial(searched_radius, scene, log)), log)
@@ -195,14 +187,14 @@ class Fem:
         """Equilibria at prescribed radii, depths or forces."""
         modulus, sticks = contact_modulus(scene.layer), scene.effect(Friction) is not None
         coarser, states = (self._states(scene, each, search, log) for each in (settings.coarser(), settings))
-        fields = FemFields(states, modulus, coarser)
+        on_top = FemFields(states, modulus, coarser)
         if sticks:
             from fem_reference.friction.answers import AdheredFemFields, with_shear_error  # noqa: PLC0415
 
-            fields = AdheredFemFields(states, modulus, coarser)
+            on_top = AdheredFemFields(states, modulus, coarser)
         else:
             refuse_other_contacts(scene, states, coarser)
-        path, companion = (contact_path(scene, each, fields, asdict(self), log) for each in (states, coarser))
+        path, companion = (contact_path(scene, each, on_top, asdict(self), log) for each in (states, coarser))
         answer = path_with_errors(path, companion, states, coarser)
         return with_shear_error(answer, states, coarser) if sticks else answer
 
@@ -222,7 +214,7 @@ class Fem:
     def _solver(self, scene: Scene, log: StageLog, settings: Discretisation) -> ContactSolver:
         """Function that solves the contact of a given radius [m]; an indenter with friction sticks."""
         sticks = scene.effect(Friction) is not None
-        return lambda radius: solve_contact(scene, radius, settings, log, backend=self.solver, sticks=sticks)
+        return lambda radius: solve_contact(scene, radius, settings, log, sticks=sticks)
 
     def refined(self) -> Self:
         """A copy with cells half as large; the edge cell shrinks by 2^(2k), so that errors fall at the formal order 2k.

@@ -11,11 +11,12 @@ the depth disappears, and a step is one complementarity problem with the matrix
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import Self
+from typing import NamedTuple
 
 import numpy as np
+from scipy.interpolate import make_interp_spline
 from scipy.optimize import brentq
 
 from contact import FlatPunch, InvalidInput, NotConvergedError, Scene, StageLog
@@ -27,8 +28,7 @@ from fem_reference.mesh import Section
 from fem_reference.prescribed_contact import solve_contact
 from fem_reference.profiles import ScaledIndenter, shape
 from fem_reference.settings import Discretisation, contact_section
-from fem_reference.surface import condense, strip_section
-from fem_reference.trace import TraceSpace
+from fem_reference.surface import TraceSpace, condense, strip_section
 
 # Steps after which a body counts as held by the layer: five hundred times what an impact at the default settings takes.
 MAX_STEPS = 200_000
@@ -72,73 +72,60 @@ class CondensedLayer:
     radius: float
     unknowns: int
 
+    def sample(
+        self, time: float, depth: float, velocity: float, pressure: FloatArray, *, dashpot: float = 0.0
+    ) -> Sample:
+        """The instant with these pressures at the vertices."""
+        top, edge = self.surface, edge_radius(self.radii, pressure)
+        force = float(top.resultants @ pressure)
+        return Sample(time, depth, velocity, force, edge, top.stored_energy, top.dissipated_energy, dashpot)
 
-@dataclass(frozen=True, kw_only=True)
-class FallingBody:
-    """The impacting body in the units of its condensed layer.
+
+class Sample(NamedTuple):
+    """One instant of a motion, in the units of its condensed layer.
 
     Attributes:
-        mass: M / (G_0 L) [s^2].
-        velocity: v_0 / L [1/s].
+        time: t.
+        depth: delta.
+        velocity: of a falling body.
+        force: F.
+        radius: of the contact.
+        stored: energy of the layer.
+        dissipated: energy lost so far.
+        dashpot: share of the dashpot in the force.
     """
 
-    mass: float
+    time: float
+    depth: float
     velocity: float
+    force: float
+    radius: float = 0.0
+    stored: float = 0.0
+    dissipated: float = 0.0
+    dashpot: float = 0.0
 
 
-@dataclass
-class Samples:
-    """Samples of a motion, in the units of its condensed layer; the last two columns are energies."""
-
-    condensed: CondensedLayer
-    rows: list[tuple[float, ...]] = field(default_factory=list)
-
-    def add(self, time: float, depth: float, velocity: float, pressure: FloatArray, dashpot: float = 0.0) -> None:
-        """Append one sample; ``dashpot`` is the dashpot's share of the force."""
-        surface = self.condensed.surface
-        force, edge = float(surface.resultants @ pressure), edge_radius(self.condensed.radii, pressure)
-        energies = surface.stored_energy, surface.dissipated_energy
-        self.rows.append((time, depth, velocity, force, edge, *energies, dashpot))
-
-    def column(self, name: str) -> FloatArray:
-        """One of time, depth, velocity, force, radius, stored, dissipated, dashpot."""
-        names = ("time", "depth", "velocity", "force", "radius", "stored", "dissipated", "dashpot")
-        return np.array([row[names.index(name)] for row in self.rows])
-
-    def smooth_dashpot(self, first: int, marks: Sequence[tuple[float, float]]) -> None:
-        """Make the dashpot's share linear between the middles of the intervals from touch to touch.
-
-        It is constant in each interval, and right in its middle.
-
-        Args:
-            first: row after the start of a segment.
-            marks: instants of touches in the segment, with the share in the interval before each.
-        """
-        if len(marks) < FEWEST_TOUCHES:
-            return
-        ends, shares = np.array(marks).T
-        middles, shares = (ends[1:] + ends[:-1]) / 2, shares[1:]
-        time, share = self.column("time")[first:], self.column("dashpot")[first:]
-        place = np.clip(np.searchsorted(middles, time), 1, len(middles) - 1)
-        slope = np.diff(shares)[place - 1] / np.diff(middles)[place - 1]
-        smooth = shares[place] + slope * (time - middles[place])
-        for i in np.flatnonzero(time >= middles[0]):
-            row = self.rows[first + i]
-            self.rows[first + i] = (*row[:3], max(0.0, row[3] + smooth[i] - share[i]), *row[4:])
+def columns(samples: Sequence[Sample]) -> dict[str, FloatArray]:
+    """Samples as one array per quantity."""
+    return dict(zip(Sample._fields, np.array(samples).T, strict=True))
 
 
-def simulate_impact(condensed: CondensedLayer, body: FallingBody, duration: float) -> Samples:
+def simulate_impact(condensed: CondensedLayer, mass: float, velocity: float, duration: float) -> list[Sample]:
     """Steps of ``duration`` [s] from first touch to the loss of contact.
+
+    Args:
+        condensed: the layer at rest and its indenter.
+        mass: M / (G_0 L) [s^2].
+        velocity: v_0 / L [1/s].
+        duration: of a step [s].
 
     Raises:
         NotConvergedError: the body never comes off (a layer without long-term elasticity may hold it).
     """
-    surface, record = condensed.surface, Samples(condensed)
-    w, kappa = surface.resultants, duration**2 / (4 * body.mass)
-    pressure = _touch(condensed, body, INSTANT * duration)
-    depth, velocity, force, time = 0.0, body.velocity, float(w @ pressure), 0.0
-    record.rows.append((0.0, 0.0, velocity, force, 0.0, 0.0, 0.0))
-    active, overlaps = None, (0.0, 0.0, 0.0)
+    surface = condensed.surface
+    w, kappa = surface.resultants, duration**2 / (4 * mass)
+    depth, force, time = 0.0, float(w @ _touch(condensed, velocity, INSTANT * duration)), 0.0
+    samples, active, overlaps = [Sample(0.0, 0.0, velocity, force)], None, (0.0, 0.0, 0.0)
     for _ in range(MAX_STEPS):
         matrix, offset = surface.begin(duration)
         ballistic = depth + duration * velocity - kappa * force
@@ -147,24 +134,24 @@ def simulate_impact(condensed: CondensedLayer, body: FallingBody, duration: floa
         surface.accept(state.pressure)
         following, overlaps = float(w @ state.pressure), (*overlaps[1:], float((approach / w).max()))
         mean, active = (force + following) / 2, state.active
-        is_free = following == 0 and velocity - duration * mean / body.mass < 0
+        is_free = following == 0 and velocity - duration * mean / mass < 0
         part = duration * (_release_fraction(*overlaps) if is_free else 1.0)
-        depth += part * velocity - part * duration * mean / (2 * body.mass)
-        velocity -= part * mean / body.mass
+        depth += part * velocity - part * duration * mean / (2 * mass)
+        velocity -= part * mean / mass
         force, time = following, time + part
-        record.add(time, depth, velocity, state.pressure)
+        samples.append(condensed.sample(time, depth, velocity, state.pressure))
         if is_free:
-            return record
+            return samples
     raise NotConvergedError("the body does not come off", {"last_force": force, "last_velocity": velocity})
 
 
-def _touch(condensed: CondensedLayer, body: FallingBody, instant: float) -> FloatArray:
+def _touch(condensed: CondensedLayer, velocity: float, instant: float) -> FloatArray:
     """Pressures at first touch: those of the dashpot under the part of the profile that is flat."""
     surface = condensed.surface
     if surface.viscosity == 0:
         return np.zeros_like(condensed.profile)
     matrix, offset = surface.begin(instant)
-    approach = instant * body.velocity * surface.resultants - condensed.profile - offset
+    approach = instant * velocity * surface.resultants - condensed.profile - offset
     pressure = solve_complementarity(matrix, approach).pressure
     surface.accept(pressure)
     return pressure
@@ -202,7 +189,7 @@ def segments(time: FloatArray, per_octave: int) -> list[FloatArray]:
 
 def simulate_prescribed(
     condensed: CondensedLayer, time: FloatArray, values: FloatArray, steps: Sequence[FloatArray], *, by_depth: bool
-) -> Samples:
+) -> list[Sample]:
     """Response to depths or forces that are linear between the given instants; a first load above zero acts at once.
 
     Args:
@@ -215,7 +202,8 @@ def simulate_prescribed(
     Raises:
         NotConvergedError: no depth carries the force.
     """
-    record, surface, depth = Samples(condensed), condensed.surface, 0.0
+    samples: list[Sample] = []
+    surface, depth = condensed.surface, 0.0
     active: BoolArray | None = None
 
     def advance(duration: float, load: float) -> FloatArray:
@@ -234,94 +222,105 @@ def simulate_prescribed(
     pressure = np.zeros_like(condensed.profile)
     if values[0] > 0:
         pressure = advance(INSTANT * float(steps[0][0] - time[0]), float(values[0]))
-    record.add(float(time[0]), float(values[0]) if by_depth else depth, 0.0, pressure)
+    samples.append(condensed.sample(float(time[0]), float(values[0]) if by_depth else depth, 0.0, pressure))
     for ends, (t0, t1), (v0, v1) in zip(steps, pairwise(time), pairwise(values), strict=True):
         if by_depth:
             surface.restart()
         marks: list[tuple[float, float]] = []
-        active, first = None, len(record.rows)
+        active, first = None, len(samples)
         for before, now in pairwise([t0, *ends]):
             load = v1 if now == t1 else v0 + (v1 - v0) * (now - t0) / (t1 - t0)
             if by_depth and surface.viscosity and v1 > v0 and active is not None:
-                walk = Touches(condensed, depth, (v1 - v0) / (t1 - t0), active, marks, float(before))
-                pressure, active = walk.advance(float(now - before))
+                rate = (v1 - v0) / (t1 - t0)
+                pressure, active, found = touch_to_touch(condensed, depth, rate, active, float(now - before))
+                marks += [(before + after, force) for after, force in found]
                 depth = float(load)
             else:
                 pressure = advance(float(now - before), float(load))
-            record.add(float(now), depth, 0.0, pressure, surface.dashpot_force)
-        record.smooth_dashpot(first, marks)
-    return record
+            samples.append(condensed.sample(float(now), depth, 0.0, pressure, dashpot=surface.dashpot_force))
+        samples[first:] = smooth_dashpot(samples[first:], marks)
+    return samples
 
 
-@dataclass(frozen=True)
-class Touches:
-    """Steps under a growing depth that end where a vertex touches or leaves, for a layer with a dashpot.
+def smooth_dashpot(samples: list[Sample], marks: Sequence[tuple[float, float]]) -> list[Sample]:
+    """Samples of a segment, the dashpot's force linear between the middles of the intervals from touch to touch.
+
+    It is constant in each interval, and right in its middle.
+
+    Args:
+        samples: of the segment.
+        marks: instants of touches in the segment, with the dashpot's force in the interval before each.
+    """
+    if len(marks) < FEWEST_TOUCHES:
+        return samples
+    ends, forces = np.array(marks).T
+    middles, time = (ends[1:] + ends[:-1]) / 2, columns(samples)["time"]
+    smooth = make_interp_spline(middles, forces[1:], k=1)(time)
+    return [
+        each if each.time < middles[0] else each._replace(force=max(0.0, each.force + float(force) - each.dashpot))
+        for each, force in zip(samples, smooth, strict=True)
+    ]
+
+
+def touch_to_touch(
+    condensed: CondensedLayer, depth: float, rate: float, active: BoolArray, duration: float
+) -> tuple[FloatArray, BoolArray, list[tuple[float, float]]]:
+    """A step under a growing depth in parts that end where a vertex touches or leaves, for a layer with a dashpot.
 
     While the set of pressed vertices is fixed, the surface is linear in the depth, and rates by Euler steps are exact.
     At other instants a dashpot's force errs like the cell: the stiffness of a contact on cells is a staircase.
 
-    Attributes:
-        condensed: the layer and its indenter.
+    Args:
+        condensed: the layer, whose memory moves on, and its indenter.
         depth: at the start.
         rate: of the depth.
-        active: pressed vertices.
-        marks: instants of touches, which are appended, with the dashpot's force before them.
-        time: at the start [s].
+        active: pressed vertices at the start.
+        duration: of the step [s].
+
+    Returns:
+        Pressures and pressed vertices at the end, and each touch: the time since the start [s], and the dashpot's
+        force before it.
     """
+    touches: list[tuple[float, float]] = []
+    surface, elapsed, active = condensed.surface, 0.0, active.copy()
 
-    condensed: CondensedLayer
-    depth: float
-    rate: float
-    active: BoolArray
-    marks: list[tuple[float, float]]
-    time: float
-
-    def advance(self, duration: float) -> tuple[FloatArray, BoolArray]:
-        """Pressures and pressed vertices after a duration [s]; the memory moves on."""
-        elapsed, active = 0.0, self.active.copy()
-        for _ in range(2 * len(active)):
-            left = duration - elapsed
-            pressure, slack = self._held(elapsed, left, active)
-            if slack.min() >= 0.0:
-                self.condensed.surface.accept(pressure)
-                return np.maximum(pressure, 0.0), active
-            part = self._crossing(elapsed, left, active)
-            wrong = self._held(elapsed, min(left, part + SLIGHTLY * left), active)[1] < 0.0
-            if part:
-                self.condensed.surface.accept(self._held(elapsed, part, active)[0])
-                elapsed += part
-                self.marks.append((self.time + elapsed, self.condensed.surface.dashpot_force))
-            active ^= wrong
-        # Vertices touch and leave again and again.
-        state = solve_complementarity(*self._problem(elapsed, duration - elapsed), active)
-        self.condensed.surface.accept(state.pressure)
-        return state.pressure, state.active
-
-    def _problem(self, elapsed: float, duration: float) -> tuple[FloatArray, FloatArray]:
-        """Compliance and approach of the contact after a duration, with an Euler step of the dashpot."""
-        surface = self.condensed.surface
+    def problem(part: float) -> tuple[FloatArray, FloatArray]:
+        """Compliance and approach of the contact after a part, with an Euler step of the dashpot."""
         surface.restart()
-        matrix, offset = surface.begin(duration)
-        depth = self.depth + self.rate * (elapsed + duration)
-        return matrix, depth * surface.resultants - self.condensed.profile - offset
+        matrix, offset = surface.begin(part)
+        return matrix, (depth + rate * (elapsed + part)) * surface.resultants - condensed.profile - offset
 
-    def _held(self, elapsed: float, duration: float, active: BoolArray) -> tuple[FloatArray, FloatArray]:
-        """Pressures with a fixed set after a duration, and what must not be negative, plus roundings."""
-        matrix, approach = self._problem(elapsed, duration)
+    def held(part: float) -> tuple[FloatArray, FloatArray]:
+        """Pressures with a fixed set after a part, and what must not be negative, plus roundings."""
+        matrix, approach = problem(part)
         pressure = np.zeros_like(approach)
         if active.any():
             pressure[active] = np.linalg.solve(matrix[np.ix_(active, active)], approach[active])
         slack = np.where(active, matrix.diagonal() * pressure, matrix @ pressure - approach)
         return pressure, slack + 1e-11 * np.abs(approach).max()
 
-    def _crossing(self, elapsed: float, left: float, active: BoolArray) -> float:
-        """Time after which the first vertex touches or leaves [s], by bisection and secants; zero if at once."""
+    def least(part: float) -> float:
+        return float(held(part)[1].min())
 
-        def least(part: float) -> float:
-            return float(self._held(elapsed, part, active)[1].min())
-
-        low, high = SLIGHTLY * left, left
-        return 0.0 if least(low) < 0.0 else float(brentq(least, low, high, xtol=0.1 * SLIGHTLY * left, rtol=1e-7))
+    for _ in range(2 * len(active)):
+        left = duration - elapsed
+        if least(left) >= 0.0:
+            pressure = held(left)[0]
+            surface.accept(pressure)
+            return np.maximum(pressure, 0.0), active, touches
+        # Zero where a vertex touches or leaves at once.
+        first = SLIGHTLY * left
+        part = 0.0 if least(first) < 0.0 else float(brentq(least, first, left, xtol=0.1 * first, rtol=1e-7))
+        wrong = held(min(left, part + first))[1] < 0.0
+        if part:
+            surface.accept(held(part)[0])
+            elapsed += part
+            touches.append((elapsed, surface.dashpot_force))
+        active ^= wrong
+    # Vertices touch and leave again and again.
+    state = solve_complementarity(*problem(duration - elapsed), active)
+    surface.accept(state.pressure)
+    return state.pressure, state.active, touches
 
 
 def _depth_of_force(
@@ -346,8 +345,7 @@ def _depth_of_force(
     raise NotConvergedError("no depth carries the prescribed force", {"force_defect": defect})
 
 
-@dataclass(frozen=True)
-class Resolution:
+class Resolution(NamedTuple):
     """How finely a motion is resolved.
 
     Attributes:
@@ -360,58 +358,53 @@ class Resolution:
     steps: int
     per_octave: int
 
-    @classmethod
-    def of(cls, settings: Discretisation) -> Resolution:
-        """Cells and steps shrink with the growth of the meshes; a companion has half of the cells."""
-        growth, halves = settings.growth / settings.coarsening, 1 if settings.coarsening == 1.0 else 2
-        cells = 2 * max(10, round(30 / growth)) // halves
-        return cls(cells, 2 * max(20, round(100 / growth)), 2 * max(2, round(4 / growth)))
-
-    def half_the_steps(self) -> Self:
-        """The same cells with half the steps, whose instants are every other one of a history's."""
-        return replace(self, steps=self.steps // 2, per_octave=self.per_octave // 2)
-
 
 class HistorySetup:
     """Condensed layers of one scene at one resolution, a fresh one for every motion that is simulated."""
 
-    def __init__(self, scene: Scene, settings: Discretisation, backend: str, log: StageLog) -> None:
+    def __init__(self, scene: Scene, settings: Discretisation, log: StageLog) -> None:
         self.scene, self.log, self.relaxation = scene, log, relaxation_of(scene)
-        self.resolution = Resolution.of(settings)
         self._settings = replace(settings, truncation=max(settings.truncation, TRUNCATION * settings.coarsening**6))
-        self._backend = backend
-        relaxes = bool(np.any(self.relaxation.moduli)) or self.relaxation.viscosity > 0
         self._modes: dict[tuple[float, int], Modes] = {}
+        relaxes = bool(np.any(self.relaxation.moduli)) or self.relaxation.viscosity > 0
         self._needs_field = relaxes and scene.layer.poissons_ratio < 0.5
 
     @classmethod
     def resolutions(
-        cls, scene: Scene, settings: Discretisation, backend: str, log: StageLog
+        cls, scene: Scene, settings: Discretisation, log: StageLog
     ) -> list[tuple[HistorySetup, Resolution]]:
-        """Setups and resolutions with half the cells and steps, with half the cells, and of the answer."""
-        coarser, setup = (cls(scene, each, backend, log) for each in (settings.coarser(), settings))
-        cells = coarser.resolution
-        return [(coarser, cells.half_the_steps()), (coarser, cells), (setup, setup.resolution)]
+        """Setups and resolutions with half the cells and steps, with half the cells, and of the answer.
+
+        Of a history half the steps end at every other instant.
+        """
+        coarser, setup = (cls(scene, each, log) for each in (settings.coarser(), settings))
+        cells, steps, octave = (max(a, round(b / settings.growth)) for a, b in ((10, 30), (20, 100), (2, 4)))
+        half_both, half_cells = Resolution(cells, steps, octave), Resolution(cells, 2 * steps, 2 * octave)
+        return [(coarser, half_both), (coarser, half_cells), (setup, Resolution(2 * cells, 2 * steps, 2 * octave))]
 
     def condensed(self, radius: float, cells: int) -> CondensedLayer:
         """The layer at rest with a strip of ``radius`` [m]."""
         if (radius, cells) not in self._modes:
             self._modes[radius, cells] = self._condensed_modes(radius, cells)
         modes = self._modes[radius, cells]
-        profile = self._profile(modes.radii, radius) if len(modes.radii) > 1 else np.zeros(1)
+        space, indenter = TraceSpace(modes.radii, 1), self.scene.indenter
+        profile = np.zeros(1)
+        if len(modes.radii) > 1:
+            inside = np.minimum(space.gauss(4)[0] * radius, min(radius, indenter.max_radius))
+            profile = space.moments(shape(indenter, inside).height / radius, 4)
         return CondensedLayer(Top(modes, self.relaxation), modes.radii, profile, radius, modes.unknowns)
 
     def _condensed_modes(self, radius: float, cells: int) -> Modes:
         per_shear = (1 - self.scene.layer.poissons_ratio) / 2  # E* = 2 G / (1 - nu)
         if self._needs_field:
             with self.log.stage("factor"):
-                return compressible_modes(*self._mesh(radius, cells), self._backend)
+                return compressible_modes(*self._mesh(radius, cells))
         if isinstance(self.scene.indenter, FlatPunch):
             # It moves as one: its force is the only unknown, 1 / k_N its compliance.
-            contact = solve_contact(self.scene, radius, self._settings, self.log, backend=self._backend)
+            contact = solve_contact(self.scene, radius, self._settings, self.log)
             compliance = np.array([[per_shear / contact.stiffness]])
             return proportional_modes(compliance, np.ones(1), np.ones(1), contact.unknowns)
-        strip = condense(*self._mesh(radius, cells), self._backend, self.log)
+        strip = condense(*self._mesh(radius, cells), self.log)
         return proportional_modes(strip.pressed * per_shear, strip.resultants, strip.radii, strip.unknowns)
 
     def _mesh(self, radius: float, cells: int) -> tuple[Parts, Section]:
@@ -422,13 +415,9 @@ class HistorySetup:
                 return contact_section(layer, ScaledIndenter(indenter, radius), settings)
             return strip_section(layer, radius, cells, indenter.kinks, self._settings, outside=OUTSIDE)
 
-    def _profile(self, radii: FloatArray, radius: float) -> FloatArray:
-        """Moments of the profile by the strip's radius."""
-        space = TraceSpace(radii, 1)
-        inside = np.minimum(space.gauss(4)[0] * radius, min(radius, self.scene.indenter.max_radius))
-        return space.moments(shape(self.scene.indenter, inside).height / radius, 4)
-
-    def fitted_radius(self, guess: float, simulate: Callable[[CondensedLayer], Samples]) -> tuple[float, Samples]:
+    def fitted_radius(
+        self, guess: float, simulate: Callable[[CondensedLayer], list[Sample]]
+    ) -> tuple[float, list[Sample]]:
         """A strip a quarter larger than the largest contact, and the record of the pilot simulation on it.
 
         Raises:
@@ -441,7 +430,7 @@ class HistorySetup:
         radius = min(guess, indenter.max_radius)
         for _ in range(12):
             record = simulate(self.condensed(radius, PILOT_CELLS))
-            largest = float(record.column("radius").max())
+            largest = max(sample.radius for sample in record)
             if largest == 0:
                 raise NotConvergedError(
                     "the pilot simulation presses at no step: a strong dashpot stops the body, or nothing presses"

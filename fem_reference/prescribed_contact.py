@@ -23,7 +23,7 @@ from contact.records.validation import FloatArray
 from fem_reference.layer import DiscreteLayer
 from fem_reference.profiles import ScaledIndenter
 from fem_reference.settings import Discretisation, contact_section, narrowest_radius
-from fem_reference.trace import TraceSpace
+from fem_reference.surface import TraceSpace
 
 # Largest relative difference of the stiffness by energy and by reactions: sound solutions agree to 1e-12, a broken
 # factorisation errs by 1e-2.
@@ -147,7 +147,6 @@ def solve_contact(
     settings: Discretisation,
     log: StageLog,
     *,
-    backend: str = "superlu",
     sticks: bool = False,
 ) -> PrescribedContact:
     """Mesh the section around a contact radius [m] and solve it.
@@ -159,7 +158,6 @@ def solve_contact(
         radius: contact radius [m].
         settings: numerical settings.
         log: of the stages.
-        backend: linear solver.
         sticks: whether the indenter holds the surface in the radial direction.
     """
     layer, flat = scene.layer, scene.indenter.flat_radius
@@ -167,7 +165,7 @@ def solve_contact(
     indenter = ScaledIndenter(scene.indenter, meshed)
     with log.stage("mesh"):
         parts, section = contact_section(layer, indenter, settings)
-    contact = solve_prescribed_contact(DiscreteLayer(section, settings.pair, parts, sticks, backend), indenter, log)
+    contact = solve_prescribed_contact(DiscreteLayer(section, settings.pair, parts, sticks), indenter, log)
     return contact if meshed == radius else contact.narrowed(float(np.sqrt((radius - flat) / (meshed - flat))))
 
 
@@ -188,7 +186,7 @@ def solve_prescribed_contact(layer: DiscreteLayer, indenter: ScaledIndenter, log
         log.hold(layer.elements.nbytes)
     with log.stage("factor"):
         solver = layer.solver(np.concatenate([layer.supported_unknowns, pressed]))
-    log.count("factorisations", solver.checked.factorisations)
+    log.count("factorisations", solver.factorisations)
     with log.stage("solve"):
         values = np.zeros((len(solver.held), 2))
         values[-len(pressed) :] = np.column_stack([np.ones_like(radii), -indenter.height(radii)])

@@ -13,9 +13,6 @@ from fem_reference.materials import Parts, parts_of
 from fem_reference.mesh import Graded, Section, section_mesh
 from fem_reference.profiles import ScaledIndenter
 
-# A ring between a kink and the contact's edge narrower than this times contact radius and thickness needs cells that
-# grow by at most NARROW_GROWTH: with 0.9 stiffness slopes err by 1e-3, with 0.7 by 1e-5.
-NARROW, NARROW_GROWTH = 0.1, 0.7
 # Growth of the companion over that of the answer: errors fall like its seventh power. With 1.25 two meshes agree by
 # accident, with 2 stated errors are a hundred times too large.
 COARSER = 1.5
@@ -26,10 +23,6 @@ COARSER_EDGE = 10.0
 NARROWEST = 1e-7
 # Smallest cell over the radius: nodes nearer than a thousand roundings coincide.
 SMALLEST = 1e-13
-# Smallest edge cell before an upright end, over the radius: with 1e-13 one mesh in six is uneven, with 1e-11 one in 20.
-SMALLEST_BEFORE_END = 1e-11
-# Largest growth before an upright end that is nearer than NARROW: at 0.7 a sixth of depths err by a tenth.
-GROWTH_BEFORE_END = 0.5
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -113,12 +106,9 @@ class Discretisation:
 def contact_section(layer: ElasticLayer, indenter: ScaledIndenter, settings: Discretisation) -> tuple[Parts, Section]:
     """The graded section of a contact of known radius, with vertices at the edge and at every kink and breakpoint."""
     parts = parts_of(layer, indenter.contact_radius, settings.half_space_thickness)
-    near = NARROW * min(1.0, parts.parts[0].thickness)
-    limits = {NARROW_GROWTH: 1.0 - indenter.last_kink, GROWTH_BEFORE_END: indenter.left_to_upright_end}
-    slow = [growth * settings.coarsening for growth, distance in limits.items() if distance < near]
-    settings = replace(settings, growth=min([settings.growth, *slow]))
     points = graded_points(parts.parts[0].thickness, indenter, settings)
-    return parts, section_mesh(parts, settings.outer_radius(parts), points, settings.growth)
+    end = 1.0 + indenter.left_to_upright_end
+    return parts, section_mesh(parts, settings.outer_radius(parts), points, settings.growth, end=end)
 
 
 def graded_points(thickness: float, indenter: ScaledIndenter, settings: Discretisation) -> Graded:
@@ -127,10 +117,8 @@ def graded_points(thickness: float, indenter: ScaledIndenter, settings: Discreti
     At the edge the energy error of the last cell falls like its size; at a kink, where the stress is merely
     logarithmic, like its square, but the L2 error of the pressure like its root.
     """
-    before_end = settings.edge_cell * indenter.left_to_upright_end
-    before_end = max(before_end, SMALLEST_BEFORE_END * settings.coarsening**6)
-    edge_cell = min(settings.edge_cell * min(1.0, thickness, 1.0 - indenter.last_kink), before_end)
-    edge_cell = max(edge_cell, SMALLEST)
+    nearest = min(1.0, thickness, 1.0 - indenter.last_kink, indenter.left_to_upright_end)
+    edge_cell = max(settings.edge_cell * nearest, SMALLEST)
     cells = {r: 0.5 * settings.growth * min(1.0, thickness) for r in indenter.breakpoints}
     ends = (0.0, *sorted(indenter.kinks), 1.0)
     for left, r, right in zip(ends, ends[1:], ends[2:], strict=False):

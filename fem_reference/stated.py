@@ -6,8 +6,7 @@ narrow rings, nodes of a branch and time steps are all coarser in the companion.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import TypeVar
 
@@ -25,13 +24,12 @@ from contact import (
     NotConvergedError,
     Scene,
     Solution,
-    UnsupportedSceneError,
 )
 from contact.answer.accuracy import shortfalls
 from contact.records.validation import FloatArray
 from contact.stated import SAFETY
 from fem_reference.equilibria import FemEquilibrium, change_beside
-from fem_reference.settings import NARROW, Discretisation
+from fem_reference.settings import Discretisation
 
 S = TypeVar("S", bound=Solution)
 
@@ -40,9 +38,6 @@ FLOOR = 1e-12
 # Least change of a number of a state, over the largest of them: two meshes may agree in one number by accident. With a
 # tenth one stiffness in a hundred is missed by three, twice of it widens half of all stated errors.
 LEAST_SHARE = 0.3
-# Factor on changes next to an upright end nearer than `NARROW`, where meshes are uneven. With half of it a sphere
-# 1e-9 before its equator is missed.
-BEFORE_END = 16.0
 # Stated errors of P4P3 fall like this power of the growth on graded meshes.  It chooses the next mesh only: a wrong
 # value costs attempts, no accuracy.
 ERROR_ORDER = 7.0
@@ -83,8 +78,7 @@ def path_with_errors(
     coarser: Sequence[FemEquilibrium],
 ) -> ContactPath:
     """The path with its stated errors; the states are those of both paths."""
-    uneven = np.array([BEFORE_END if s.contact.indenter.left_to_upright_end < NARROW else 1.0 for s in states])
-    changes = {name: uneven * _with_neighbours(relative_change(answer, companion, name)) for name in answer.ARRAYS}
+    changes = {name: _with_neighbours(relative_change(answer, companion, name)) for name in answer.ARRAYS}
     exact = set() if answer.scene.effect(Adhesion) is not None else exact_names(answer.scene)
     least = LEAST_SHARE * np.max([changes[name] for name in answer.ARRAYS if name != "contact_radius"], axis=0)
     # The stiffness of a load errs with its radius, too.
@@ -196,18 +190,3 @@ def _finer(settings: Discretisation, numbers: float, pressure: float) -> Discret
         edge_cell=float(max(settings.edge_cell * max(edge, 1e-4), 1e-12)),
         truncation=max(settings.truncation / 10, 1e-13),
     )
-
-
-@contextmanager
-def meshes_that_fit() -> Iterator[None]:
-    """Turns the end of the memory into words.
-
-    Raises:
-        UnsupportedSceneError: the memory ended.
-    """
-    try:
-        yield
-    except MemoryError:
-        raise UnsupportedSceneError(
-            "the mesh does not fit into memory: ask fem for a less strict accuracy, or give it a larger growth"
-        ) from None

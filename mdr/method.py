@@ -36,10 +36,12 @@ from contact import (
     Loading,
     NormalForces,
     Scene,
+    Shape,
     Solution,
     Supported,
     Unsupported,
     UnsupportedSceneError,
+    not_round,
 )
 from contact.answer.no_contact import without_contact
 from contact.answer.one_thread import one_thread
@@ -120,8 +122,14 @@ def _compressible_part(layer: ElasticLayer) -> str:
     return f"layer.poissons_ratio = {layer.surface.poissons_ratio:g}"
 
 
+SHAPES = Solver((), (IndentationDepths, NormalForces), "mdr.shapes", "solve_shape")
+
+
 def solver_of(scene: Scene) -> Solver | Unsupported:
     """The computation for a scene, or what stands in the way."""
+    if isinstance(scene.indenter, Shape):
+        other = None if SHAPES.takes(scene) else not_round("mdr", scene, "without effects under depths or forces")
+        return SHAPES if other is None else other
     viscous = scene.effect(Viscoelasticity)
     if viscous is not None and (reason := _not_relaxing(scene.layer, type(viscous).__name__)):
         return Unsupported(reason)

@@ -15,7 +15,7 @@ import numpy as np
 
 from bem.numerics import EPS
 from contact import InvalidInput, NotConvergedError, Profile, UnsupportedSceneError
-from contact.records.validation import FloatArray
+from contact.records.validation import BoolArray, FloatArray
 from mdr.spring_bed import Springs
 
 Quantity = Literal["depth", "force"]
@@ -24,10 +24,14 @@ Quantity = Literal["depth", "force"]
 _NEAR_END, _CLOSER = 0.7, (0.2, 0.05, 0.01, 1e-3, 1e-6)
 # Radii per e-fold of the rough table. Half as many cost one more secant step.
 _DENSITY = 6
-# Secant steps before a search gives up; four are usual.
-_MOST_STEPS = 40
-# Largest last step over the radius with which a search ends; a thousandth of it is usual.
-_MOVED = 1e-10
+# ln(load) missed by a cubic between knots up to which one step of Newton suffices: their slopes are good to 1e-6.
+_NEAR = 1e-10
+# First interval over the first step. With half of it every second interval has to grow, twice of it takes a step more.
+_WIDER = 2.0
+# Steps before a search gives up; four are usual, and halving alone needs sixty.
+_MOST_STEPS = 200
+# ln(load) missed by roundings, which reach 4e-15. Twice of it shows in radii.
+_SMALLEST = 1e-14
 # ln(a/h) below which the layers under the first change g too little to let it fall.
 _WITHIN_LAYER = -5.0
 # Places around each maximum of g. Half as many miss depths within 0.3 % of the maximum.
@@ -241,8 +245,21 @@ class RadiusSearch:
         if y.size <= _MANY:
             return self.refined(quantity, y, np.interp(y, table, z), np.interp(y, table, slope))
         knots = np.linspace(y.min(), y.max(), _KNOTS)
-        inner = self.refined(quantity, knots, np.interp(knots, table, z), np.interp(knots, table, slope))
-        return self.refined(quantity, y, *_between(knots, self.scale(inner), y))
+        inner = self.scale(self.refined(quantity, knots, np.interp(knots, table, z), np.interp(knots, table, slope)))
+        parts = np.array_split(y, y.size // _KNOTS)
+        return np.concatenate([self._between(quantity, part, *_cubics(knots, inner, part)) for part in parts])
+
+    def _between(self, quantity: Quantity, y: FloatArray, z: FloatArray, slope: FloatArray) -> FloatArray:
+        """Radii [m] with these logarithms by one step of Newton from cubics between knots, where it suffices."""
+        missed = self.logarithm(self.springs, quantity, z) - y
+        radius, far = self._radius(z - missed / slope), np.abs(missed) > _NEAR
+        radius[far] = self.refined(quantity, y[far], z[far], slope[far]) if far.any() else 0.0
+        return radius
+
+    def _radius(self, z: FloatArray) -> FloatArray:
+        """Radii [m] at z; what doubles cannot tell from the flat end is put there."""
+        radius, flat = self.place(z), self.springs.tip.flat
+        return np.where(radius - flat < 8 * EPS * flat, flat, radius)
 
     def _beyond_falls(
         self,
@@ -282,31 +299,71 @@ class RadiusSearch:
         raise objection
 
     def refined(self, quantity: Quantity, y: FloatArray, z: FloatArray, slope: FloatArray) -> FloatArray:
-        """Radii [m] with these logarithms by secants from a start and its slope."""
-        tip = self.springs.tip
-        slope = np.maximum(slope, 1e-3)
-        least, most, missed = 0.5 * slope, 2 * slope, np.inf
-        new, old, f_old = z, z, z
-        for number in range(_MOST_STEPS):
-            f = self.logarithm(self.springs, quantity, new) - y
-            worst = float(np.abs(f).max(initial=0.0))
-            if number > 0:
-                with np.errstate(all="ignore"):
-                    secant = np.nan_to_num((f - f_old) / (new - old), nan=1.0)
-                slope = np.where(np.abs(new - old) > 1e-8, np.clip(secant, least, most), slope)
-            old, f_old, new = new, f, new - f / slope
-            if worst < 1e-13 or (worst < 1e-12 and worst > 0.5 * missed):
-                break
-            missed = worst
-        found = self.place(new)
-        moved = float((np.abs(found - self.place(old)) / np.maximum(found, 1e-300)).max(initial=0.0))
-        if moved > _MOVED:
-            raise NotConvergedError("the contact radius was not found", {"last step over the radius": moved})
-        # What doubles cannot tell from the flat end is put there.
-        return np.where(found - tip.flat < 8 * EPS * tip.flat, tip.flat, found)
+        """Radii [m] with these logarithms, from a start and its slope.
+
+        Raises:
+            NotConvergedError: If one was not found.
+        """
+
+        def missed(z: FloatArray, at: BoolArray) -> FloatArray:
+            return self.logarithm(self.springs, quantity, z) - y[at]
+
+        first = missed(z, np.ones(z.shape, dtype=np.bool_))
+        step = -_WIDER * first / np.maximum(slope, 1e-3)
+        step = np.where(first < 0, 1, -1) * np.maximum(np.abs(step), EPS * (1 + np.abs(z)))
+        return self._radius(_roots(missed, z, first, step))
 
 
-def _between(knots: FloatArray, z: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _roots(
+    missed: Callable[[FloatArray, BoolArray], FloatArray], start: FloatArray, first: FloatArray, step: FloatArray
+) -> FloatArray:
+    """Roots x of increasing functions, shape (n,), by Chandrupatla's method: Adv. Eng. Softw. 28 (1997) 145.
+
+    Between places of both signs it takes inverse quadratic interpolation where that is safe, and halves elsewhere.
+
+    Args:
+        missed: Values at x of the functions that a mask of shape (n,) names.
+        start: Places to begin with.
+        first: Values there.
+        step: Towards the root. It doubles until it reaches beyond.
+
+    Raises:
+        NotConvergedError: If a root was not found.
+    """
+    x1, f1, x2, f2 = start.copy(), first.copy(), start + step, np.full(start.shape, np.nan)
+    at = np.ones(start.shape, dtype=np.bool_)
+    for _ in range(_MOST_STEPS):
+        f2[at] = missed(x2[at], at)
+        at = ~((f1 * f2 <= 0) | (np.abs(f2) <= _SMALLEST))
+        if not at.any():
+            break
+        x1, f1, step = np.where(at, x2, x1), np.where(at, f2, f1), 2 * step
+        x2 = np.where(at, x2 + step, x2)
+    else:
+        raise NotConvergedError("no contact radius has the load", {"ln(load) missed by": float(np.abs(f2[at]).max())})
+    x3, f3, share, at = x2, f2, np.full(start.shape, 0.5), np.ones(start.shape, dtype=np.bool_)
+    for _ in range(_MOST_STEPS):
+        best: FloatArray
+        best, least = np.where(np.abs(f1) < np.abs(f2), (x1, np.abs(f1)), (x2, np.abs(f2)))
+        narrow = 2 * EPS * (1 + np.abs(best)) / np.maximum(np.abs(x2 - x1), 1e-300)
+        at = (least > _SMALLEST) & (narrow < 0.5)
+        if not at.any():
+            return best
+        x = x1 + np.clip(share, narrow, 1 - narrow) * (x2 - x1)
+        f = np.where(at, 0.0, f1)
+        f[at] = missed(x[at], at)
+        same = f * f1 > 0
+        x, f = np.where(at, (x, f), (x1, f1))
+        x3, f3, x2, f2 = np.where(at, np.where(same, (x1, f1, x2, f2), (x2, f2, x1, f1)), (x3, f3, x2, f2))
+        x1, f1 = x, f
+        with np.errstate(all="ignore"):
+            xi, phi = (x1 - x2) / (x3 - x2), (f1 - f2) / (f3 - f2)
+            quadratic = f1 / (f2 - f1) * f3 / (f2 - f3) + (x3 - x1) / (x2 - x1) * f1 / (f3 - f1) * f2 / (f3 - f2)
+            share = np.where((phi**2 < xi) & ((1 - phi) ** 2 < 1 - xi), quadratic, 0.5)
+    raise NotConvergedError("the contact radius was not found", {"ln(load) missed by": float(least.max())})
+
+
+def _cubics(knots: FloatArray, z: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
     """z at y by cubics with mean slopes between equidistant knots, and dy/dz."""
     step, rise, pace = knots[1] - knots[0], np.diff(z), np.gradient(z)
     before, after = pace[:-1] - rise, pace[1:] - rise

@@ -4,7 +4,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from cases.measurements.sweep import Sweep
+from cases.sweep import Sweep
 from contact import (
     ContactRadii,
     DepthHistory,
@@ -18,6 +18,7 @@ from contact import (
     Solution,
 )
 from contact.records.validation import FloatArray
+from reports.answer_plot import axis_label, factor
 from reports.style import BLACK, line_with_band, look_of, panels
 from reports.words import display_name, scaled_column
 
@@ -46,7 +47,7 @@ def solution_figure(solution: Solution, curve: Solution | None = None) -> Figure
     shown = ("normal_force", "indentation_depth", "contact_radius") if in_time else ("normal_force", "contact_radius")
     drawing, all_axes = panels(len(shown), size=SIZE)
     for axes, y in zip(all_axes, shown, strict=True):
-        axes.set(xlabel=solution.label(x), ylabel=solution.label(y))
+        axes.set(xlabel=axis_label(solution, x), ylabel=axis_label(solution, y))
         _draw_answer(axes, solution, curve, (x, y))
     drawing.legend(handles=all_axes[0].get_legend_handles_labels()[0], loc="outside lower center", ncols=2)
     return drawing
@@ -72,9 +73,9 @@ def _in_units(
     drawn: Solution, answer: Solution, names: tuple[str, str]
 ) -> tuple[FloatArray, FloatArray, FloatArray | None]:
     """States of `drawn` and the stated error of the second quantity, in the units of the axes of `answer`."""
-    x, y = (getattr(drawn, name) * answer.factor(name) for name in names)
+    x, y = (getattr(drawn, name) * factor(answer, name) for name in names)
     stated = drawn.stated_error(names[1])
-    return x, y, None if stated is None else stated * answer.factor(names[1])
+    return x, y, None if stated is None else stated * factor(answer, names[1])
 
 
 def between(scene: Scene) -> Scene | None:

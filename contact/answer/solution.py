@@ -11,13 +11,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from html import escape
 from importlib import import_module
-from io import StringIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Final, Self
 
 import numpy as np
 
-from contact.answer.evidence import SYMBOLS, UNITS, Evidence, Setting, StatedErrors
+from contact.answer.evidence import UNITS, Evidence, Setting, StatedErrors
 from contact.answer.inside import Inside
 from contact.answer.stages import Cost, StageRecord
 from contact.records.errors import InvalidInput, shown
@@ -25,26 +24,18 @@ from contact.records.extras import missing_extra
 from contact.records.record import Record, unit_of
 from contact.records.units import prefix_for
 from contact.records.validation import FloatArray
-from contact.scene.loading import ForceHistory
 from contact.scene.scene import Scene
 
 if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
-    from matplotlib.axes import Axes
 
 __all__ = ["Setting", "Solution", "StatedErrors", "scene_line"]
 
-# More prescribed states than these are drawn as a line, fewer as symbols.
-_MOST_SYMBOLS: Final = 40
 # A line shows so many sublayers of a stack.
 _MOST_RECORDS: Final = 3
-# Values where contact is lost, by the array that they lie on.
-_AT_LOSS: Final = {
-    "indentation_depth": "pull_off_depth",
-    "normal_force": "force_at_loss",
-    "contact_radius": "pull_off_contact_radius",
-}
+# Draws answers; all that draws imports matplotlib.
+_DRAWING: Final = "reports.answer_plot"
 _EVERYWHERE: Final = ("uncertainty(quantity)", "error_estimate", "settings", "stages", "cost")
 _SCHEMA: Final = "contact-verification/solution/2"
 # Files of the first layout differ in one entry, which only detachments have.
@@ -122,7 +113,7 @@ class Solution(Evidence):
 
     # -- curve ---------------------------------------------------------------------------------------------------------
 
-    def plot(self, y: str | None = None, x: str | None = None, axes: Axes | None = None) -> Axes:
+    def plot(self, y: str | None = None, x: str | None = None, axes: Any = None) -> Any:
         """Draws one array of the answer over another, with units, and the stated error as a band.
 
         Args:
@@ -137,58 +128,14 @@ class Solution(Evidence):
             ImportError: If matplotlib is not installed.
             ValueError: If the answer has no such array.
         """
-        y = y or ("indentation_depth" if isinstance(self.scene.loading, ForceHistory) else "normal_force")
-        x = x or ("time" if "time" in self.ARRAYS else "indentation_depth")
-        for name in (x, y):
-            if name not in self.ARRAYS:
-                raise ValueError(f"{type(self).__name__} has no array {name!r}; it has {', '.join(self.ARRAYS)}")
-        if axes is None:
-            axes = _imported("matplotlib.pyplot").subplots(layout="constrained")[1]
-        stated = self.stated_error(y)
-        if stated is not None:
-            label = f"stated error, at most {np.max(stated):.1g} {UNITS[y]}"
-            ends = ((getattr(self, y) + side * stated) * self.factor(y) for side in (-1, 1))
-            axes.fill_between(getattr(self, x) * self.factor(x), *ends, alpha=0.25, linewidth=0, label=label)
-        self._draw(axes, x, y)
-        axes.set(xlabel=self.label(x), ylabel=self.label(y))
-        axes.legend()
-        return axes
-
-    def _draw(self, axes: Axes, x: str, y: str) -> None:
-        """The curve, or symbols at few prescribed states; of a detachment, the states stable under its control."""
-        across, up = (getattr(self, name) * self.factor(name) for name in (x, y))
-        control = getattr(self.scene.loading, "control", None)
-        stable = getattr(self, f"stable_{control}_control", None)
-        if stable is None:
-            is_curve = self.CURVE_ALONE or len(self) > _MOST_SYMBOLS
-            axes.plot(across, up, "-" if is_curve else "o", label=self.method)
-            return
-        label = f"{self.method}, stable under {control} control"
-        (line,) = axes.plot(across, np.where(stable, up, np.nan), "-", label=label)
-        axes.plot(across, up, ":", color=line.get_color(), label="whole branch", zorder=0)
-        if {x, y} <= _AT_LOSS.keys():
-            place = [getattr(self, _AT_LOSS[name]) * self.factor(name) for name in (x, y)]
-            axes.plot(*place, "o", color=line.get_color(), label="loss of contact")
-
-    def factor(self, name: str) -> float:
-        """Values of an array in the unit of its axis over values in SI."""
-        return 1.0 / prefix_for(getattr(self, name))[0]
-
-    def label(self, name: str) -> str:
-        """The axis label of an array: name, symbol and unit with a fitting prefix."""
-        symbol = SYMBOLS[name].replace("k_N", "$k_N$")
-        return f"{name.replace('_', ' ')} {symbol} [{prefix_for(getattr(self, name))[1]}{UNITS[name]}]"
+        return _imported(_DRAWING).plot(self, y, x, axes)
 
     def _svg(self) -> str:
         """The curve of `plot` as inline SVG; empty where matplotlib is missing."""
         try:
-            figure = _imported("matplotlib.figure").Figure(figsize=(5.0, 3.2), layout="constrained")
+            return str(_imported(_DRAWING).inline_svg(self))
         except ImportError:
             return ""
-        self.plot(axes=figure.subplots())
-        text = StringIO()
-        figure.savefig(text, format="svg")
-        return text.getvalue()[text.getvalue().index("<svg") :]
 
     # -- tables --------------------------------------------------------------------------------------------------------
 

@@ -12,13 +12,12 @@ from typing import Any
 import numpy as np
 from pydantic import TypeAdapter
 
-from contact.records.columns import read_text
 from contact.records.errors import InvalidInput, shown
 from contact.records.record import Record, read
+from contact.records.tables import read_bytes
 from contact.records.validation import Derived, Reading
 from contact.scene.effects import EFFECTS, Viscoelasticity
 from contact.scene.layer import Layer
-from contact.scene.profiles import PYRAMID_NOTE
 from contact.scene.scene import AnyScene, Scene
 
 
@@ -36,7 +35,10 @@ def load_scene(path: str | Path) -> Scene:
 
 
 def _tables(file: Path) -> dict[str, Any]:
-    text = read_text(file, "a scene")
+    try:
+        text = read_bytes(file, "a scene").decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise InvalidInput(f"{file}: not a text file in UTF-8 (byte {error.start}); save it in UTF-8") from None
     if not text.strip():
         raise InvalidInput(f"{file}: the file is empty; a scene needs [layer], [indenter] and [loading]")
     try:
@@ -88,11 +90,6 @@ def _with_modulus(mapping: Mapping[str, Any], reading: Reading) -> Mapping[str, 
     ratio = layer.get("poissons_ratio")
     nu = ratio if isinstance(ratio, int | float) and 0 <= ratio <= 0.5 else 0.5
     return {**mapping, "layer": {**layer, "youngs_modulus": Derived(2 * (1 + nu) * shear)}}
-
-
-def scene_notes(path: str | Path) -> list[str]:
-    """Notes on the conversion of a scene file, such as of a pyramid to a cone."""
-    return [PYRAMID_NOTE] if _tables(Path(path)).get("indenter", {}).get("kind") == "pyramid" else []
 
 
 def uses_units(path: str | Path) -> bool:

@@ -26,15 +26,16 @@ import numpy as np
 import pydantic
 import pydantic.dataclasses
 from pydantic import Discriminator, InstanceOf, Tag, TypeAdapter, model_validator
-from pydantic.fields import FieldInfo
 from pydantic.json_schema import SkipJsonSchema
-from pydantic_core import ArgsKwargs, PydanticUndefined
+from pydantic_core import ArgsKwargs
 
-from contact.records.errors import OF_PARTS, SHOWN, InvalidInput, printable, refused, shown
+from contact.records.errors import OF_PARTS, SHOWN, InvalidInput, printable, shown
 from contact.records.units import Unit
 
 # Validators are built when the first record of a class is made: scenes use few of the classes.
 _CONFIG = pydantic.ConfigDict(arbitrary_types_allowed=True, extra="forbid", strict=True, defer_build=True)
+# Frozen by `Record` itself: methods that are generated for each class take a tenth of the time of `import contact`.
+_OPTIONS: Any = {"kw_only": True, "eq": False, "repr": False, "config": _CONFIG}
 # Other names that books and users give to fields.
 _SYNONYMS = {
     "base": "support",
@@ -49,6 +50,8 @@ _SYNONYMS = {
 _MOST_LINES = 8
 # Prefix of a union's members in the paths of pydantic's errors; paths are shown without them.
 _TAG = "kind:"
+# Type of pydantic's error of a name that no field has.
+_UNKNOWN = "unexpected_keyword_argument"
 
 
 class _RecordType(ABCMeta):
@@ -60,8 +63,7 @@ class _RecordType(ABCMeta):
             try:
                 return super().__call__(*args, **kwargs)
             except pydantic.ValidationError as error:
-                names = [field.name for field in dataclasses.fields(cls)]
-                raise InvalidInput(describe(error, cls.__name__, names)) from None
+                raise InvalidInput(describe(error, cls, cls.__name__)) from None
 
         @property
         def __signature__(cls) -> inspect.Signature:
@@ -73,17 +75,28 @@ class _RecordType(ABCMeta):
 
 
 def _parameter(field: dataclasses.Field[Any]) -> inspect.Parameter:
-    given = field.default
-    default, by_name = (given.default, given.kw_only) if isinstance(given, FieldInfo) else (given, True)
     return inspect.Parameter(
         field.name,
-        inspect.Parameter.POSITIONAL_OR_KEYWORD if by_name is False else inspect.Parameter.KEYWORD_ONLY,
-        default=inspect.Parameter.empty if default in (dataclasses.MISSING, PydanticUndefined) else default,
+        inspect.Parameter.KEYWORD_ONLY if field.kw_only else inspect.Parameter.POSITIONAL_OR_KEYWORD,
+        default=inspect.Parameter.empty if field.default is dataclasses.MISSING else field.default,
         annotation=re.sub(r"Annotated\[([^,]+), .*", r"\1", str(field.type)),
     )
 
 
-@pydantic.dataclasses.dataclass(frozen=True, kw_only=True, eq=False, config=_CONFIG)
+C = TypeVar("C")
+
+
+@dataclass_transform(frozen_default=True, kw_only_default=True, field_specifiers=(dataclasses.field, pydantic.Field))
+def record(cls: type[C]) -> type[C]:
+    """Make a `Record` subclass a frozen, keyword-only dataclass that validates its fields.
+
+    Raises:
+        InvalidInput: At construction, one line for each offending field.
+    """
+    return cast(type[C], pydantic.dataclasses.dataclass(cls, **_OPTIONS))
+
+
+@record
 class Record(metaclass=_RecordType):
     """Base of all records: equality, hash and change by copying, by content (arrays included)."""
 
@@ -93,6 +106,18 @@ class Record(metaclass=_RecordType):
     """Entries of files that replace fields, with their JSON schemas."""
     REPLACED: ClassVar[Mapping[str, str]] = {}
     """Fields that files may leave out, with the shorthand that replaces them; "" for another part of the scene."""
+
+    if not TYPE_CHECKING:  # type checkers know that records are frozen
+
+        def __setattr__(self, name: str, value: object) -> None:
+            raise dataclasses.FrozenInstanceError(f"cannot assign to field {name!r}")
+
+        def __delattr__(self, name: str) -> None:
+            raise dataclasses.FrozenInstanceError(f"cannot delete field {name!r}")
+
+    def __repr__(self) -> str:
+        fields = (f"{field.name}={getattr(self, field.name)!r}" for field in dataclasses.fields(self))
+        return f"{type(self).__qualname__}({', '.join(fields)})"
 
     def _content(self) -> tuple[Any, ...]:
         values = [getattr(self, field.name) for field in dataclasses.fields(self)]
@@ -115,16 +140,10 @@ class Record(metaclass=_RecordType):
 
     @model_validator(mode="before")
     @classmethod
-    def _known_fields(cls, given: Any) -> Any:
-        """The fields without the entry `kind` that chose the class; one error lists all unknown names."""
-        fields = given.kwargs or {} if isinstance(given, ArgsKwargs) else given
-        if not isinstance(fields, Mapping):
-            return given
-        names = [field.name for field in dataclasses.fields(cls)]
-        if fields is given and fields.get("kind") == cls.kind():
-            given = fields = {name: value for name, value in fields.items() if name != "kind"}
-        if unknown := [name for name in fields if name not in names]:
-            raise refused(*(f"{_key(name)} = {shown(fields[name])}: {_no_such(name, names)}" for name in unknown))
+    def _without_kind(cls, given: Any) -> Any:
+        """The fields without the entry `kind` that chose the class."""
+        if isinstance(given, Mapping) and given.get("kind") == cls.kind():
+            return {name: value for name, value in given.items() if name != "kind"}
         return given
 
     @classmethod
@@ -149,17 +168,6 @@ class Record(metaclass=_RecordType):
 
 
 R = TypeVar("R", bound=Record)
-
-
-@dataclass_transform(frozen_default=True, kw_only_default=True, field_specifiers=(dataclasses.field, pydantic.Field))
-def record(cls: type[R]) -> type[R]:
-    """Make a `Record` subclass a frozen, keyword-only dataclass that validates its fields.
-
-    Raises:
-        InvalidInput: At construction, one line for each offending field.
-    """
-    made = pydantic.dataclasses.dataclass(cls, frozen=True, kw_only=True, eq=False, config=_CONFIG)
-    return cast(type[R], made)  # pydantic returns the class that it was given
 
 
 class OneOf:
@@ -193,7 +201,7 @@ def read(cls: type[R], table: Mapping[str, Any], name: str, context: object = No
     try:
         return cast(R, _adapter(cls).validate_python(table, strict=False, context=context))
     except pydantic.ValidationError as error:
-        raise InvalidInput(describe(error, "", top=name)) from None
+        raise InvalidInput(describe(error, cls, "", top=name)) from None
 
 
 @functools.cache
@@ -218,24 +226,64 @@ def _parts(annotation: Any) -> Iterable[Any]:
         yield from _parts(part)
 
 
-def describe(error: pydantic.ValidationError, place: str, names: Sequence[str] = (), top: str = "") -> str:
+def describe(error: pydantic.ValidationError, cls: type[Record], place: str, top: str = "") -> str:
     """One line for each problem: path of the field below a place, its value, what is required and the remedy.
 
     Args:
         error: Of pydantic.
+        cls: The record that was to be made.
         place: Beginning of every path.
-        names: Fields that may be given by position.
         top: Name of the whole in a message that is not about one field; by default the place.
     """
     lines: list[str] = []
-    for detail in error.errors():
+    details = error.errors(include_url=False)
+    # A field that is written with another name is missing as well, and named once.
+    meant = {(*detail["loc"][:-1], _meant(cls, detail["loc"])) for detail in details if detail["type"] == _UNKNOWN}
+    for detail in details:
         steps = [step for step in detail["loc"] if not str(step).startswith(_TAG)]
-        if names and steps and isinstance(steps[0], int) and steps[0] < len(names):
-            steps[0] = names[steps[0]]
+        if place and steps and isinstance(steps[0], int) and steps[0] < len(_names(cls)):
+            steps[0] = _names(cls)[steps[0]]
         path = functools.reduce(_below, steps, place)
-        lines += _lines(path or top, dict(detail), in_file=not place, is_whole=not steps)
+        if detail["type"] == _UNKNOWN:
+            lines.append(f"{path} = {shown(detail['input'])}: {_no_such(cls, detail['loc'])}")
+        elif not (detail["type"].startswith("missing") and detail["loc"] in meant):
+            lines += _lines(path or top, dict(detail), in_file=not place, is_whole=not steps)
     more = len(lines) - _MOST_LINES
     return "\n".join([*lines[:_MOST_LINES], f"{place or top}: {more} more problems"] if more > 0 else lines)
+
+
+def _names(cls: type[Record]) -> list[str]:
+    return [field.name for field in dataclasses.fields(cls)]
+
+
+def _class_at(cls: type[Record], steps: Sequence[str | int]) -> type[Record]:
+    """The record below some steps of a path of pydantic's."""
+    offered: dict[str, type[Record]] = {}
+    for step in map(str, steps):
+        if step.startswith(_TAG):
+            cls = offered.get(step.removeprefix(_TAG), cls)
+        elif step in _names(cls):
+            parts = list(_parts(get_type_hints(cls, include_extras=True)[step]))
+            offered = {kind: one for part in parts if isinstance(part, OneOf) for kind, one in part.names.items()}
+            cls = next((part for part in parts if isinstance(part, type) and issubclass(part, Record)), cls)
+    return cls
+
+
+def _meant(cls: type[Record], path: Sequence[str | int]) -> str:
+    """The field that an unknown name at the end of a path stands for; empty if none is close."""
+    from difflib import get_close_matches  # noqa: PLC0415  # records without errors do not pay for it
+
+    names, written = _names(_class_at(cls, path[:-1])), str(path[-1])
+    close = [_SYNONYMS.get(written, ""), *get_close_matches(written, names, n=1)]
+    return next((name for name in close if name in names), "")
+
+
+def _no_such(cls: type[Record], path: Sequence[str | int]) -> str:
+    """The remedy for a name that no field has: the closest name, or all of them."""
+    if meant := _meant(cls, path):
+        return f"no such field; write {meant} instead"
+    names = ", ".join(_names(_class_at(cls, path[:-1])))
+    return f"no such field; remove it or correct its spelling (there are {names})"
 
 
 def _below(place: str, step: str | int) -> str:
@@ -261,15 +309,6 @@ def _lines(place: str, detail: dict[str, Any], *, in_file: bool, is_whole: bool)
         message = "must be a list"
     whole = (is_whole and in_file) or isinstance(value, ArgsKwargs | Record)
     return [f"{place}: {message}" if whole else f"{place} = {shown(value)}: {message}"]
-
-
-def _no_such(written: object, names: list[str]) -> str:
-    """The remedy for a name that no field has: the closest name, if one is close."""
-    from difflib import get_close_matches  # noqa: PLC0415  # records without errors do not pay for it
-
-    close = get_close_matches(written, names, n=1) if isinstance(written, str) else []
-    meant = [name for name in (_SYNONYMS.get(str(written)), *close) if name in names]
-    return f"no such field; {f'write {meant[0]} instead' if meant else 'remove it or correct its spelling'}"
 
 
 def _key(name: object) -> str:

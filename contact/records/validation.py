@@ -18,8 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import PlainValidator, ValidationInfo, WithJsonSchema
 
-from contact.records.columns import MAX_ENTRIES, column_in_si
 from contact.records.errors import refused, shown
+from contact.records.tables import MAX_ENTRIES, column_in_si
 from contact.records.units import Unit, in_si
 
 FloatArray: TypeAlias = NDArray[np.float64]

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import field
 from typing import Annotated, ClassVar, Literal, TypeAlias
 
-from pydantic import Field, model_validator
+from pydantic import model_validator
 
 from contact.records.record import Record, record
 from contact.records.validation import FloatArray, PositiveLength, Vector, positive, vector
@@ -30,7 +31,7 @@ class ContactRadii(Loading):
         values: a [m], positive and increasing, shape (n,).
     """
 
-    values: Annotated[Vector, *vector("give contact radii in metres", "m", above=0.0, increasing=True)] = Field(
+    values: Annotated[Vector, *vector("give contact radii in metres", "m", above=0.0, increasing=True)] = field(
         kw_only=False
     )
 
@@ -47,7 +48,7 @@ class IndentationDepths(Loading):
         values: delta [m], shape (n,); negative only with adhesion.
     """
 
-    values: Annotated[Vector, *vector("give indentation depths in metres", "m")] = Field(kw_only=False)
+    values: Annotated[Vector, *vector("give indentation depths in metres", "m")] = field(kw_only=False)
 
 
 @record
@@ -58,7 +59,7 @@ class NormalForces(Loading):
         values: F_N [N], pressing positive, shape (n,); negative only with adhesion.
     """
 
-    values: Annotated[Vector, *vector("give normal forces in newtons", "N")] = Field(kw_only=False)
+    values: Annotated[Vector, *vector("give normal forces in newtons", "N")] = field(kw_only=False)
 
 
 @record

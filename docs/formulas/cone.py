@@ -7,7 +7,7 @@ import numpy as np
 from numpy.polynomial.polynomial import polyval
 
 from contact.records.validation import FloatArray
-from mdr.curves import series
+from mdr.curves import formulas
 
 # Constant of the bonded layer of nu = 1/2 in the formulas of Gavara, Chadwick and Managuli.
 BONDED = 1.7795
@@ -31,7 +31,7 @@ def managuli(x: FloatArray, nu: float) -> FloatArray:
 
 def garcia(x: FloatArray, nu: float) -> FloatArray:
     """Garcia and Garcia 2018: bonded, nu = 1/2."""
-    return np.asarray(polyval(x, series.GARCIA_CONE))
+    return np.asarray(polyval(x, formulas.GARCIA_CONE))
 
 
 def hermanowicz_loose(x: FloatArray, nu: float) -> FloatArray:

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.polynomial.polynomial import polyval
 
 from contact.records.validation import FloatArray
-from mdr.curves import series
+from mdr.curves import formulas
 
 # Hayes et al. 1972, spheres: quadratics in t = a/h that were fitted to their tables, as two Python programs have them
 # (one by a maker of instruments; seen 2026-11-22). a^2/(R delta) = A1 t^2 + B1 t + C1, F = 4 G delta a kappa/(1 - nu)
@@ -28,22 +28,22 @@ def hertz(x: FloatArray, nu: float) -> FloatArray:
 
 def dimitriadis_bonded(x: FloatArray, nu: float) -> FloatArray:
     """Dimitriadis et al. 2002: bonded, nu = 1/2."""
-    return np.asarray(polyval(x, series.DIMITRIADIS_BONDED))
+    return np.asarray(polyval(x, formulas.DIMITRIADIS_BONDED))
 
 
 def dimitriadis_not_bonded(x: FloatArray, nu: float) -> FloatArray:
     """Dimitriadis et al. 2002: not bonded, nu = 1/2."""
-    return np.asarray(polyval(x, series.DIMITRIADIS_NOT_BONDED))
+    return np.asarray(polyval(x, formulas.DIMITRIADIS_NOT_BONDED))
 
 
 def dimitriadis_bonded_any_nu(x: FloatArray, nu: float) -> FloatArray:
     """Dimitriadis et al. 2002: bonded, any nu."""
-    return np.asarray(polyval(x, series.dimitriadis(nu, bonded=True)))
+    return np.asarray(polyval(x, formulas.dimitriadis(nu, bonded=True)))
 
 
 def dimitriadis_not_bonded_any_nu(x: FloatArray, nu: float) -> FloatArray:
     """Dimitriadis et al. 2002: not bonded, any nu."""
-    return np.asarray(polyval(x, series.dimitriadis(nu, bonded=False)))
+    return np.asarray(polyval(x, formulas.dimitriadis(nu, bonded=False)))
 
 
 def hayes_quadratics(x: FloatArray, nu: float) -> FloatArray:
@@ -57,7 +57,7 @@ def hayes_quadratics(x: FloatArray, nu: float) -> FloatArray:
 
 def garcia(x: FloatArray, nu: float) -> FloatArray:
     """Garcia and Garcia 2018: bonded, nu = 1/2."""
-    return np.asarray(polyval(x, series.GARCIA_PARABOLOID))
+    return np.asarray(polyval(x, formulas.GARCIA_PARABOLOID))
 
 
 def long(x: FloatArray, nu: float) -> FloatArray:

@@ -7,14 +7,15 @@ import numpy as np
 from numpy.polynomial.polynomial import polyval
 from scipy.interpolate import CubicSpline
 
-from cases.library._hayes import column
+from cases.library._common import HAYES
 from contact.records.validation import FloatArray
-from mdr.curves import series
+from mdr.curves import formulas
 
 # Hayes, Keer, Herrmann and Mockros, J. Biomech. 5 (1972) 541, nu = 1/2, as an R package that cites the table has it; a
 # Python program has the same numbers up to a/h = 2 (seen 2026-11-22). The paper itself was not at hand.
 HAYES_AT, HAYES = (
-    np.append(at_axis, values) for at_axis, values in zip((0.0, 1.0), column("bonded nu=0.5"), strict=True)
+    np.append(at_axis, values)
+    for at_axis, values in zip((0.0, 1.0), zip(*HAYES["bonded nu=0.5"].items(), strict=True), strict=True)
 )
 # A column that stood in public scripts under the heading nu = 0.5, at a/h = 0.2, 0.4, .. 2.0; written down from an
 # earlier reading and not found again on 2026-11-22. That it belongs to nu = 0.48 is our finding.
@@ -39,7 +40,7 @@ def hayes_mislabelled(t: FloatArray, nu: float) -> FloatArray:
 
 def garcia(t: FloatArray, nu: float) -> FloatArray:
     """Garcia and Garcia 2018: bonded, nu = 1/2."""
-    return np.asarray(polyval(t, series.GARCIA_PUNCH))
+    return np.asarray(polyval(t, formulas.GARCIA_PUNCH))
 
 
 def lin_hui_conway(t: FloatArray, nu: float) -> FloatArray:

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.polynomial.legendre import leggauss
 
-from cases.library._layers import layer
+from cases.library._common import layer
 from contact import TruncatedCone
 from contact.records.validation import FloatArray
 from docs.gallery._parts import Series, series

@@ -5,7 +5,7 @@ Fig. 3: normalised contact stiffness of the flat punch over a/h
 
 import numpy as np
 
-from cases.library._hayes import TABLE
+from cases.library._common import HAYES
 from contact import Layer
 from contact.records.validation import FloatArray
 from docs.gallery._parts import (
@@ -39,7 +39,7 @@ def thin_layer_stiffness(one: Layer, ratio: FloatArray) -> FloatArray:
 
 def hayes_over_ours(ratio: float) -> float:
     """The table of Hayes et al. for nu = 0.5 over the stiffness."""
-    return TABLE["bonded nu=0.5"][ratio] / float(punch(layer(0.5)).normalized_contact_stiffness(np.array(ratio)))
+    return HAYES["bonded nu=0.5"][ratio] / float(punch(layer(0.5)).normalized_contact_stiffness(np.array(ratio)))
 
 
 def figure() -> Figure:

@@ -8,7 +8,7 @@ from typing import Literal
 
 import numpy as np
 
-from cases.library.in_time.sphere_impact import IMPACT_NUMBER, VELOCITY, scene_of
+from cases.library.sphere_impact import IMPACT_NUMBER, VELOCITY, scene_of
 from contact import ImpactHistory, StandardSolid
 from docs.gallery._parts import SOURCE, Figure, Panel, Series, mdr_line, show
 from mdr.impact.solver import solve_impact

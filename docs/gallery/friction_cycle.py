@@ -127,6 +127,6 @@ def _told(scene: Scene) -> str:
 
 
 if __name__ == "__main__":
-    from cases.library.friction.friction_paraboloid import CYCLE
+    from cases.library.friction_paraboloid import CYCLE
 
     show(figure(CYCLE.scene))

@@ -30,7 +30,7 @@ from mdr.spring_bed import Springs
 # the square of their number, and is stated.
 _RADII: Final = 4001
 _DECADES: Final = 3.0
-# The table reaches this much deeper than the curve, for adhesion draws the contact out.
+# The table reaches this much deeper than the trial depths, for adhesion draws the contact out.
 _DEEPER: Final = 1.5
 # First guesses of the stretch over the way in contact. Half as many are 30 % apart, and some fits end elsewhere.
 _STRETCHES: Final = tuple(10.0 ** (k / 8) for k in range(-20, 11))
@@ -84,8 +84,7 @@ def table_of(scene: Scene) -> Table:
     """The table of an elastic scene whose largest depth says how far it reaches; the last 64 are cached."""
     assert isinstance(scene.loading, IndentationDepths)
     # The elastic contact at the largest depth is the end of the table, and refuses what is no circle.
-    deeper = scene.replace(loading=IndentationDepths([_DEEPER * float(scene.loading.values.max())]))
-    largest = float(solve_elastic(deeper, IntegralEquation(), {}).contact_radius[0])
+    largest = float(solve_elastic(scene, IntegralEquation(), {}).contact_radius[-1])
     springs, flat = Springs.of(scene.layer, scene.indenter), scene.indenter.flat_radius
     radius = flat + (largest - flat) * np.logspace(-_DECADES, 0.0, _RADII)
     values, modulus = springs.at(radius), scene.layer.surface.youngs_modulus
@@ -173,8 +172,8 @@ def fit_adhesive(scene: Scene, data: Data) -> Fitted:
     for attached in _hypotheses(data):
         way = max(float(np.ptp(data.depth[attached])), 1e-3 * float(np.ptp(data.depth)))
         reach = 4 * way if data.has_free_point else max(4 * way, 2 * data.deepest)
-        curve = longest_curve(scene, reach)
-        table = table_of(curve.scene)
+        curve = longest_curve(scene, _DEEPER * reach)
+        table, reach = table_of(curve.scene), curve.largest_depth / _DEEPER
         varied = "work_of_adhesion" if work is None else "youngs_modulus"
         starts = _first_values(table, work, data, way)
         family = Adhering(table, work, attached, curve.error, varied, work is None, starts)

@@ -37,7 +37,7 @@ from mdr.curves.families import (
 )
 from mdr.curves.force_curve import curve_to, longest_curve
 from mdr.curves.formulas import formulas_for
-from mdr.curves.result import CurveFit, FormulaFit, confounded, spread_of
+from mdr.curves.result import CurveFit, FormulaFit, with_intervals
 
 DEFAULT_PARAMETERS: Final = ("youngs_modulus", "contact_point", "baseline", "tilt")
 # Relative step of central differences by u. Errors grow as its square; at a tenth of it rounding shows.
@@ -187,29 +187,22 @@ def _stated(scene: Scene, data: Data, fitted: Fitted, confidence: float) -> Curv
     jacobian = np.stack([columns.get(name, phi) for name in values], axis=1)
     fitted_force = modulus * phi + line["baseline"] + line["tilt"] * shifted
     order = np.argsort(data.depth, kind="stable")
-    spread = spread_of(
-        jacobian, (data.force - fitted_force)[order], pressed[order], float(np.ptp(data.force)), confidence
-    )
-    changes = _changes(values, family, by_u, by_modulus)
-    raw, band = spread.errors(values), spread.band(jacobian)
-    spread = spread._replace(covariance=changes @ spread.covariance @ changes.T)
-    errors = spread.errors(values)
-    if "work_of_adhesion" in values:  # w = E u^2 is flat at u = 0
-        errors["work_of_adhesion"] = math.hypot(errors["work_of_adhesion"], modulus * raw["work_of_adhesion"] ** 2)
     warnings, notes = _words(scene, data, fitted, values, modulus)
-    return CurveFit(
+    return with_intervals(
+        jacobian,
+        (data.force - fitted_force)[order],
+        pressed[order],
+        _changes(values, family, by_u, by_modulus),
+        values=values,
+        confidence=confidence,
+        # w = E u^2 is flat at u = 0.
+        curvature={"work_of_adhesion": modulus} if "work_of_adhesion" in values else {},
+        warnings=warnings,
         scene=scene,
         depth=data.depth,
         force=data.force,
         fitted=fitted_force,
-        values=values,
-        standard_error=errors,
-        covariance=spread.covariance,
-        quantile=spread.quantile,
-        confidence=confidence,
-        band=band,
         numerical_error=family.error(u, shifted),
-        warnings=(*warnings, *spread.warnings, *confounded(values, spread.covariance, spread.quantile)),
         notes=notes,
         per_modulus=phi,
     )

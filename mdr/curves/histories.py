@@ -29,7 +29,7 @@ from contact.records.validation import FloatArray
 from contact.scene.effects import Relaxation, Viscoelasticity
 from mdr.curves.contact_point import correlation_factor
 from mdr.curves.force_curve import ForceCurve, longest_curve
-from mdr.curves.result import CurveFit, confounded, spread_of
+from mdr.curves.result import CurveFit, with_intervals
 
 HISTORY_PARAMETERS: Final = ("moduli", "times", "contact_point", "baseline")
 # Relaxation times that are tried, by equal factors over the time that was measured. With half as many pairs of times a
@@ -378,24 +378,21 @@ def _starts(problem: _Problem) -> list[FloatArray]:
 def _stated(problem: _Problem, x: FloatArray, jacobian: FloatArray, confidence: float) -> CurveFit:
     """Parameters in SI with their intervals, and warnings."""
     values, fitted = problem.values(x), problem.model(x)
-    jacobian = jacobian / [values[one.name] if one.is_time else one.scale for one in problem.parameters]
-    point, size = values.get("contact_point", 0.0), float(np.ptp(problem.measured))
-    spread = spread_of(jacobian, problem.measured - fitted, problem.depth > point, size, confidence)
+    point = values.get("contact_point", 0.0)
     note = depth_note(problem.scene, float(problem.depth.max()) - point)
-    warnings = (*([note] if note else []), *spread.warnings, *confounded(values, spread.covariance, spread.quantile))
-    return CurveFit(
+    return with_intervals(
+        jacobian,
+        problem.measured - fitted,
+        problem.depth > point,
+        np.diag([values[one.name] if one.is_time else one.scale for one in problem.parameters]),
+        values=values,
+        confidence=confidence,
+        warnings=[note] if note else [],
         scene=problem.scene,
         depth=problem.depth,
         force=problem.force,
         fitted=fitted,
-        values=values,
-        standard_error=spread.errors(values),
-        covariance=spread.covariance,
-        quantile=spread.quantile,
-        confidence=confidence,
-        band=spread.band(jacobian),
         numerical_error=problem.curve.error,
-        warnings=warnings,
         time=problem.time,
         response=problem.response,
     )

@@ -16,9 +16,8 @@ from typing import Any, Final, Literal, TypeAlias
 import numpy as np
 
 from contact import InvalidInput
-from contact.records.units import read_quantity
+from contact.records.tables import Column, Table, in_unit, name_and_unit, plain_unit, read_table, table_text
 from contact.records.validation import FloatArray
-from mdr.curves.tables import Column, Table, name_and_unit, read_table, text_of
 
 Direction: TypeAlias = Literal["loading", "withdrawal", "history"]
 
@@ -114,7 +113,7 @@ def read_map(
     """
     if _is_of_microscope(Path(file)):
         return load_curves(file, cantilever=cantilever, direction=direction)
-    table = read_table(Path(file), units)
+    table = _with_units(Path(file), units)
     if _named(table.columns, "curve") is not None:
         return load_curves(file, units=units, cantilever=cantilever, direction=direction)
     if len(table.columns) < 2:
@@ -143,7 +142,7 @@ def load_curves(
     path, known = Path(file), cantilever or Cantilever()
     if _is_of_microscope(path) or (known.sensitivity and known.spring_constant and _is_of_nova(path)):
         return _read_measured(path, known, direction)
-    table = read_table(path, units)
+    table = _with_units(path, units)
     numbers = _named(table.columns, "curve")
     rows = [np.arange(table.columns[0].values.size)]
     if numbers is not None:
@@ -151,16 +150,37 @@ def load_curves(
     return [_one_curve(table.at_rows(index), known, direction, str(file)) for index in rows]
 
 
+def _with_units(file: Path, given: str) -> Table:
+    """The table in units that are given, "nm,nN", the last one for all further columns, or else in those of its heads.
+
+    Raises:
+        InvalidInput: If there are none.
+    """
+    table = read_table(file)
+    if given:
+        units = [plain_unit(part) for part in given.split(",")]
+        units += [units[-1]] * (len(table.columns) - len(units))
+        return replace(table, columns=tuple(replace(one, unit=u) for one, u in zip(table.columns, units, strict=False)))
+    if not any(column.unit for column in table.columns):
+        names = ", ".join(column.name for column in table.columns if column.name)
+        raise InvalidInput(
+            f"{file}, line {table.line}: columns without units{f' ({names})' if names else ''}; write them in the "
+            "heads, as in depth [nm], or give --units nm,nN"
+        )
+    return table
+
+
 def _one_curve(table: Table, cantilever: Cantilever, direction: Direction, place: str) -> Measured:
     """The curve of all rows of a table."""
-    table = _one_side(table, direction)
+    table, side = _one_side(table, direction)
+    gaps = [f"{len(table.gaps)} rows with gaps are left out (first: line {table.gaps[0]})"] if table.gaps else []
     if cantilever.spring_constant is None and table.spring_constant:
         cantilever = replace(cantilever, spring_constant=table.spring_constant)
     time, x, y = (_named(table.columns, name) for name in ("time", "x", "y"))
     found = _converted(table, cantilever, place)
     whole = replace(
         found,
-        notes=(*table.notes, *found.notes),
+        notes=(*gaps, *side, *found.notes),
         time=_si(time, "s", place) if time is not None and time.unit else np.empty(0),
         position=(_place(x, place), _place(y, place)),
     )
@@ -171,8 +191,8 @@ def _place(column: Column | None, place: str) -> float:
     return float(_si(column, "m", place)[0]) if column is not None and column.unit else np.nan
 
 
-def _one_side(table: Table, direction: Direction) -> Table:
-    """The table with the columns of one direction, where heads say which those are."""
+def _one_side(table: Table, direction: Direction) -> tuple[Table, list[str]]:
+    """The table with the columns of one direction, and a note, where heads say which those are."""
     sides = {
         side: [
             (c, pattern)
@@ -183,12 +203,12 @@ def _one_side(table: Table, direction: Direction) -> Table:
         for side, words in _SIDES.items()
     }
     if not (len(sides["loading"]) >= 2 and len(sides["withdrawal"]) >= 2):
-        return table
+        return table, []
     columns = []
     for column, pattern in sides["withdrawal" if direction == "withdrawal" else "loading"]:
         name, unit = name_and_unit(re.sub(pattern, "", column.name).strip(" _-"))
         columns.append(replace(column, name=name, unit=column.unit or unit))
-    return replace(table, columns=tuple(columns), notes=(*table.notes, f"columns of {direction} are used"))
+    return replace(table, columns=tuple(columns)), [f"columns of {direction} are used"]
 
 
 def _converted(table: Table, cantilever: Cantilever, file: str | Path) -> Measured:
@@ -262,8 +282,10 @@ def _named(columns: Sequence[Column], kind: str) -> Column | None:
 def _si(one: Column, unit: str, file: str | Path) -> FloatArray:
     if not one.unit:
         raise InvalidInput(f"{file}, column {one.name!r}: has no unit; write it in the head, as in depth [nm]")
-    factor = read_quantity(f"1 {one.unit}", unit, f"{file}, column {one.name!r}")
-    return np.asarray(one.values / round(1 / factor) if factor < 1 else one.values * factor)
+    try:
+        return in_unit(one.values, one.unit, unit)
+    except InvalidInput as error:
+        raise InvalidInput(f"{file}, column {one.name!r}: {error}") from None
 
 
 def _falls(depth: FloatArray, force: FloatArray) -> bool:
@@ -325,12 +347,12 @@ def _is_of_microscope(file: Path) -> bool:
     """Whether afmformats reads the file: by its ending, and tables of AFM Workshop by their first line."""
     if file.suffix in ENDINGS:
         return True
-    return file.suffix == ".csv" and file.is_file() and text_of(file)[: len(_WORKSHOP)] == _WORKSHOP
+    return file.suffix == ".csv" and file.is_file() and table_text(file)[: len(_WORKSHOP)] == _WORKSHOP
 
 
 def _is_of_nova(file: Path) -> bool:
     """Whether the file has the three columns without heads that NT-MDT's Nova writes: height and both deflections."""
-    columns = read_table(file, "nm,nN").columns
+    columns = read_table(file).columns
     return file.suffix == ".txt" and len(columns) == 3 and not any(column.name for column in columns)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import Final, Literal, NamedTuple
+from typing import Any, Final, Literal
 
 import numpy as np
 from scipy.special import stdtrit
@@ -59,7 +59,7 @@ class CurveFit:
         time: [s], shape (n,), of histories; else empty.
         response: What was fitted, "force" or "depth".
         input_error: Standard uncertainty of each parameter by uncertain numbers of the scene, where they were asked
-            for (`cases.measurements.uncertain_fit`).
+            for (`cases.uncertain_fit`).
         formulas: The same curve fitted by formulas in use.
     """
 
@@ -126,62 +126,74 @@ class CurveFit:
         return self.values[parameter] - half, self.values[parameter] + half
 
 
-class Spread(NamedTuple):
-    """What residuals say about the fitted parameters.
-
-    Attributes:
-        covariance: Of the parameters, shape (p, p).
-        quantile: Student's.
-        warnings: Where residuals are not white noise.
-    """
-
-    covariance: FloatArray
-    quantile: float
-    warnings: tuple[str, ...]
-
-    def errors(self, names: Iterable[str]) -> dict[str, float]:
-        """Standard error of each parameter."""
-        return dict(zip(names, np.sqrt(np.maximum(np.diag(self.covariance), 0.0)).tolist(), strict=True))
-
-    def band(self, jacobian: FloatArray) -> FloatArray:
-        """Half width of the interval of the fitted curve, shape (n,)."""
-        variance = np.sum((jacobian @ self.covariance) * jacobian, axis=1)
-        return np.asarray(self.quantile * np.sqrt(np.maximum(variance, 0.0)))
-
-
-def spread_of(jacobian: FloatArray, residual: FloatArray, pressed: BoolArray, size: float, confidence: float) -> Spread:
-    """Covariance of least squares, widened by the correlation of residuals and by larger ones in contact.
+def with_intervals(
+    jacobian: FloatArray,
+    residual: FloatArray,
+    pressed: BoolArray,
+    changes: FloatArray,
+    *,
+    values: Mapping[str, float],
+    confidence: float,
+    curvature: Mapping[str, float] | None = None,
+    warnings: Iterable[str] = (),
+    **fields: Any,
+) -> CurveFit:
+    """The fit with covariance, intervals and band, widened where residuals are correlated or larger in contact.
 
     Args:
-        jacobian: Derivatives of the fitted curve by the parameters, shape (n, p).
+        jacobian: Derivatives of the fitted curve by the numbers that least squares vary, shape (n, p).
         residual: Measured less fitted, in the order of depth or time, shape (n,).
         pressed: Which of them are in contact, shape (n,).
-        size: Range of the measured values.
+        changes: Derivatives of the parameters by the numbers that least squares vary, shape (p, p).
+        values: Each parameter.
         confidence: Of the intervals.
+        curvature: Half the second derivative of a parameter by its number, where the first one may vanish.
+        warnings: On the fit.
+        fields: Further ones of `CurveFit`.
     """
     freedom = max(residual.size - jacobian.shape[1], 1)
     variance = float(residual @ residual) / freedom
-    correlated = max(correlation_factor(residual), correlation_factor(residual[pressed]))
-    larger = _larger_in_contact(residual, pressed, variance)
-    warnings = []
-    if np.sqrt(variance) > _ROUNDING * size:
-        if correlated > 1.0:
-            warnings.append(
-                f"the residuals are not noise (neighbours are correlated): intervals are {np.sqrt(correlated):.2g} "
-                "times as wide; the scene does not describe the curve, or noise is filtered; see the residuals, or fit "
-                "a shorter range (--until)"
-            )
-        if larger > 1.0:
-            warnings.append(
-                f"residuals in contact are {np.sqrt(larger):.2g} times the average: intervals are as much wider; see "
-                "the residuals"
-            )
+    size = float(np.ptp(fields["depth" if fields.get("response") == "depth" else "force"]))
+    wider, lines = _widening(residual, pressed, variance, size)
     length = np.linalg.norm(jacobian, axis=0)
     length[length == 0.0] = 1.0
     unit = jacobian / length
-    scaled = variance * correlated * larger * np.linalg.pinv(unit.T @ unit, hermitian=True)
+    raw = variance * wider * np.linalg.pinv(unit.T @ unit, hermitian=True) / np.outer(length, length)
+    covariance = changes @ raw @ changes.T
     quantile = float(stdtrit(freedom, 0.5 + confidence / 2))
-    return Spread(scaled / np.outer(length, length), quantile, tuple(warnings))
+    errors = dict(zip(values, np.sqrt(np.maximum(np.diag(covariance), 0.0)).tolist(), strict=True))
+    for name, half in (curvature or {}).items():
+        row = list(values).index(name)
+        errors[name] = float(np.hypot(errors[name], half * raw[row, row]))
+    return CurveFit(
+        values=values,
+        standard_error=errors,
+        covariance=covariance,
+        quantile=quantile,
+        confidence=confidence,
+        band=quantile * np.sqrt(np.maximum(np.sum((jacobian @ raw) * jacobian, axis=1), 0.0)),
+        warnings=(*warnings, *lines, *_confounded(values, covariance, quantile)),
+        **fields,
+    )
+
+
+def _widening(residual: FloatArray, pressed: BoolArray, variance: float, size: float) -> tuple[float, list[str]]:
+    """Factor of the covariance, and warnings, where the residuals are not white noise."""
+    correlated = max(correlation_factor(residual), correlation_factor(residual[pressed]))
+    larger = _larger_in_contact(residual, pressed, variance)
+    warnings = []
+    if correlated > 1.0:
+        warnings.append(
+            f"the residuals are not noise (neighbours are correlated): intervals are {np.sqrt(correlated):.2g} times "
+            "as wide; the scene does not describe the curve, or noise is filtered; see the residuals, or fit a shorter "
+            "range (--until)"
+        )
+    if larger > 1.0:
+        warnings.append(
+            f"residuals in contact are {np.sqrt(larger):.2g} times the average: intervals are as much wider; see the "
+            "residuals"
+        )
+    return correlated * larger, warnings if np.sqrt(variance) > _ROUNDING * size else []
 
 
 def _larger_in_contact(residual: FloatArray, pressed: BoolArray, variance: float) -> float:
@@ -193,7 +205,7 @@ def _larger_in_contact(residual: FloatArray, pressed: BoolArray, variance: float
     return ratio if ratio > 1 + NOT_WHITE * np.sqrt(2 / n) else 1.0
 
 
-def confounded(values: Mapping[str, float], covariance: FloatArray, quantile: float) -> tuple[str, ...]:
+def _confounded(values: Mapping[str, float], covariance: FloatArray, quantile: float) -> tuple[str, ...]:
     """Warnings on pairs of parameters that the curve hardly tells apart, and on those that it does not determine."""
     names = list(values)
     error = np.sqrt(np.maximum(np.diag(covariance), np.finfo(float).tiny))

@@ -1,17 +1,16 @@
-"""`contact-verify fit`: read, compute, print, and write the files asked for."""
+"""`contact-verify fit`: what its options mean, and what is printed and written of a fit."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Final, Literal
+from typing import Any, Literal
 
 import numpy as np
 
 from cases.declare.uncertain_inputs import read_inputs
 from cases.files import write_whole
-from cases.measurements.uncertain_fit import fit_uncertain
+from cases.uncertain_fit import fit_uncertain
 from contact import Adhesion, InvalidInput, Scene, load_scene
-from contact.files.scene_file import scene_notes, uses_units
+from contact.files.scene_file import uses_units
 from contact.records.units import read_quantity
 from contact.scene.effects import Viscoelasticity
 from mdr.curves import Limit, fit_curve, fit_history, fit_map
@@ -22,144 +21,109 @@ from reports.fit_tables import fit_csv, fit_table, formula_table, map_csv, map_f
 from reports.terminal import console, show_facts, show_table
 from reports.words import small
 
-# Stands for all that is fitted beside by default.
-ALL: Final = "all"
+# Stands for all that is fitted beside the modulus by default.
+ALL = "all"
 
 
-@dataclass(frozen=True, kw_only=True)
-class FitRequest:
-    """What the command line says about a fit.
-
-    Attributes:
-        fit: Names of the fitted moduli, empty for the default.
-        also: Names of what is fitted beside them, or `ALL`.
-        units: Of columns without their own.
-        spring_constant: With its unit, or empty.
-        sensitivity: With its unit, or empty.
-        until: Largest depth, force or share of the force, or empty.
-        number: Which curve of a file.
-        confidence: Of intervals.
-        outputs: Files to write.
-    """
-
-    fit: str
-    also: str
-    units: str
-    spring_constant: str
-    sensitivity: str
-    until: str
-    number: int
-    confidence: float
-    outputs: Sequence[Path]
-
-    def parameters(self, scene: Scene) -> tuple[str, ...]:
-        """Names of all that is fitted; where options name nothing, the default of elastic or of relaxing scenes."""
-        first, *others = DEFAULT_PARAMETERS
-        if _relaxes(scene):
-            first, others = "moduli,times", ["contact_point", "baseline"]
-        also = ",".join(others) if self.also == ALL else self.also
-        return tuple(name.strip() for name in (*(self.fit or first).split(","), *also.split(",")) if name.strip())
-
-    def limit(self) -> Limit | None:
-        """The largest depth, force or share.
-
-        Raises:
-            InvalidInput: For what is none of them.
-        """
-        text = self.until.strip()
-        if not text:
-            return None
-        try:
-            if text.endswith("%"):
-                return Limit("fraction", float(text[:-1]) / 100)
-            kind: Literal["depth", "force"] = "force" if text.endswith("N") else "depth"
-            return Limit(kind, read_quantity(text, "N" if kind == "force" else "m", "--until"))
-        except ValueError as error:
-            raise InvalidInput(
-                f"--until {text}: write a depth, a force or a share, 300nm, 2nN or 60% ({error})"
-            ) from None
-
-    def curves(self, file: Path, scene: Scene, *, is_map: bool = False) -> list[Measured]:
-        """The curves of the file: loading, with adhesion withdrawal, of relaxing scenes all points."""
-        given = [
-            read_quantity(text, unit, name) if text else None
-            for text, unit, name in (
-                (self.spring_constant, "N/m", "--spring-constant"),
-                (self.sensitivity.partition("/")[0], "m", "--sensitivity"),
-            )
-        ]
-        direction: Direction = "loading" if scene.effect(Adhesion) is None else "withdrawal"
-        read = read_map if is_map else load_curves
-        return read(
-            file,
-            units=self.units,
-            cantilever=Cantilever(*given),
-            direction="history" if _relaxes(scene) else direction,
-        )
-
-
-def _relaxes(scene: Scene) -> bool:
-    return scene.effect(Viscoelasticity) is not None
-
-
-def fit_file(file: Path, scene_file: Path, request: FitRequest, *, uncertain: str) -> None:
-    """Fit one curve, print what was found, and write the files.
+def fit_file(
+    file: Path,
+    scene_file: Path,
+    *,
+    fit: str,
+    also: str,
+    until: str,
+    uncertain: str,
+    number: int | None,
+    confidence: float,
+    outputs: Sequence[Path],
+    progress: Callable[[int, int], None],
+    **source: str,
+) -> None:
+    """Fit one curve of a file, or all of a map where its number is None; print what was found, and write the files.
 
     Raises:
         InvalidInput: For a wrong scene, curve, parameter or file.
     """
-    check_outputs(request.outputs, {".csv": "CSV", **PICTURES})
+    check_outputs(outputs, {".csv": "CSV", **PICTURES})
     scene = load_scene(scene_file)
-    curves = request.curves(file, scene)
-    if not 0 <= request.number < len(curves):
-        raise InvalidInput(f"{file}: has no curve {request.number}; it has {len(curves)}, counted from 0")
-    curve, terminal = curves[request.number], console()
-    options: Any = {"parameters": request.parameters(scene), "confidence": request.confidence}
-    shares = []
+    if _relaxes(scene) and (number is None or uncertain or until):
+        raise InvalidInput(
+            "--map, --uncertain and --until are for scenes that do not relax; fit single curves (--curve NUMBER)"
+        )
+    curves = read_curves(file, scene, is_map=number is None, **source)
+    options: Any = {"parameters": fitted_parameters(scene, fit, also), "confidence": confidence}
+    if number is None:
+        positions = np.array([one.position for one in curves])
+        depths, forces = ([getattr(one, name) for one in curves] for name in ("depth", "force"))
+        of_map = fit_map(
+            scene, depths, forces, limit=read_limit(until), positions=positions, progress=progress, **options
+        )
+        show_facts(map_facts(of_map), on=console())
+        _write_outputs(outputs, lambda: map_csv(of_map), "map_figure", of_map)
+        return
+    if not 0 <= number < len(curves):
+        raise InvalidInput(f"{file}: has no curve {number}; it has {len(curves)}, counted from 0")
+    curve, shares = curves[number], []
     if _relaxes(scene):
-        if uncertain or request.until:
-            raise InvalidInput("--uncertain and --until are for scenes that do not relax; leave them out")
         found = fit_history(scene, curve.time, curve.depth, curve.force, **options)
     elif uncertain:
         inputs = read_inputs(uncertain, scene, with_units=uses_units(scene_file))
         carried = fit_uncertain(scene, curve.depth, curve.force, inputs, **options)
         found, shares = carried.fit, [shares_table(carried)]
     else:
-        found = fit_curve(scene, curve.depth, curve.force, limit=request.limit(), **options)
+        found = fit_curve(scene, curve.depth, curve.force, limit=read_limit(until), **options)
     # Warnings come first: nobody reads them below the numbers.
-    show_facts([("warning", line) for line in found.warnings], on=terminal)
+    show_facts([("warning", line) for line in found.warnings], on=console())
     for table in (fit_table(found), *shares, formula_table(found)):
-        show_table(table, on=terminal)
+        show_table(table, on=console())
     facts = [("R^2 in contact", f"{found.r_squared:.6f}")]
     facts += [("numerical error", f"{small(found.numerical_error)} of E, in its interval")]
-    notes = (*found.notes, *curve.notes, *scene_notes(scene_file))
-    show_facts(facts + [("note", line) for line in notes], on=terminal)
-    _write_outputs(request.outputs, lambda: fit_csv(found), "fit_figure", found)
+    facts += [("note", line) for line in (*found.notes, *curve.notes)]
+    show_facts(facts, on=console())
+    _write_outputs(outputs, lambda: fit_csv(found), "fit_figure", found)
 
 
-def fit_map_file(file: Path, scene_file: Path, request: FitRequest, *, progress: Callable[[int, int], None]) -> None:
-    """Fit every curve of a map, print a summary, and write a row for each curve.
+def fitted_parameters(scene: Scene, fit: str, also: str) -> tuple[str, ...]:
+    """Names of all that is fitted; where options name nothing, the default of elastic or of relaxing scenes."""
+    first, *others = DEFAULT_PARAMETERS
+    if _relaxes(scene):
+        first, others = "moduli,times", ["contact_point", "baseline"]
+    names = f"{fit or first},{','.join(others) if also == ALL else also}".split(",")
+    return tuple(name.strip() for name in names if name.strip())
+
+
+def read_limit(until: str) -> Limit | None:
+    """The largest depth, force or share of the force; None for an empty text.
 
     Raises:
-        InvalidInput: For a wrong scene, map, parameter or file.
+        InvalidInput: For what is none of them.
     """
-    check_outputs(request.outputs, {".csv": "CSV", **PICTURES})
-    scene = load_scene(scene_file)
-    if _relaxes(scene):
-        raise InvalidInput("--map: maps are fitted for scenes that do not relax; fit single curves (--curve NUMBER)")
-    curves = request.curves(file, scene, is_map=True)
-    found = fit_map(
-        scene,
-        [one.depth for one in curves],
-        [one.force for one in curves],
-        parameters=request.parameters(scene),
-        confidence=request.confidence,
-        limit=request.limit(),
-        positions=np.array([one.position for one in curves]),
-        progress=progress,
-    )
-    show_facts(map_facts(found), on=console())
-    _write_outputs(request.outputs, lambda: map_csv(found), "map_figure", found)
+    text = until.strip()
+    if not text:
+        return None
+    try:
+        if text.endswith("%"):
+            return Limit("fraction", float(text[:-1]) / 100)
+        kind: Literal["depth", "force"] = "force" if text.endswith("N") else "depth"
+        return Limit(kind, read_quantity(text, "N" if kind == "force" else "m", "--until"))
+    except ValueError as error:
+        raise InvalidInput(f"--until {text}: write a depth, a force or a share, 300nm, 2nN or 60% ({error})") from None
+
+
+def read_curves(
+    file: Path, scene: Scene, *, is_map: bool, units: str, spring_constant: str, sensitivity: str
+) -> list[Measured]:
+    """The curves of the file: loading, with adhesion withdrawal, of relaxing scenes all points."""
+    stiffness = read_quantity(spring_constant, "N/m", "--spring-constant") if spring_constant else None
+    factor = read_quantity(sensitivity.partition("/")[0], "m", "--sensitivity") if sensitivity else None
+    direction: Direction = "loading" if scene.effect(Adhesion) is None else "withdrawal"
+    read = read_map if is_map else load_curves
+    direction = "history" if _relaxes(scene) else direction
+    return read(file, units=units, cantilever=Cantilever(stiffness, factor), direction=direction)
+
+
+def _relaxes(scene: Scene) -> bool:
+    return scene.effect(Viscoelasticity) is not None
 
 
 def _write_outputs(outputs: Sequence[Path], table: Callable[[], str], figure: str, found: object) -> None:

@@ -64,24 +64,24 @@ def fit(
 
     Every number has an interval. Prints what Hertz, Dimitriadis and other formulas would have found on the same curve.
     """
-    from reports.commands.bench import FitRequest, fit_file, fit_map_file  # noqa: PLC0415 - where it is called
+    from reports.commands.bench import fit_file  # noqa: PLC0415 - where it is called
     from reports.terminal import progress_bar  # noqa: PLC0415
 
-    request = FitRequest(
-        fit=moduli,
-        also=also,
-        units=units,
-        spring_constant=spring_constant,
-        sensitivity=sensitivity,
-        until=until,
-        number=number,
-        confidence=confidence,
-        outputs=write or [],
-    )
     if uncertain and (curves or until):
         raise typer.BadParameter("--uncertain is for whole single curves; leave --map and --until out")
     with progress_bar("curves") as progress:
-        if curves:
-            fit_map_file(curve, scene, request, progress=progress)
-        else:
-            fit_file(curve, scene, request, uncertain=uncertain)
+        fit_file(
+            curve,
+            scene,
+            fit=moduli,
+            also=also,
+            until=until,
+            uncertain=uncertain,
+            number=None if curves else number,
+            confidence=confidence,
+            outputs=write or [],
+            progress=progress,
+            units=units,
+            spring_constant=spring_constant,
+            sensitivity=sensitivity,
+        )

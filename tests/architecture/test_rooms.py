@@ -60,17 +60,3 @@ def test_a_circle_and_a_type_checkers_import_are_seen():
     assert set(imports_of(ast.parse(source))) == {"mdr.method"}
     with pytest.raises(graphlib.CycleError):
         list(graphlib.TopologicalSorter({**imports(), "contact.scene.layer": {"mdr.method"}}).static_order())
-
-
-@pytest.mark.parametrize("module", sorted(FILES))
-def test_a_module_says_what_it_is_for_in_one_line(module):
-    text = read(module)[0]
-    assert text, f"{module} has no docstring"
-    assert text.splitlines()[0].endswith((".", "?")), f"{module}: the first line is no sentence"
-
-
-@pytest.mark.parametrize(
-    "folder", sorted({file.parent for file in FILES.values()}), ids=lambda p: str(p.relative_to(ROOT))
-)
-def test_every_folder_has_a_door(folder):
-    assert (folder / "__init__.py").is_file()

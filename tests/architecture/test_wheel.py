@@ -31,12 +31,6 @@ def asked(*words, **options):
     return done.returncode, done.stdout, done.stderr
 
 
-def test_the_fast_method_is_imported_without_what_others_need():
-    code = "import sys; from mdr import Mdr; import contact; print(*{m.partition('.')[0] for m in sys.modules})"
-    loaded = asked(sys.executable, "-c", code, cwd=ROOT)[1].split()
-    assert sorted(set(loaded) & set(HEAVY)) == []
-
-
 def test_public_names_are_loaded_when_asked_for():
     code = "import mdr, sys; assert 'numpy' not in sys.modules; print(mdr.Mdr().name, *dir(mdr)); mdr.nothing"
     _, out, error = asked(sys.executable, "-c", code, cwd=ROOT)

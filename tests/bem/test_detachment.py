@@ -7,16 +7,7 @@ from scipy.integrate import dblquad
 from bem.cells import CELL_ENERGY
 from bem.grid.influence import rectangle_influence
 from bem.method import Bem
-from contact import (
-    Adhesion,
-    Detachment,
-    FlatPunch,
-    IndentationDepths,
-    Layer,
-    NormalForces,
-    Paraboloid,
-    Scene,
-)
+from contact import Adhesion, Detachment, FlatPunch, IndentationDepths, Layer, NormalForces, Paraboloid, Scene
 from mdr import Mdr
 
 WORK = 0.1
@@ -69,15 +60,6 @@ def test_the_constant_agrees_with_the_grids_own_influence():
     assert total / (2.0 * n**3) == pytest.approx(CELL_ENERGY, rel=1e-3, abs=0.0)
 
 
-@pytest.mark.parametrize("control", ["displacement", "force"])
-def test_sphere_on_the_half_space_pulls_off_as_jkr(control):
-    # F = -1.5 pi R dgamma, under either control; first order in the cell size, hence the stated error
-    path = detached(HALF_SPACE, SPHERE, control)
-    exact = -1.5 * np.pi * 0.01 * WORK
-    assert abs(path.pull_off_force / exact - 1.0) < path.error_estimate["pull_off_force"][0]
-    assert abs(path.pull_off_force / exact - 1.0) < 0.05
-
-
 def test_flat_punch_on_the_half_space_detaches_at_once():
     # Kendall: F = -sqrt(8 pi E* dgamma a^3), delta = -sqrt(2 pi dgamma a / E*)
     a, modulus = 1e-3, 1e6
@@ -97,16 +79,6 @@ def test_flat_punch_on_an_incompressible_layer_detaches_in_a_stable_way():
     assert len(path) > 3
 
 
-@pytest.mark.parametrize("control", ["displacement", "force"])
-def test_sphere_on_a_layer_agrees_with_mdr(control):
-    problem = scene(LAYER, SPHERE, control)
-    path, exact = detached(LAYER, SPHERE, control), Mdr().solve(problem)
-    for name in path.SCALARS:
-        error = abs(getattr(path, name) / getattr(exact, name) - 1.0)
-        assert error < path.error_estimate[name][0], name
-    assert path.pull_off_force == pytest.approx(exact.pull_off_force, rel=0.05, abs=0.0)
-
-
 def test_the_branch_agrees_with_mdr_at_every_radius():
     path = detached(HALF_SPACE, SPHERE, "displacement")
     a = path.contact_radius
@@ -120,7 +92,8 @@ def test_the_branch_agrees_with_mdr_at_every_radius():
 def test_a_wrong_constant_is_seen(monkeypatch):
     monkeypatch.setattr("bem.cells.CELL_ENERGY", 2.0 * CELL_ENERGY)
     path = Bem(points=96, adhesion="cells").solve(scene(HALF_SPACE, FlatPunch(radius=1e-3)))
-    assert path.pull_off_force != pytest.approx(-np.sqrt(8 * np.pi * 1e6 * WORK * 1e-9), rel=0.2, abs=0.0)
+    exact = -np.sqrt(8 * np.pi * 1e6 * WORK * 1e-9)
+    assert abs(path.pull_off_force / exact - 1) > 0.2  # a force goes as the root of the energy; 0.05 without the fault
 
 
 @pytest.mark.parametrize("layer", [HALF_SPACE, LAYER], ids=["half-space", "layer"])
@@ -139,15 +112,3 @@ def test_cells_snap_in_at_first_touch_hold_on_the_way_out_and_let_go(layer):
 
 def test_cells_follow_no_forces():
     assert "discs" in Bem(adhesion="cells").supports(scene(LAYER, SPHERE).replace(loading=NormalForces([0.0]))).reason
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("layer", [HALF_SPACE, LAYER, LAYER.replace(poissons_ratio=0.3, thickness=0.3e-3)])
-def test_pull_off_force_by_cells_converges_to_one_per_cent_at_512(layer):
-    exact = Mdr().solve(scene(layer, SPHERE, "force")).pull_off_force
-    errors = [
-        abs(Bem(points=n, adhesion="cells").solve(scene(layer, SPHERE, "force")).pull_off_force / exact - 1.0)
-        for n in (128, 512)
-    ]
-    assert errors[1] < 0.01
-    assert errors[1] < errors[0] / 2.0  # about first order

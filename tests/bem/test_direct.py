@@ -24,7 +24,7 @@ from contact import (
     UnsupportedSceneError,
 )
 from mdr import Mdr
-from tests.drawn_scenes import random_scene
+from tests.drawn_scenes import scene_of
 
 HALF_SPACE = Layer.half_space(youngs_modulus=3e6, poissons_ratio=0.5)  # E* = 4 MPa
 LAYER = Layer(thickness=1e-3, youngs_modulus=0.75e6, poissons_ratio=0.5, support="bonded")  # E* = 1 MPa
@@ -94,17 +94,6 @@ def test_pressure_and_displacement_are_those_of_mdr():
     )
 
 
-def test_hertz_contact_from_depth_force_and_radius():
-    # closed form: delta = a^2/R, F = (4/3) E* a^3/R
-    a, R, modulus = 1e-3, 0.1, 4e6
-    depth, force = a**2 / R, 4.0 / 3.0 * modulus * a**3 / R
-    for loading in (ContactRadii([a]), IndentationDepths([depth]), NormalForces([force])):
-        path = solve(PARABOLOID, loading, HALF_SPACE)
-        assert path.contact_radius[0] == pytest.approx(a, rel=2e-4, abs=0.0)
-        assert path.indentation_depth[0] == pytest.approx(depth, rel=3e-4, abs=0.0)
-        assert path.normal_force[0] == pytest.approx(force, rel=6e-4, abs=0.0)
-
-
 def test_displacement_beside_hertz_is_the_closed_form():
     # Johnson (1985) Eq. (3.42a)
     a = 1e-3
@@ -114,63 +103,15 @@ def test_displacement_beside_hertz_is_the_closed_form():
     np.testing.assert_allclose(path.surface_displacement(r), exact, rtol=2e-3)
 
 
-def test_flat_punch_on_the_half_space_is_boussinesqs():
-    a = 2e-3
-    path = solve(FlatPunch(radius=a), NormalForces([1.0]), HALF_SPACE)
-    assert path.indentation_depth[0] == pytest.approx(1.0 / (2.0 * 4e6 * a), rel=1e-12, abs=0.0)
-    r = np.array([0.0, 0.5, 0.9]) * a
-    np.testing.assert_allclose(path.pressure(r), 1.0 / (2 * np.pi * a**2 * np.sqrt(1 - (r / a) ** 2)), rtol=1e-6)
-    outside = np.array([1.2, 2.0, 5.0]) * a
-    exact = 2.0 / np.pi * path.indentation_depth[0] * np.arcsin(a / outside)
-    np.testing.assert_allclose(path.surface_displacement(outside), exact, rtol=2e-3)
-
-
 def test_periodic_boundary_agrees_for_a_thin_layer():
     loading = IndentationDepths([2e-4])  # a/h about 6
     free, periodic = (solve(PARABOLOID, loading, points=256, boundary=b) for b in ("free", "periodic"))
     assert periodic.normal_force[0] == pytest.approx(free.normal_force[0], rel=3e-3, abs=0.0)
 
 
-def test_other_units_give_the_same_digits():
-    scene = Scene(layer=LAYER, indenter=PARABOLOID, loading=IndentationDepths([5e-6]))
-    millimetres = Scene(
-        layer=LAYER.replace(thickness=1.0, youngs_modulus=0.75),  # mm, MPa: force in N
-        indenter=Paraboloid(radius_of_curvature=100.0),
-        loading=IndentationDepths([5e-3]),
-    )
-    first, second = Bem(points=128).solve(scene), Bem(points=128).solve(millimetres)
-    assert first.normal_force[0] == pytest.approx(second.normal_force[0], rel=1e-6, abs=0.0)
-
-
-def test_twice_the_modulus_gives_twice_the_force():
-    loading = IndentationDepths([5e-6])
-    soft = solve(PARABOLOID, loading).normal_force
-    hard = solve(PARABOLOID, loading, LAYER.replace(youngs_modulus=1.5e6)).normal_force
-    np.testing.assert_allclose(hard, 2.0 * soft, rtol=1e-7)
-
-
-def test_repeated_solutions_are_bit_identical():
-    first, second = (solve(CONE, IndentationDepths([5e-5])) for _ in range(2))
-    np.testing.assert_array_equal(first.normal_force, second.normal_force)
-
-
 def test_a_contact_beyond_the_indenter_is_refused():
     with pytest.raises(InvalidInput, match="end of the indenter"):
         solve(Sphere(radius=1e-3), IndentationDepths([3e-3]))
-
-
-@pytest.mark.parametrize("ratio", [0.2, 1.0, 10.0, 40.0])
-def test_a_thin_layer_costs_no_accuracy(ratio):
-    layer = LAYER.replace(poissons_ratio=0.3)
-    loading = ContactRadii([ratio * 1e-3])
-    path = solve(PARABOLOID, loading, layer)
-    exact = Mdr().solve(Scene(layer=layer, indenter=PARABOLOID, loading=loading))
-    # what 128 cells state of smooth profiles: 5e-4 of the depth and 1e-3 of the force
-    assert path.indentation_depth[0] == pytest.approx(exact.indentation_depth[0], rel=5e-4, abs=0.0)
-    assert path.normal_force[0] == pytest.approx(exact.normal_force[0], rel=1e-3, abs=0.0)
-    back = solve(PARABOLOID, IndentationDepths(exact.indentation_depth), layer)
-    assert back.contact_radius[0] == pytest.approx(ratio * 1e-3, rel=2e-4, abs=0.0)
-    assert back.normal_force[0] == pytest.approx(exact.normal_force[0], rel=2e-4, abs=0.0)
 
 
 @pytest.mark.parametrize(("accuracy", "points"), [(2e-3, 128), (2e-4, 512)])
@@ -301,7 +242,7 @@ def test_the_step_of_slopes_reaches_over_a_knot_of_a_measured_profile(ratio):
 
 def test_what_a_layer_leaves_unknown_of_the_step_is_stated():
     """Scene 39 of seed 1402 on 256 cells: 9.1e-5 of the depth was missed where 8.6e-5 was stated without it."""
-    scene = random_scene(np.random.default_rng([1402, 39]), "elastic", (1e-2, 5.0))
+    scene = scene_of(1402, 39)
     path, exact = Bem(points=256).solve(scene), Mdr().solve(scene)
     for name in ("indentation_depth", "normal_force"):
         error = np.abs(getattr(path, name) / getattr(exact, name) - 1.0)

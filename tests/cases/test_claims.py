@@ -7,9 +7,9 @@ import pytest
 
 from cases.answers import Answer, Table, Values
 from cases.claims import Approach, Zero
-from cases.library._claims import chebyshev_radii, incremental_stiffness
-from cases.library.friction.friction_flat_punch import STIFFER
-from cases.library.limits.near_incompressible import CASE as INCOMPRESSIBLE
+from cases.library._common import chebyshev_radii, incremental_stiffness
+from cases.library.friction_flat_punch import STIFFER
+from cases.library.near_incompressible import CASE as INCOMPRESSIBLE
 from cases.verdicts import Status
 from tests.cases.fake_case import WHY, case_scene, fake_case
 

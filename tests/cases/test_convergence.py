@@ -4,19 +4,9 @@ import dataclasses
 import math
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from cases.answers import Table
-from cases.convergence import (
-    Order,
-    behaviour,
-    behaviour_of_errors,
-    digits_per_refinement,
-    grid_convergence_index,
-    observed_order,
-    order_of_errors,
-)
+from cases.convergence import Order, behaviour, digits_per_refinement, grid_convergence_index, observed_order
 from cases.declare.methods import MethodUse
 from cases.run.solve_task import job_of, solve
 from cases.verdicts import Status
@@ -24,7 +14,6 @@ from contact import InvalidInput
 from tests.cases.fake_case import WHY, fake_case
 
 NASA = (0.97050, 0.96854, 0.96178)
-LENGTHS = (0.25, 0.5, 1.0)
 
 
 def lengths_of(cells: tuple[int, ...]) -> list[float]:
@@ -56,13 +45,6 @@ def test_nasa_tutorial():
     assert 100 * coarse == pytest.approx(0.35625, abs=2e-5)
 
 
-@given(st.floats(0.5, 4.0), st.floats(1.1, 3.0), st.floats(1.1, 3.0), st.floats(0.1, 10.0))
-def test_a_pure_power_law_returns_its_order_at_any_two_ratios(order, r21, r32, constant):
-    lengths = (1.0, r21, r21 * r32)
-    values = [constant * h**order for h in lengths]
-    assert observed_order(values, lengths) == pytest.approx(order, rel=1e-7, abs=0.0)
-
-
 @pytest.mark.parametrize(
     ("values", "lengths", "message"),
     [
@@ -83,11 +65,6 @@ def test_values_without_an_order_are_refused(values, lengths, message):
 def test_safety_factor_trusts_the_formal_order_only_within_ten_percent(observed, safety, order):
     found = grid_convergence_index(1.0, 1.1, 2.0, observed, 2.0, scale=0.0)
     assert found == pytest.approx(safety * 0.1 / (2.0**order - 1), rel=1e-12, abs=0.0)
-
-
-def test_a_zero_crossing_does_not_blow_up_the_index():
-    at_zero = grid_convergence_index(1e-12, 2e-6, 2.0, 1.0, 1.0, scale=1.0)
-    assert at_zero == pytest.approx(1.25 * 2e-6, rel=1e-5, abs=0.0)
 
 
 def test_growing_differences_have_a_negative_order():
@@ -120,22 +97,6 @@ def test_nan_is_invalid_and_no_class():
         digits_per_refinement((math.nan, 1e-3), 1e-15)
 
 
-def errors_of(order, size=1e-3):
-    return tuple(size * length**order for length in LENGTHS)
-
-
-def test_classes_of_errors():
-    assert behaviour_of_errors(errors_of(2.0), 1e-9) == "monotone"
-    assert behaviour_of_errors(errors_of(-1.0), 1e-9) == "divergent"
-    assert behaviour_of_errors(errors_of(2.0), 1e-5) == "floor"
-    assert behaviour_of_errors(errors_of(2.0)[:2], 1e-9) == "too-few"
-
-
-@pytest.mark.parametrize("order", [0.5, 2.0, 6.0])
-def test_powers_have_their_order(order):
-    assert order_of_errors(errors_of(order), LENGTHS) == pytest.approx(order, rel=1e-12, abs=0)
-
-
 @pytest.mark.parametrize(
     ("errors", "digits"),
     [
@@ -159,7 +120,7 @@ def order(**changes):
 def judged(claim, case):
     case = dataclasses.replace(case, claims=(claim,))
     answers = Table(solve(job_of(task)) for task in case.tasks())
-    return list(claim.judge(case, answers)), list(claim.studies(case, answers))
+    return list(claim.judge(case, answers)), list(claim.records(case, answers))
 
 
 @pytest.mark.parametrize("against", ["fast", MethodUse(label="finest", method="fake", settings={"stated": 1e-12})])
@@ -189,12 +150,6 @@ def test_the_grids_of_one_refinement_count_by_their_root_mean_square():
     _, (single, _) = judged(order(against="fast"), fake_case())
     assert {verdict.status for verdict in verdicts} == {Status.PASS}
     assert single.grids[0].error < study.grids[0].error < 1.1 * single.grids[0].error
-
-
-def test_claims_about_two_quantities_share_their_grids():
-    case = fake_case()
-    first, second = order(), order(name="depth", quantity="indentation_depth")
-    assert {t.identity for t in first.tasks(case)} == {t.identity for t in second.tasks(case)}
 
 
 def test_an_unknown_method_of_reference_is_refused():

@@ -15,27 +15,9 @@ def test_the_area_weight_carries_two_pi_r():
     np.testing.assert_allclose(RINGS.loads(np.ones(RADIUS.size)), [math.pi / 4, math.pi * 3 / 4], rtol=1e-12)
 
 
-def test_hertz_pressure_carries_two_thirds_pi():
-    """int p_0 sqrt(1-r^2) dA = 2 pi p_0/3 (Hertz)."""
-    load = RINGS.loads(np.sqrt(1 - RADIUS**2)).sum()
-    assert load == pytest.approx(2 * math.pi / 3, rel=1e-10, abs=0.0)
-
-
 def test_flat_punch_pressure_carries_two_pi():
     """int dA / sqrt(1-r^2) = 2 pi: the inverse square root at the edge is integrated to full accuracy."""
     assert RINGS.loads(1 / np.sqrt(1 - RADIUS**2)).sum() == pytest.approx(2 * math.pi, rel=1e-10, abs=0.0)
-
-
-def test_a_logarithmic_singularity_at_a_ring_edge():
-    """int ln|r - 1/2| 2 pi r dr over the unit disk, closed form by parts."""
-    expected = 2 * math.pi * (_primitive(0.5) - _primitive(-0.5))
-    fine = ring_quadrature([0.0, 0.5, 1.0], nodes=40)
-    assert fine.loads(np.log(np.abs(fine.radius - 0.5)).ravel()).sum() == pytest.approx(expected, rel=1e-5, abs=0.0)
-
-
-def _primitive(s):
-    """int (s + 1/2) ln|s| ds."""
-    return (s**2 / 2) * (math.log(abs(s)) - 0.5) + 0.5 * s * (math.log(abs(s)) - 1)
 
 
 def test_weighted_norm_of_one_is_the_root_of_the_area():

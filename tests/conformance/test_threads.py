@@ -15,13 +15,13 @@ from threadpoolctl import threadpool_info, threadpool_limits
 from bem.direct_method import IntegralEquationMethod
 from bem.flat_punch import IntegralEquation
 from bem.method import Bem
-from cases.run.empty_caches import forget
+from cases.run.timing import forget
 from contact import ContactRadii, IndentationDepths, Layer, Paraboloid, Scene, TruncatedCone
 from contact.answer.one_thread import one_thread
 from fem_reference import Fem
 from mdr import Mdr
 from mdr.batches import equilibria
-from tests.drawn_scenes import FAMILIES, random_scene
+from tests.random_scenes import drawn_scene
 
 LAYER = Layer(thickness=1e-3, youngs_modulus=1e6, poissons_ratio=0.45)
 CONE = Scene(
@@ -77,9 +77,19 @@ def test_finite_elements():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("family", FAMILIES)
-def test_random_scenes_of_every_kind(family):
-    scenes = [random_scene(np.random.default_rng([1, FAMILIES.index(family), n]), family) for n in range(2)]
+@pytest.mark.parametrize(
+    ("loading", "effect"),
+    [
+        ("NormalForces", "no effect"),
+        ("Detachment, force", "Adhesion"),
+        ("Impact", "StandardSolid"),
+        ("DepthHistory, ramp", "PronySeries"),
+        ("ForceHistory, ramp", "KelvinVoigt"),
+    ],
+)
+def test_random_scenes_of_every_kind(loading, effect):
+    kinds = {"layer": "bonded layer", "loading": loading, "effect": effect, "ratio": (0.05, 5.0), "slope": (0.02, 1.0)}
+    scenes = [drawn_scene(np.random.default_rng([1, n]), **kinds) for n in range(2)]
     one, four = digits(lambda: (array for scene in scenes for array in arrays_of(Mdr().solve(scene))))
     assert one == four
 

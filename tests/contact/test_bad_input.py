@@ -15,7 +15,6 @@ from contact import (
     CoatedPair,
     Cone,
     ContactRadii,
-    DepthHistory,
     Detachment,
     FlatPunch,
     ForceHistory,
@@ -42,17 +41,9 @@ BAD = {
         lambda: Layer(thickness=-1e-3, youngs_modulus=1e6, poissons_ratio=0.3),
         r"Layer\.thickness = -0\.001: must be positive; give the thickness in metres, or use Layer\.half_space",
     ),
-    "zero thickness": (
-        lambda: Layer(thickness=0, youngs_modulus=1e6, poissons_ratio=0.3),
-        r"Layer\.thickness = 0: must be positive",
-    ),
     "nu above a half": (
         lambda: Layer(thickness=1e-3, youngs_modulus=1e6, poissons_ratio=0.6),
         r"Layer\.poissons_ratio = 0\.6: must lie in \[0, 0\.5\]",
-    ),
-    "negative nu": (
-        lambda: Layer(thickness=1e-3, youngs_modulus=1e6, poissons_ratio=-0.1),
-        r"Layer\.poissons_ratio = -0\.1: must lie in \[0, 0\.5\]",
     ),
     "NaN modulus": (
         lambda: Layer(thickness=1e-3, youngs_modulus=math.nan, poissons_ratio=0.3),
@@ -61,10 +52,6 @@ BAD = {
     "text for a number": (
         lambda: Layer(thickness="thick", youngs_modulus=1e6, poissons_ratio=0.3),
         r"Layer\.thickness = 'thick': must be a number; give the thickness in metres",
-    ),
-    "a truth value for a number": (
-        lambda: Layer(thickness=True, youngs_modulus=1e6, poissons_ratio=0.3),
-        r"Layer\.thickness = True: must be a number",
     ),
     "unknown support": (
         lambda: Layer(thickness=1e-3, youngs_modulus=1e6, poissons_ratio=0.3, support="glued"),
@@ -90,21 +77,9 @@ BAD = {
         lambda: Layer(1e-3, 1e6, 0.3),
         r"came without a name; write the fields as name=value",
     ),
-    "infinite radius": (
-        lambda: ContactRadii([1e-3, math.inf]),
-        r"ContactRadii\.values = .*: must be finite, but entry 1 is inf",
-    ),
-    "NaN radius": (lambda: ContactRadii([math.nan]), r"ContactRadii\.values = .*entry 0 is nan"),
-    "decreasing radii": (
-        lambda: ContactRadii([2e-3, 1e-3]),
-        r"ContactRadii\.values = .*must increase strictly, but entry 1 is 0\.001",
-    ),
-    "zero radius": (lambda: ContactRadii([0.0, 1e-3]), r"must be above 0, but entry 0 is 0"),
     "no radii": (lambda: ContactRadii([]), r"ContactRadii\.values = \[\]: must hold at least one number"),
     "a text for a list": (lambda: NormalForces("12"), r"NormalForces\.values = '12': must be a list of numbers"),
     "a matrix for a list": (lambda: IndentationDepths(np.ones((2, 2))), r"must be a one-dimensional array"),
-    "complex depths": (lambda: IndentationDepths(np.array([1j])), r"must be a one-dimensional array of real numbers"),
-    "ragged lists": (lambda: IndentationDepths([[1.0], [1.0, 2.0]]), r"must be a number"),
     "an endless list": (lambda: IndentationDepths(np.zeros(1_000_001)), r"at most 1000000 numbers, got 1000001"),
     "an integer beyond double precision": (lambda: Cone(slope=10**400), r"must fit into double precision"),
     "a sharper tip than a cone": (
@@ -123,16 +98,10 @@ BAD = {
         lambda: Tabulated(radii=[1e-3, 2e-3, 3e-3], heights=[0.0, 1e-6, 2e-6]),
         r"a table starts at the tip \(0, 0\), got \(0\.001, 0\); shift it",
     ),
-    "zero mass": (lambda: Impact(mass=0.0, velocity=1.0), r"Impact\.mass = 0\.0: must be positive and finite"),
-    "time that stands still": (
-        lambda: DepthHistory(time=[0.0, 1.0, 1.0], depth=[0.0, 1.0, 2.0]),
-        r"DepthHistory\.time = .*must increase strictly, but entry 2 is 1",
-    ),
     "a history with a force too few": (
         lambda: ForceHistory(time=[0.0, 1.0], force=[0.0]),
         r"ForceHistory: a history needs at least two instants and one force for each; got 2 instants and 1 values",
     ),
-    "unknown control": (lambda: Detachment(control="stress"), r"Detachment\.control = 'stress': Input should be"),
     "negative work of adhesion": (
         lambda: Adhesion(work_of_adhesion=-0.1),
         r"Adhesion\.work_of_adhesion = -0\.1: must be finite and at least 0",
@@ -140,14 +109,6 @@ BAD = {
     "negative Prony modulus": (
         lambda: PronySeries(long_term_shear_modulus=1.0, shear_moduli=[1.0, -1.0], relaxation_times=[1.0, 2.0]),
         r"PronySeries\.shear_moduli = .*must be at least 0, but entry 1 is -1",
-    ),
-    "zero relaxation time": (
-        lambda: PronySeries(long_term_shear_modulus=1.0, shear_moduli=[1.0], relaxation_times=[0.0]),
-        r"PronySeries\.relaxation_times = .*must be above 0, but entry 0 is 0",
-    ),
-    "a Prony time too few": (
-        lambda: PronySeries(long_term_shear_modulus=1.0, shear_moduli=[1.0, 2.0], relaxation_times=[1.0]),
-        r"one relaxation time for each shear modulus; got 2 and 1",
     ),
     "a Prony series of nothing": (
         lambda: PronySeries(long_term_shear_modulus=0.0, shear_moduli=[0.0], relaxation_times=[1.0]),

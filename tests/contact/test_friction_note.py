@@ -53,6 +53,7 @@ def test_finite_elements_say_it_too():
     assert "more than half" in Mdr().solve(depths).notes[0]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("support", ["bonded", "unbonded"])
 def test_no_layer_slides_farther(support):
     for nu in (0.45, 0.47, 0.49, 0.5):

@@ -43,3 +43,30 @@ def test_a_tree_without_end_is_refused(tmp_path):
     tree["again"] = tree
     with pytest.raises(InvalidInput, match="at most 32 deep"):
         write_tree(tmp_path / "tree.h5", tree)
+
+
+def damaged(draw, content):
+    """The content cut off, with bits flipped, or with a piece repeated, removed or replaced by noise."""
+    data, (first, last) = bytearray(content), sorted(draw.integers(0, len(content) + 1, 2).tolist())
+    flipped = bytearray(content)
+    for place in draw.integers(0, len(data), 5):
+        flipped[place] ^= 1 << int(draw.integers(8))
+    pieces = (b"", data[first:last] * 2 + data[last:], data[last:], draw.bytes(last - first) + data[last:])
+    return bytes((flipped, *(data[:first] + piece for piece in pieces))[draw.integers(5)])
+
+
+def test_a_damaged_file_is_refused_or_holds_what_was_written(tmp_path):
+    file, numbers = tmp_path / "tree.h5", np.random.default_rng(1).random(100)
+    write_tree(file, {"numbers": numbers, "group": {"name": "x", "flag": True}})
+    content, messages = file.read_bytes(), []
+    for number in range(80):
+        file.write_bytes(damaged(np.random.default_rng([2, number]), content))
+        try:
+            again = read_tree(file)
+        except InvalidInput as refusal:
+            messages.append(str(refusal))
+            continue
+        assert np.array_equal(again.pop("numbers"), numbers)
+        assert again == {"group": {"name": "x", "flag": True}}
+    assert len(messages) > 40
+    assert max(map(len, messages)) < 1000

@@ -6,8 +6,6 @@ import json
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from contact import (
     Adhesion,
@@ -31,7 +29,7 @@ from contact import (
     scene_from_mapping,
     scene_to_mapping,
 )
-from contact.records.columns import MAX_BYTES
+from contact.records.tables import MAX_BYTES
 
 GOOD = """
 [layer]
@@ -216,19 +214,6 @@ def test_a_huge_file_is_refused_before_it_is_read(tmp_path):
 def test_deep_nesting_is_refused(tmp_path):
     with pytest.raises(InvalidInput):
         load_scene(write(tmp_path, "a = " + "[" * 50_000))
-
-
-TREES = st.recursive(
-    st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=8),
-    lambda leaf: st.lists(leaf, max_size=3) | st.dictionaries(st.text(max_size=8), leaf, max_size=3),
-    max_leaves=8,
-)
-
-
-@given(st.fixed_dictionaries(dict.fromkeys(("layer", "indenter", "loading", "effects"), TREES)))
-def test_any_tree_is_a_scene_or_invalid_input(tree):
-    with pytest.raises(InvalidInput):
-        scene_from_mapping(tree)
 
 
 def test_numbers_survive_to_the_last_bit(tmp_path):

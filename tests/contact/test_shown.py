@@ -125,7 +125,7 @@ def test_labelled_arrays_have_units(answer):
 
 def without(monkeypatch, missing):
     def refuse(name):
-        if name.partition(".")[0] == missing:
+        if name.partition(".")[0] == {"matplotlib": "reports"}.get(missing, missing):
             raise ModuleNotFoundError(f"No module named {missing!r}", name=missing)
         return import_module(name)
 

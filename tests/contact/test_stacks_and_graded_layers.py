@@ -8,7 +8,7 @@ import jsonschema
 import numpy as np
 import pytest
 
-from cases.measurements.ladders.units import Units, in_units
+from cases.units import Units, in_units
 from contact import (
     ContactRadii,
     ElasticBase,
@@ -81,14 +81,6 @@ def test_other_units_change_moduli_and_lengths_only(layer):
     assert other.contact_modulus == 2.0**-20 * layer.contact_modulus
     assert other.surface.poissons_ratio == layer.surface.poissons_ratio
     assert in_units(scene_of(other), Units(length=2.0**-10, stress=2.0**20)).layer == layer
-
-
-@pytest.mark.parametrize("layer", LAYERS.values(), ids=LAYERS)
-def test_own_units_have_thickness_and_contact_modulus_one(layer):
-    own = layer.in_own_units()
-    assert own.thickness == pytest.approx(1.0, rel=1e-15, abs=0.0)
-    assert own.contact_modulus == pytest.approx(1.0, rel=1e-15, abs=0.0)
-    assert own.is_incompressible == layer.is_incompressible
 
 
 def test_a_file_in_toml(tmp_path):

@@ -43,7 +43,7 @@ class CohesivePunch:
         indenter = ScaledIndenter(FlatPunch(radius=punch_radius), punch_radius)
         self._log = StageLog()
         section = contact_section(layer, indenter, settings)
-        self.strip: Surface = condense(*section, "superlu", self._log)
+        self.strip: Surface = condense(*section, self._log)
 
     def state(self, depth: float, strength: float) -> tuple[Complementary, float]:
         """Shifted pressures q at depth / a, and the opening at the rim."""

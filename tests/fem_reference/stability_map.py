@@ -1,6 +1,6 @@
 """Where a flat punch detaches stably from a layer: the stability map over a/h and Poisson's ratio.
 
-Under displacement control the depth at which detachment proceeds is -dl(a), `InterpolatedBranch.elongation`.  A
+Under displacement control the depth at which detachment proceeds is -dl(a).  A
 shrinking contact is stable where dl falls with a, hence between a maximum of dl (its smaller end) and a minimum (its
 larger end).
 A punch outside of every such range jumps off at once; one inside peels stably until a/h has come down to the maximum.
@@ -10,6 +10,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
+from functools import cache
+from itertools import pairwise
 from typing import Literal
 
 import numpy as np
@@ -17,7 +19,7 @@ import numpy as np
 from contact import FlatPunch, IndentationDepths, Layer, Scene, StageLog
 from contact.stated import SAFETY
 from fem_reference import Fem
-from fem_reference.adhesion import solve_branch
+from fem_reference.adhesion import Branch, BranchPiece
 from fem_reference.prescribed_contact import PrescribedContact, solve_contact
 from fem_reference.settings import Discretisation
 
@@ -55,16 +57,17 @@ def reversals(layer: Layer, solve: Callable[[float], PrescribedContact]) -> tupl
         solve: a flat punch of given radius [m] on it.
     """
     h = layer.thickness
-    branch = solve_branch([ratio * h for ratio in RATIOS], (), h / (2 * np.pi), solve, NODES)
+    solve, ends = cache(solve), [ratio * h for ratio in RATIOS]
+    branch = Branch([BranchPiece.solved(*pair, solve, NODES) for pair in pairwise(ends)], h / (2 * np.pi))
     radius = branch.samples
-    slope = branch.slope(branch.elongation, radius)
+    slope = -branch.slope(branch.depth, radius)
     turns = np.flatnonzero(np.sign(slope[1:]) != np.sign(slope[:-1]))
-    places = [branch.slope_root(branch.elongation, radius[i], radius[i + 1]) for i in turns]
+    places = [branch.slope_root(branch.depth, radius[i], radius[i + 1]) for i in turns]
     return tuple(
         Reversal(
             kind="maximum" if slope[i] > 0 else "minimum",
             ratio=a / h,
-            elongation=float(branch.elongation(np.array([a]))[0] / h),
+            elongation=-float(branch.depth(np.array([a]))[0] / h),
         )
         for a, i in zip(places, turns, strict=True)
     )

@@ -89,7 +89,7 @@ def slope_on_strips(nu, support, depth):
     path = Mdr().solve(rubbed(None, layer(nu, support), IndentationDepths([depth])))
     effect, radius = friction_effect(path, 1.0), float(path.contact_radius[0])
     maker = growth.StripMaker(
-        rubbed(1.0, layer(nu, support), ContactRadii([radius])), Fem().discretisation, "superlu", growth.StageLog()
+        rubbed(1.0, layer(nu, support), ContactRadii([radius])), Fem().discretisation, growth.StageLog()
     )
     found = []
     for cells in (40, 80):
@@ -219,7 +219,7 @@ def test_a_history_of_force_is_that_of_its_depths():
 
 def followed_strip(cells):
     scene = rubbed(0.2, layer(0.5), ContactRadii([2.0]))
-    maker = growth.StripMaker(scene, Fem().discretisation, "superlu", growth.StageLog())
+    maker = growth.StripMaker(scene, Fem().discretisation, growth.StageLog())
     contact = maker.contact(2.0, cells)
     return contact, step.followed(contact, [0.04, 0.02, 0.04, 0.01], by_depth=True)
 
@@ -238,7 +238,7 @@ def test_work_is_stored_or_dissipated_with_second_order_in_the_cells():
 
 def test_forces_converge_with_second_order_in_the_cells():
     scene = rubbed(0.3, layer(0.5), ContactRadii([2.0]))
-    maker = growth.StripMaker(scene, Fem().discretisation, "superlu", growth.StageLog())
+    maker = growth.StripMaker(scene, Fem().discretisation, growth.StageLog())
     contacts = [maker.contact(2.0, cells) for cells in (20, 40, 80)]
     grown = [growth.Growing(contact, step.grown(contact)) for contact in contacts]
     logs = [strip.local(np.log(strip.force), 0.06)[0] for strip in grown]
@@ -252,7 +252,7 @@ def test_forces_under_stick_converge_to_those_of_mdr_with_second_order(support):
     scene = rubbed(math.inf, layer(0.5, support), ContactRadii([5.0]))
     exact = Mdr().solve(scene)
     depth, force = float(exact.indentation_depth[0]), float(exact.normal_force[0]) / scene.layer.contact_modulus
-    maker = growth.StripMaker(scene, Fem().discretisation, "superlu", growth.StageLog())
+    maker = growth.StripMaker(scene, Fem().discretisation, growth.StageLog())
     errors = []
     for cells in (40, 80):
         contact = maker.contact(5.0 / 0.9, cells)

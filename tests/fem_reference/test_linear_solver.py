@@ -2,7 +2,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from scipy import sparse
 
 from contact import (
     FlatPunch,
@@ -19,19 +18,35 @@ from fem_reference.assembly import PAIRS, Space, taylor_hood
 from fem_reference.layer import DiscreteLayer
 from fem_reference.materials import uniform
 from fem_reference.mesh import section_mesh
-from fem_reference.solver import CheckedSolver, minimum_degree
+from fem_reference.solver import minimum_degree
 
 SECTION = section_mesh(uniform(0.5), 6.0, ((1.0, 1e-5),), 0.5)
 
 
-def discrete(pair, nu, backend="superlu", *, bonded=True):
-    return DiscreteLayer(SECTION, pair, uniform(nu, bonded=bonded), backend=backend)
+def discrete(pair, nu, *, bonded=True):
+    return DiscreteLayer(SECTION, pair, uniform(nu, bonded=bonded))
 
 
-def restricted(degree, nu, backend="superlu"):
-    """The factorised layer, pressed on a disc."""
-    problem = discrete(taylor_hood(degree), nu, backend)
-    return problem.solver(np.concatenate([problem.supported_unknowns, 2 * problem.top_nodes(1.0) + 1]))
+def pressed(degree, nu):
+    """The factorised layer, the force on a disc of unit depth, and how many factorisations that took."""
+    problem = discrete(taylor_hood(degree), nu)
+    disc = 2 * problem.top_nodes(1.0) + 1
+    solver = problem.solver(np.concatenate([problem.supported_unknowns, disc]))
+    values = np.zeros((len(solver.held), 1))
+    values[-len(disc) :] = 1
+    force = solver.reactions(solver.solve_displaced(values), disc).sum()
+    return solver, force, solver.factorisations
+
+
+def with_factors(monkeypatch, wrong):
+    """Replace the factors of diagonal pivoting, or of all factorisations, by wrong ones."""
+    right = linear_solver.splu
+
+    def factorised(matrix, permc_spec="COLAMD", **options):
+        factors = right(matrix, permc_spec=permc_spec, **options)
+        return wrong(factors) if permc_spec in wrong.orders else factors
+
+    monkeypatch.setattr(linear_solver, "splu", factorised)
 
 
 @pytest.mark.parametrize("degree", [2, 3, 4])
@@ -43,81 +58,59 @@ def test_order_is_a_permutation(degree):
 @pytest.mark.parametrize("nu", [0.3, 0.5])
 def test_fill_is_small_at_every_poissons_ratio(nu):
     """1.24e6 at both; halving the mesh by bounding boxes leaves 1.93e6, COLAMD with pivots 4.4e6 at nu = 1/2."""
-    factors = restricted(4, nu).checked._factors
+    factors = pressed(4, nu)[0]._factors
     assert factors.L.nnz + factors.U.nnz < 1.3e6
 
 
-@pytest.mark.parametrize("nu", [0.0, 0.3, 0.4999999, 0.5])
-@pytest.mark.parametrize("degree", [2, 3, 4])
-def test_minimum_degree_needs_no_pivoting_and_agrees_with_partial_pivoting(degree, nu):
-    solutions = []
-    for backend in ("superlu", "superlu-pivoting"):
-        problem = discrete(taylor_hood(degree), nu, backend)
-        pressed = 2 * problem.top_nodes(1.0) + 1
-        solver = problem.solver(np.concatenate([problem.supported_unknowns, pressed]))
-        values = np.zeros((len(solver.held), 1))
-        values[-len(pressed) :] = 1
-        solution = solver.solve_displaced(values)
-        assert solver.checked.factorisations == 1
-        solutions.append(solver.reactions(solution, pressed).sum())
-    assert solutions[0] == pytest.approx(solutions[1], rel=1e-11, abs=0.0)
-
-
-@pytest.mark.parametrize(("degree", "nu"), [(2, 0.3), (3, 0.4999999), (4, 0.5)])
-def test_mumps_agrees_with_superlu(degree, nu):
-    pytest.importorskip("mumps", reason="the optional package python-mumps is not installed")
-    solutions = []
-    for backend in ("superlu", "mumps"):
-        problem = discrete(taylor_hood(degree), nu, backend)
-        pressed = 2 * problem.top_nodes(1.0) + 1
-        solver = problem.solver(np.concatenate([problem.supported_unknowns, pressed]))
-        values = np.zeros((len(solver.held), 2))
-        values[-len(pressed) :] = [1, 2]
-        solution = solver.solve_displaced(values)
-        assert solver.checked.factorisations == 1  # MUMPS itself passed the check, nobody stepped in
-        solutions.append(solver.reactions(solution, pressed).sum(axis=0))
-    assert solutions[1] == pytest.approx(solutions[0], rel=1e-11, abs=0.0)
-
-
 class Careless:
-    """Factors that are wrong by one part in a thousand."""
+    """Factors whose solutions are half as large again."""
 
-    def __init__(self, matrix):
-        self.factors = linear_solver.with_pivoting(matrix)
+    orders = ("NATURAL",)
+
+    def __init__(self, factors):
+        self.factors = factors
 
     def solve(self, rhs):
         return 1.5 * self.factors.solve(rhs)
 
 
-def test_an_inaccurate_backend_is_replaced_or_refused(monkeypatch):
-    matrix = sparse.csc_array(sparse.diags_array([2.0, 3.0, 4.0]))
-    monkeypatch.setitem(linear_solver.BACKENDS, "careless", (Careless,))
-    monkeypatch.setitem(linear_solver.BACKENDS, "rescued", (Careless, linear_solver.with_pivoting))
+class AlwaysCareless(Careless):
+    orders = ("NATURAL", "COLAMD")
+
+
+@pytest.mark.parametrize("nu", [0.0, 0.3, 0.4999999, 0.5])
+@pytest.mark.parametrize("degree", [2, 3, 4])
+def test_minimum_degree_needs_no_pivoting_and_agrees_with_partial_pivoting(degree, nu, monkeypatch):
+    _, force, factorisations = pressed(degree, nu)
+    with_factors(monkeypatch, Careless)
+    _, other, more = pressed(degree, nu)
+    assert (factorisations, more) == (1, 2)
+    assert force == pytest.approx(other, rel=1e-11, abs=0.0)
+
+
+def test_inaccurate_factors_are_refused(monkeypatch):
+    with_factors(monkeypatch, AlwaysCareless)
     with pytest.raises(NotConvergedError, match="backward_error"):
-        CheckedSolver(matrix, "careless").solve(np.ones((3, 1)))
-    rescued = CheckedSolver(matrix, "rescued")
-    assert rescued.solve(np.ones((3, 1)))[:, 0] == pytest.approx([1 / 2, 1 / 3, 1 / 4], rel=1e-15, abs=0.0)
-    assert rescued.factorisations == 2
+        pressed(2, 0.3)
 
 
-def test_a_singular_matrix_is_refused():
+def zero_pivot(*_arguments, **_options):
+    raise RuntimeError
+
+
+def test_a_singular_matrix_is_refused(monkeypatch):
+    problem = discrete(taylor_hood(2), 0.3)
+    monkeypatch.setattr(linear_solver, "minimum_degree", lambda space: np.arange(space.size))
+    monkeypatch.setattr(linear_solver, "splu", zero_pivot)
     with pytest.raises(NotConvergedError, match="singular"):
-        CheckedSolver(sparse.csc_array(np.array([[1.0, 1.0], [1.0, 1.0]])), "superlu-pivoting")
+        problem.solver(problem.supported_unknowns)
 
 
 def test_nan_is_refused():
-    solver = CheckedSolver(sparse.csc_array(sparse.eye_array(2)))
+    problem = discrete(taylor_hood(2), 0.3)
+    loads = np.full((problem.space.size, 1), np.nan)
     with pytest.raises(NotConvergedError):
-        solver.solve(np.array([[np.nan], [1.0]]))
-
-
-def test_unknown_or_missing_backends_are_named(monkeypatch):
-    matrix = sparse.csc_array(sparse.eye_array(2))
-    with pytest.raises(InvalidInput, match="'cholmod'"):
-        CheckedSolver(matrix, "cholmod")
-    monkeypatch.setattr(linear_solver, "find_spec", lambda name: None)
-    with pytest.raises(InvalidInput, match="python-mumps"):
-        CheckedSolver(matrix, "mumps")
+        problem.solver(problem.supported_unknowns).solve_loaded(loads)
 
 
 def test_displacement_formulation_refuses_incompressibility():
@@ -125,18 +118,18 @@ def test_displacement_formulation_refuses_incompressibility():
         discrete(PAIRS["P2"], 0.5).matrix  # noqa: B018
 
 
-def out_of_memory(*_arguments):
+def out_of_memory(*_arguments, **_options):
     raise MemoryError
 
 
-@pytest.mark.parametrize(
-    ("name", "value"), [("BACKENDS", {"superlu": (out_of_memory,)}), ("physical_memory", lambda: 1e3)]
-)
+@pytest.mark.parametrize(("name", "value"), [("splu", out_of_memory), ("physical_memory", lambda: 1e3)])
 def test_a_mesh_that_does_not_fit_is_refused_in_words(monkeypatch, name, value):
     """SuperLU raises a MemoryError without a word; where memory is overcommitted, the process ends."""
+    problem = discrete(taylor_hood(2), 0.3)
+    monkeypatch.setattr(linear_solver, "minimum_degree", lambda space: np.arange(space.size))
     monkeypatch.setattr(linear_solver, name, value)
-    with pytest.raises(UnsupportedSceneError, match=r"10 unknowns needs about .* less strict accuracy"):
-        CheckedSolver(sparse.csc_array(sparse.eye_array(10)), "superlu")
+    with pytest.raises(UnsupportedSceneError, match=r"unknowns needs about .* less strict accuracy"):
+        problem.solver(problem.supported_unknowns)
 
 
 def test_no_memory_error_leaves_the_method(monkeypatch):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import os
 import subprocess
 import sys
@@ -60,7 +59,7 @@ def assert_repeated(together, alone, count, tolerance=1e-9):
         )
 
 
-@pytest.mark.parametrize("size", around(batches._CHUNK))
+@pytest.mark.parametrize("size", around(batches._CHUNK)[::2])
 def test_pull_offs_of_every_size(size):
     effects = (Adhesion(work_of_adhesion=0.05),)
     paths = [Mdr(flat_punch=PUNCH).solve(scene) for scene in scenes(Detachment(), effects)]
@@ -73,7 +72,7 @@ def test_pull_offs_of_every_size(size):
     assert_repeated(pull_offs(scenes(Detachment(), effects, size), PUNCH), alone, size)
 
 
-@pytest.mark.parametrize("size", around(impact_solver.CHUNK)[:4])
+@pytest.mark.parametrize("size", around(impact_solver.CHUNK)[1:4:2])
 def test_impacts_of_every_size(size):
     loading = Impact(mass=0.02, velocity=0.1)
     histories = [Mdr(flat_punch=PUNCH).solve(scene) for scene in scenes(loading, (VISCOUS,))]
@@ -122,7 +121,7 @@ def test_different_impacts_are_the_same_bits_together_and_alone(seed):
 
 
 @pytest.mark.parametrize("loading", [NormalForces([0.1]), IndentationDepths([2e-5])])
-@pytest.mark.parametrize("size", [1, 2, 6, 511, 512, 513])
+@pytest.mark.parametrize("size", [1, 513])
 def test_equilibria_of_every_size(size, loading):
     paths = [Mdr(flat_punch=PUNCH).solve(scene) for scene in scenes(loading)]
     names = ("contact_radius", "indentation_depth", "normal_force", "contact_stiffness")
@@ -145,18 +144,15 @@ def test_a_scene_without_an_answer_is_refused(monkeypatch):
         pull_offs(scenes(Detachment(), (Adhesion(work_of_adhesion=0.05),)), PUNCH)
 
 
-def test_the_results_of_impacts_have_one_entry_a_scene():
-    found = impacts(scenes(Impact(mass=0.02, velocity=0.1), (VISCOUS,), 3), PUNCH)
-    assert {np.shape(getattr(found, field.name))[-1] for field in dataclasses.fields(found)} == {3}
-
-
-@pytest.mark.parametrize("kernel", ["Haswell", "Nehalem"])
+@pytest.mark.parametrize("kernel", ["Haswell", pytest.param("Nehalem", marks=pytest.mark.slow)])
 def test_bits_do_not_depend_on_the_batch_with_blas_of_another_processor(kernel):
     """Seen to fail with Haswell's, where a product with eleven rows rounded otherwise for two lanes than for four."""
     same = f"{__file__}::{test_different_impacts_are_the_same_bits_together_and_alone.__name__}"
-    subprocess.run(
+    done = subprocess.run(
         [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", same],
         env={**os.environ, "OPENBLAS_CORETYPE": kernel},
-        stdout=subprocess.DEVNULL,
-        check=True,
+        capture_output=True,
+        text=True,
+        check=False,
     )
+    assert done.returncode == 0, done.stdout

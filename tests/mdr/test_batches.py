@@ -20,8 +20,7 @@ from contact import (
     TruncatedCone,
 )
 from mdr import Mdr
-from mdr.batches import equilibria, impacts, pull_offs
-from tests.mdr.viscoelastic_scenes import figure_12
+from mdr.batches import equilibria, pull_offs
 
 PUNCH = IntegralEquation()
 RNG = np.random.default_rng(7)
@@ -91,12 +90,6 @@ def test_equilibria_are_what_single_scenes_say():
                 name,
                 scene,
             )
-
-
-def test_impacts_go_through_the_same_door():
-    scenes = [figure_12(2e-3), figure_12(1e-3)]
-    found = impacts(scenes, PUNCH)
-    np.testing.assert_allclose(found.coefficient_of_restitution, [0.55924, 0.64341], atol=1e-5)
 
 
 def test_what_a_batch_refuses():

@@ -19,16 +19,17 @@ def detached(slope, poissons_ratio, **start):
 
 
 @pytest.mark.parametrize(
-    ("slope", "poissons_ratio"), [(1e-3, 0.3), pytest.param(1e-3, 0.5, marks=pytest.mark.slow), (1e-4, 0.5)]
+    ("slope", "poissons_ratio"),
+    [(1e-3, 0.3), pytest.param(1e-3, 0.5, marks=pytest.mark.slow), pytest.param(1e-4, 0.5, marks=pytest.mark.slow)],
 )
 def test_a_withdrawal_without_a_first_radius_meets_the_one_from_a_given_radius(slope, poissons_ratio):
-    """The blunter cone stands for both at nu of one half; the steeper one is left to the slow tests."""
     found, given = detached(slope, poissons_ratio), detached(slope, poissons_ratio, initial_contact_radius=0.1)
     bar = sum(path.uncertainty("pull_off_force")[0] for path in (found, given))
     assert abs(found.pull_off_force - given.pull_off_force) <= bar
     assert bar < 1e-7 * abs(given.pull_off_force)
 
 
+@pytest.mark.slow
 def test_what_the_data_do_not_reach_is_said_to_be_sought_not_given():
     with pytest.raises(
         InvalidInput, match=r"is sought up to a = .* m, where the flat-punch data end .*initial_contact"

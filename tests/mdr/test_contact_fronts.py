@@ -19,10 +19,8 @@ from contact import (
     TruncatedCone,
 )
 from mdr import Mdr
-from mdr.history.force_control import never_larger
 from mdr.history.spring_law import SpringLaw
 
-LAYER = Layer.incompressible(thickness=1.0, shear_modulus=1.0)
 HALF_SPACE = Layer.half_space(youngs_modulus=3.0, poissons_ratio=0.5)
 SOLID = PronySeries(long_term_shear_modulus=0.3, shear_moduli=[0.2, 0.5], relaxation_times=[2.0, 0.05])
 TIMES = [0.0, 0.6, 1.0, 1.4]
@@ -91,13 +89,6 @@ def test_after_a_fall_steps_only_where_the_contact_has_been_larger():
         error = answer.error_estimate[name]
         assert np.all(error[known] < 1e-12)
         assert np.all(error[~known] > 1e-12)
-
-
-def test_at_which_instants_no_step_is_needed():
-    """Where F_e has never been larger, though it passed a peak between two instants."""
-    law = SpringLaw.of(SOLID.relaxation)
-    time, force = np.array([0.0, 0.5, 1.0, 1.1, 1.5, 2.0]), np.array([0.0, 0.02, 0.005, 0.0199, 0.03, 0.03])
-    assert never_larger(law, law.elastic_force(time, force)).tolist() == [True, True, False, False, True, True]
 
 
 def test_a_flat_punch_needs_no_steps_whatever_the_force_does():

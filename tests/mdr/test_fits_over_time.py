@@ -61,8 +61,7 @@ TRUE = {
 }
 
 
-@pytest.mark.parametrize("effect", [SOLID, PRONY], ids=["solid", "prony"])
-@pytest.mark.parametrize("end", [HOLD, TIME.size], ids=["hold", "withdrawal"])
+@pytest.mark.parametrize(("effect", "end"), [(SOLID, HOLD), (PRONY, TIME.size)], ids=["hold", "withdrawal"])
 def test_force_over_time_gives_the_moduli_and_times_that_made_it(effect, end, relaxed):
     """Contact point and baseline are shifted, and fitted."""
     guess = scene(GUESSES[effect], DepthHistory(time=[0, 1], depth=[0, 1e-7]))

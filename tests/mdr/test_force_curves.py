@@ -1,7 +1,5 @@
 """Force curves: the master curve is the solver's, fits find what made the data, and intervals hold as often as said."""
 
-import time
-
 import numpy as np
 import pytest
 
@@ -137,18 +135,6 @@ def test_intervals_hold_as_often_as_they_say():
     assert found.converged.all()
     assert 0.929 <= np.mean((low <= modulus) & (modulus <= high)) <= 0.971
     assert told[-1] == (1000, 1000)
-
-
-@pytest.mark.slow
-def test_a_map_of_64_by_64_curves_takes_seconds():
-    modulus, _, force = noisy(0.01, count=4096, spread=0.5)
-    start = time.process_time()
-    found = fit_map(SCENE, DEPTH, force)
-    seconds = time.process_time() - start
-    low, high = found.interval
-    assert np.median(np.abs(found.youngs_modulus - modulus) / found.standard_error) < 0.8
-    assert 0.94 <= np.mean((low <= modulus) & (modulus <= high)) <= 0.96
-    assert seconds < 20.0
 
 
 def test_thickness_and_modulus_that_cannot_be_told_apart_are_named():

@@ -42,17 +42,6 @@ def stuck(nu, indenter, loading, support="bonded"):
     return Mdr().solve(Scene(layer=layer(nu, support), indenter=indenter, loading=loading, effects=STICK))
 
 
-@pytest.mark.parametrize(("nu", "depth", "force"), [(0.0, 1.08873375, 1.05289148), (0.3, 1.02458024, 1.01621310)])
-def test_paraboloid_on_a_half_space(nu, depth, force):
-    """Spence: depth over that of Hertz at the same radius, force over that of Hertz at the same depth."""
-    half = Layer.half_space(youngs_modulus=1.0, poissons_ratio=nu)
-    scene = Scene(layer=half, indenter=PARABOLOID, loading=ContactRadii([0.3, 1.0]), effects=STICK)
-    path = Mdr().solve(scene)
-    assert path.indentation_depth == pytest.approx(depth * path.contact_radius**2 / 10.0, rel=5e-9, abs=0)
-    hertz = 4.0 / 3.0 / (1.0 - nu**2) * math.sqrt(10.0) * path.indentation_depth**1.5
-    assert path.normal_force == pytest.approx(force * hertz, rel=5e-9, abs=0)
-
-
 @pytest.mark.parametrize("indenter", [PARABOLOID, FlatPunch(radius=0.5)], ids=lambda i: type(i).__name__)
 def test_each_step_states_its_own_error(indenter):
     """Seen to fail while errors of all steps referred to the largest value along the path."""
@@ -79,10 +68,10 @@ SHAPES = (PARABOLOID, Sphere(radius=20.0), Cone(slope=0.05))
 
 @pytest.mark.parametrize(
     ("body", "shape"),
-    [pytest.param(i, j, marks=() if i == j else pytest.mark.slow) for i in range(3) for j in range(3)],
+    [pytest.param(i, j, marks=() if i == j == 1 else pytest.mark.slow) for i in range(3) for j in range(3)],
 )
 def test_pressure_adds_up_to_the_force(body, shape):
-    """Each layer and each indenter once; all pairs are slow."""
+    """One pair; all others are slow."""
     (nu, support), indenter = BODIES[body], SHAPES[shape]
     path = stuck(nu, indenter, ContactRadii([1.5]), support)
     nodes, weights = np.polynomial.legendre.leggauss(48)
@@ -101,7 +90,7 @@ def test_the_three_loadings_agree():
     assert by_force.indentation_depth == pytest.approx(path.indentation_depth, rel=1e-12, abs=0)
 
 
-@pytest.mark.parametrize("radius", [30.0, 7.0, 3e-6, 1e-9])
+@pytest.mark.parametrize("radius", [30.0, 1e-9])
 def test_a_sphere_of_any_size_by_depth_is_that_by_radius(radius):
     """Seen to fail with R = 30: the search began at the equator, where rounding made the profile no number."""
     scale = radius / 30.0
@@ -133,8 +122,8 @@ def test_stated_errors_cover_a_finer_solution(nu, ratio):
         assert np.all(path.error_estimate[name] <= 1e-8)
 
 
-@pytest.mark.parametrize("nodes", [8, 14, *(pytest.param(n, marks=pytest.mark.slow) for n in (6, 10, 12, 16))])
-@pytest.mark.parametrize("nu", [0.0, 0.3, 0.5])
+@pytest.mark.parametrize("nodes", [8, *(pytest.param(n, marks=pytest.mark.slow) for n in (6, 10, 14, 16))])
+@pytest.mark.parametrize("nu", [0.3, pytest.param(0.5, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("indenter", [PARABOLOID, Cone(slope=0.1)], ids=lambda i: type(i).__name__)
 def test_stated_errors_cover_on_few_unknowns(indenter, nu, nodes):
     """Seen to fail while errors were told from fewer unknowns: 1.8e-11 stated, 2.7e-9 true on 14."""
@@ -146,6 +135,7 @@ def test_stated_errors_cover_on_few_unknowns(indenter, nu, nodes):
         assert np.all(path.error_estimate[name] <= 1e6 * true + 1e-12), name
 
 
+@pytest.mark.slow
 def test_a_tabulated_paraboloid_is_nearly_a_paraboloid():
     r = np.linspace(0.0, 1.5, 16)
     table = stuck(0.5, Tabulated(radii=r, heights=r**2 / 20.0), ContactRadii([1.0]))

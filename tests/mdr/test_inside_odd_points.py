@@ -3,16 +3,7 @@
 import numpy as np
 import pytest
 
-from contact import (
-    Cone,
-    ContactRadii,
-    InvalidInput,
-    Layer,
-    Paraboloid,
-    PowerLaw,
-    Scene,
-    TruncatedCone,
-)
+from contact import Cone, ContactRadii, InvalidInput, Layer, Paraboloid, PowerLaw, Scene, TruncatedCone
 from mdr import Mdr
 
 LAYER = Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.3)

@@ -5,15 +5,7 @@ import tracemalloc
 import numpy as np
 import pytest
 
-from contact import (
-    ContactRadii,
-    IndentationDepths,
-    Layer,
-    NormalForces,
-    Paraboloid,
-    Scene,
-    TruncatedCone,
-)
+from contact import ContactRadii, IndentationDepths, Layer, NormalForces, Paraboloid, Scene, TruncatedCone
 from mdr import Mdr
 
 # More values than any array of a solution is long.
@@ -22,9 +14,9 @@ LAYER = Layer(thickness=1e-3, youngs_modulus=1e6, poissons_ratio=0.45)
 VALUES = (ContactRadii, 6e-4, 3e-3), (IndentationDepths, 1e-7, 2e-4), (NormalForces, 1e-7, 1.0)
 
 
-@pytest.mark.parametrize("indenter", [Paraboloid(radius_of_curvature=0.01), TruncatedCone(flat_radius=5e-4, slope=0.1)])
 @pytest.mark.parametrize(("kind", "low", "high"), VALUES)
-def test_blocks_are_short_loadings(indenter, kind, low, high):
+def test_blocks_are_short_loadings(kind, low, high):
+    indenter = TruncatedCone(flat_radius=5e-4, slope=0.1)
     values = np.geomspace(low, high, 2 * BLOCK + 77)
     few = [0, 40, BLOCK - 1, BLOCK, 2 * BLOCK, values.size - 1]
     if kind is not ContactRadii:

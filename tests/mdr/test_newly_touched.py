@@ -32,7 +32,7 @@ def test_what_has_not_relaxed_yet_at_the_edge_counts(fast):
 
 def test_a_front_that_recedes_on_a_dashpot():
     """A layer with a dashpot lets go where it would be at rest: 9e-9 off where 5.5e-9 was stated, 2e-11 now."""
-    scene = scene_of(8103, 440, "history", (1e-3, 1e3))
+    scene = scene_of(8103, 440)
     loading, (model,) = scene.loading, scene.effects
     assert isinstance(loading, DepthHistory)
     assert isinstance(model, KelvinVoigt)

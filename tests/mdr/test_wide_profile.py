@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from bem.flat_punch import IntegralEquation
-from bem.numerics import gauss
 from contact import (
     Cone,
     ContactRadii,
@@ -22,7 +21,6 @@ from contact import (
     TruncatedCone,
 )
 from mdr import Mdr
-from mdr.closed_forms.asymptotic import thin_profile
 
 LAYERS = {
     "bonded 0.5": Layer(thickness=1.0, youngs_modulus=0.75, poissons_ratio=0.5),
@@ -59,35 +57,9 @@ def test_pressure_in_the_middle_of_thin_layers(radius):
     np.testing.assert_allclose(fall, expected, rtol=path.error_estimate["pressure"][0])
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("nu", [0.3, 0.4999, 0.5])
-@pytest.mark.parametrize("radius", [165.0, 333.0, 1000.0])
-def test_pressures_add_up_to_the_force(nu, radius):
-    """The force comes from Ritz values, the pressure from one solution for this contact."""
-    path = _pressed("bonded", nu, INDENTERS[0], ContactRadii([radius]))
-    s = np.concatenate([k * radius / 100 + gauss(8)[0] * radius / 100 for k in range(100)])
-    weights = np.tile(gauss(8)[1], 100) * radius / 100
-    r = np.sqrt((radius - s) * (radius + s))
-    force = 2 * np.pi * float(np.sum(path.pressure(r) * s * weights))  # r dr = -s ds
-    assert force == pytest.approx(path.normal_force[0], rel=path.error_estimate["pressure"][0], abs=0.0)
-
-
 def _pressed(support, nu, indenter, loading):
     layer = Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=nu, support=support)
     return Mdr(flat_punch=SOURCE).solve(Scene(layer=layer, indenter=indenter, loading=loading))
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", ["bonded 0.5", "unbonded"])
-@pytest.mark.parametrize("indenter", INDENTERS, ids=lambda i: type(i).__name__)
-def test_thin_layer_profile_is_approached_with_first_order(name, indenter):
-    """Eqs. (17), (20), (22): the difference halves as a/h doubles."""
-    x = np.array([200.0, 400.0, 800.0])
-    path = Mdr().solve(Scene(layer=LAYERS[name], indenter=indenter, loading=ContactRadii(x)))
-    errors = path.indentation_depth / thin_profile(LAYERS[name], indenter, x) - 1
-    orders = np.log2(np.abs(errors[:-1] / errors[1:]))
-    assert orders[1] == pytest.approx(1.0, abs=0.1)
-    assert abs(orders[1] - 1) < abs(orders[0] - 1) + 1e-3
 
 
 @pytest.mark.parametrize("radius", [162.0, 176.4, 200.0])

@@ -182,8 +182,7 @@ MDR = [
         "mdr",
         set_to("mdr.radius_search:_MOST_STEPS", 1),
         Test(
-            "mdr.test_spring_bed:test_radius_depth_and_force_invert_each_other",
-            (lambda: _mdr_layer("bonded"), lambda: _mdr_indenter(1)),
+            "mdr.test_method:test_radii_depths_and_forces_describe_the_same_path", ("bonded", lambda: _mdr_indenter(1))
         ),
         Status.INVALID,  # a search that misses its load raises
     ),
@@ -207,12 +206,6 @@ def _mdr_indenter(number):
     from tests.mdr.test_method import INDENTERS
 
     return INDENTERS[number]
-
-
-def _mdr_layer(name):
-    from tests.mdr.test_method import LAYERS
-
-    return LAYERS[name]
 
 
 # -- transforms and the boundary elements ----------------------------------------------------------------------------
@@ -469,40 +462,31 @@ TIME_STEPPING = [
         "a hundredth of the force left out of the motion",
         "time stepping",
         override("mdr.impact.motion:Phase", "newton", weaker),
-        Test(
-            "verification.test_impact:test_flat_punch_restitution_of_the_closed_form_and_of_the_integration",
-            (0.2, 0.571740),
-        ),
+        Claims("flat_punch_impact", ("restitution on the half-space",), ("half-space D=0.2",), ("mdr",)),
     ),
     Fault(
         "memory of first contact that fades too slowly",
         "time stepping",
         override("mdr.impact.motion:Shrinkage", "ago", forgets_slowly),
-        Test("verification.test_impact:test_figure_12_restitution_peak_audit_and_self_convergence", (2e-3,)),
+        Claims("sphere_impact", ("restitution on layers", "energy balance"), ("bonded h=2 mm",), ("mdr",)),
     ),
     Fault(
         "release after the force is zero",
         "time stepping",
         override("mdr.impact.motion:Shrinkage", "_system", released_late),
-        Test(
-            "verification.test_impact:test_flat_punch_restitution_of_the_closed_form_and_of_the_integration",
-            (0.2, 0.571740),
-        ),
+        Test("mdr.test_contact_fronts:test_a_punch_that_a_dashpot_stops_leaves_when_two_exponentials_say", (3.0,)),
     ),
     Fault(
         "overdamped branch continued with arctan",
         "time stepping",
         swap("mdr.closed_forms.flat_punch_restitution:kelvin_voigt_restitution", arctan_beyond_one),
-        Test(
-            "verification.test_impact:test_flat_punch_restitution_of_the_closed_form_and_of_the_integration",
-            (2.0, 0.047769),
-        ),
+        Test("verification.test_impact:test_flat_punch_restitution_is_smooth_through_critical_damping"),
     ),
     Fault(
         "half of the dissipation",
         "time stepping",
         swap("mdr.impact.history:_inverse", half_the_loss),
-        Test("verification.test_impact:test_figure_12_restitution_peak_audit_and_self_convergence", (2e-3,)),
+        Claims("sphere_impact", ("restitution on layers", "energy balance"), ("bonded h=2 mm",), ("mdr",)),
     ),
 ]
 

@@ -7,8 +7,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from contact.records.units import prefix_for
-from reports.words import NOT_FINITE, duration, measured, memory, small, with_prefix
+from reports.words import NOT_FINITE, measured, small
 
 
 @pytest.mark.parametrize(
@@ -58,15 +57,3 @@ def test_shown_value_and_uncertainty_enclose_the_given_ones(value, uncertainty):
 )
 def test_errors_and_tolerances_have_two_digits(value, text):
     assert small(value) == text
-
-
-def test_durations_and_sizes_choose_their_unit():
-    assert [duration(t) for t in (4.2e-3, 1.3, 59.97, 125.0)] == ["4.20 ms", "1.30 s", "60.0 s", "2 min 05 s"]
-    assert [memory(b) for b in (0, 52_300_000)] == ["0 B", "52.3 MB"]
-    assert with_prefix(12.3e-3, "N") == "12.3 mN"
-    assert with_prefix(-0.9999, "N") == "-1.00 N"
-
-
-def test_common_prefix_follows_the_largest_magnitude_and_ignores_what_is_not_finite():
-    assert prefix_for([1e-6, -2e-4, math.nan]) == (1e-6, "µ")
-    assert prefix_for([]) == (1.0, "")

@@ -78,7 +78,7 @@ class Touching:
 def on_strip(scene: AnyScene, reach: float, depth: float, cells: int) -> Touching:
     """What touches at the depth [m] on a strip of a radius [m]."""
     settings, log = Discretisation(growth=0.8, edge_cell=1e-4), StageLog()
-    strip = condense(*strip_section(scene.layer, reach, cells, scene.indenter.kinks, settings), "superlu", log)
+    strip = condense(*strip_section(scene.layer, reach, cells, scene.indenter.kinks, settings), log)
     quadrature, _ = strip.tractions.gauss(4)
     inside = np.minimum(quadrature * reach, scene.indenter.max_radius)
     profile = strip.moments(shape(scene.indenter, inside).height / reach)

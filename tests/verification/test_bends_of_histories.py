@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from cases.measurements.ladders.units import Units, in_units
+from cases.units import Units, in_units
 from contact import Cone, DepthHistory, Layer, PowerLaw, PronySeries, Scene
 from mdr import Mdr
 from tests.drawn_scenes import scene_of
@@ -81,6 +81,6 @@ def test_forces_and_radii_between_bends_of_the_spring_forces(kind):
 @pytest.mark.parametrize("number", [69, 539])
 def test_a_front_that_comes_back_to_an_old_place_bends_nothing_anew(number):
     """Two bends but for roundings moved forces by 2e-11 and 8e-10 of the largest with the unit of time."""
-    scene = scene_of(6215, number, "reloading")
+    scene = scene_of(6215, number)
     here, elsewhere = (Mdr().solve(one).normal_force for one in (scene, in_units(scene, Units(time=3.7))))
     np.testing.assert_allclose(elsewhere, here, rtol=0.0, atol=1e-13 * here.max())

@@ -54,7 +54,7 @@ def test_profiles_of_tables_keep_their_slope(left: float) -> None:
     assert within_stated(table, scene, Mdr().solve(scene))
 
 
-@pytest.mark.parametrize("left", [0.03, 0.01, 5e-3, 3e-3])
+@pytest.mark.parametrize("left", [0.03, 3e-3])
 @pytest.mark.parametrize("loading", [ContactRadii, IndentationDepths, NormalForces])
 def test_tables_whose_grids_agree_by_accident_state_enough(left: float, loading: type[Loading]) -> None:
     """The difference to half as many cells passes zero there: depth and radius were 1.3 times beyond."""
@@ -73,6 +73,7 @@ def test_tables_round_positions_beside_an_equator_too() -> None:
     assert within_stated(table, scene.replace(loading=NormalForces(truth.normal_force)), truth)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("loading", [IndentationDepths, NormalForces])
 def test_the_direct_equation_meets_what_is_prescribed(loading: type[IndentationDepths | NormalForces]) -> None:
     """Its radius was known to 1e-13 of itself, which is 1e-5 of what is left: the depth was missed by 1.6e-7."""
@@ -100,14 +101,21 @@ def test_cells_that_do_not_resolve_an_upright_end_are_refused() -> None:
 
 
 @pytest.mark.parametrize("fem", [Fem(), Fem(accuracy=1e-2)])
-@pytest.mark.parametrize("left", [1e-3, 1e-5, 1e-7, 1e-9])
+@pytest.mark.parametrize("left", [1e-5, 1e-9])
 def test_finite_elements_resolve_what_is_left_before_the_end(left: float, fem: Fem) -> None:
     """Cells at the edge were wider than what was left: 1e-9 before the end the depth was 14 % off, 13 % stated."""
     scene = contact(left, LAYER.replace(poissons_ratio=0.3, thickness=1.0))
     assert within_stated(fem, scene, Mdr().solve(scene))
 
 
-@pytest.mark.parametrize("loading", [IndentationDepths, NormalForces])
+@pytest.mark.parametrize("left", [1e-5, 1e-7, 1e-9])
+def test_finite_elements_at_usual_cells_lack_no_triangles_before_the_end(left: float) -> None:
+    """Meshes lacked triangles near the edge: the depth erred by 1.6e-3 and 3.2e-3 at 1e-7 and 1e-9."""
+    scene = contact(left, LAYER.replace(poissons_ratio=0.3, thickness=1.0))
+    assert Fem().solve(scene).indentation_depth == pytest.approx(Mdr().solve(scene).indentation_depth, rel=1e-5, abs=0)
+
+
+@pytest.mark.parametrize("loading", [pytest.param(IndentationDepths, marks=pytest.mark.slow), NormalForces])
 def test_finite_elements_search_up_to_the_end(loading: type[IndentationDepths | NormalForces]) -> None:
     """What came within a tenth of the end was refused as if it reached it."""
     radii = np.linspace(0.0, 1.0, 9)

@@ -77,7 +77,7 @@ def test_energy_of_released_springs_is_dissipated_by_mdr_and_stored_by_finite_el
     in_contact, free, lost = (
         np.interp(instants, time, row) / (MASS * VELOCITY**2 / 2) for row in (in_contact, free, lost)
     )
-    assert free[-1] == pytest.approx(5.5e-3, rel=0.2, abs=0.0)  # five tolerances: the accounts can be told apart
+    assert free[-1] > 5e-3  # five times the tolerance below: the two accounts differ measurably
     stored, dissipated = accounts(method.solve(scene), instants)
     kept = free if isinstance(method, Fem) else 0.0
     np.testing.assert_allclose(stored, in_contact + kept, atol=1e-3)

@@ -7,13 +7,13 @@ import pytest
 from scipy.interpolate import CubicSpline
 
 from bem.flat_punch import IntegralEquation
-from contact import ImpactHistory, Layer, Scene
+from contact import ImpactHistory
 from fem_reference import Fem
 from mdr.impact.solver import solve_impact
 from tests.mdr.viscoelastic_scenes import figure_12
 
 # Restitution from a separate Fredholm solution and explicit integration over springs, five digits.
-RESTITUTION = {np.inf: 0.45457, 3e-3: 0.52344, 2e-3: 0.55924, 1e-3: 0.64341}
+RESTITUTION = {np.inf: 0.45457, 2e-3: 0.55924}
 
 
 def largest_difference(name: str, history: ImpactHistory, exact: ImpactHistory, until: float = 1.0) -> float:
@@ -31,16 +31,7 @@ def largest_difference(name: str, history: ImpactHistory, exact: ImpactHistory, 
     return float(np.abs(getattr(history, name)[common] - truth).max() / np.abs(truth).max())
 
 
-def with_poissons_ratio(scene: Scene, poissons_ratio: float) -> Scene:
-    """The same shear modulus with a finite bulk modulus."""
-    young = 2 * (1 + poissons_ratio) * scene.layer.shear_modulus
-    layer = Layer(thickness=scene.layer.thickness, youngs_modulus=young, poissons_ratio=poissons_ratio)
-    return scene.replace(layer=layer)
-
-
-@pytest.mark.parametrize(
-    "thickness", [np.inf, 2e-3, pytest.param(3e-3, marks=pytest.mark.slow), pytest.param(1e-3, marks=pytest.mark.slow)]
-)
+@pytest.mark.parametrize("thickness", [2e-3, pytest.param(np.inf, marks=pytest.mark.slow)])
 def test_force_history_of_figure_12_within_3e_4_of_the_peak(thickness):
     scene = figure_12(thickness)
     history, exact = Fem().solve(scene), solve_impact(scene, IntegralEquation(), {"accuracy": 1e-11})
@@ -51,13 +42,3 @@ def test_force_history_of_figure_12_within_3e_4_of_the_peak(thickness):
         assert largest_difference(name, history, exact) <= stated[name][0], name
     for name in ("peak_force", "peak_depth", "peak_contact_radius", "contact_time", "coefficient_of_restitution"):
         assert abs(getattr(history, name) / getattr(exact, name) - 1) <= stated[name][0], name
-
-
-@pytest.mark.slow
-def test_finite_bulk_modulus_tends_to_the_incompressible_layer():
-    scene = figure_12(1e-3)
-    layers = (with_poissons_ratio(scene, nu) for nu in (0.3, 0.4, 0.49, 0.4999))
-    gaps = [Fem().solve(on_layer).coefficient_of_restitution - 0.64341 for on_layer in layers]
-    assert np.all(np.diff(gaps) < 0)
-    assert gaps[-1] < 0.02 * gaps[-2]  # the gap closes in proportion to 1 - 2 nu, here by a hundred
-    assert gaps[-1] == pytest.approx(0, abs=2e-4)

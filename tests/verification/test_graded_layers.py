@@ -11,50 +11,25 @@ from contact import (
     Adhesion,
     Cone,
     ContactRadii,
-    Detachment,
-    ElasticBase,
     ExponentialDepth,
     FlatPunch,
     GradedLayer,
     IndentationDepths,
     InvalidInput,
     Layer,
-    LayerStack,
-    LinearDepth,
     NormalForces,
     Paraboloid,
-    PowerLawDepth,
     Scene,
-    Sublayer,
     TabulatedDepth,
 )
 from mdr import Mdr
 
 PARABOLOID = Paraboloid(radius_of_curvature=1.0)
 EXPONENTIAL = GradedLayer(thickness=1.0, youngs_modulus=ExponentialDepth(surface=1.0, base=4.0), poissons_ratio=0.3)
-LAYERS = {
-    "exponential": EXPONENTIAL,
-    "power law, unbonded": EXPONENTIAL.replace(
-        youngs_modulus=PowerLawDepth(surface=1.0, reference_depth=0.1, exponent=1.0), support="unbonded"
-    ),
-    "softer below, elastic base": EXPONENTIAL.replace(
-        youngs_modulus=LinearDepth(surface=2.0, base=1.0), support=ElasticBase(youngs_modulus=1.0, poissons_ratio=0.3)
-    ),
-}
 
 
 def solve(layer, indenter, loading, **parts):
     return Mdr().solve(Scene(layer=layer, indenter=indenter, loading=loading, **parts))
-
-
-def test_digits_of_another_discretisation():
-    """THEORY_STACKS, section 7: k_bar, depth and force of E = 4^z at a = 1, given to about 1e-9."""
-    path = solve(EXPONENTIAL, PARABOLOID, ContactRadii([1.0]))
-    modulus = EXPONENTIAL.contact_modulus
-    np.testing.assert_allclose(path.contact_stiffness / (2 * modulus), 4.236520213, rtol=0, atol=2e-9)
-    np.testing.assert_allclose(path.indentation_depth, 0.601148740, rtol=0, atol=2e-9)
-    # The force of that prototype is off by 1.6e-9 of itself: two gradings of ours agree to 1e-12.
-    np.testing.assert_allclose(path.normal_force / modulus, 2.612167263, rtol=2e-9)
 
 
 def test_stiffnesses_on_a_constant_modulus_are_covered():
@@ -66,7 +41,7 @@ def test_stiffnesses_on_a_constant_modulus_are_covered():
     ours, other = (IntegralEquation().punch(layer) for layer in (graded, plain))
     error = np.abs(ours.normalized_contact_stiffness(ratio) / other.normalized_contact_stiffness(ratio) - 1)
     assert np.all(error <= ours.relative_error(ratio) + other.relative_error(ratio))
-    assert np.all(error < 1e-13)
+    assert np.all(error < 4e-14)  # 2.7e-14 at a/h = 0.4: 120 roundings, where 1 - 2 nu = 2e-5 takes four digits
 
 
 @pytest.mark.parametrize("support", ["bonded", pytest.param("unbonded", marks=pytest.mark.slow)])
@@ -77,9 +52,8 @@ def test_a_constant_modulus_is_one_layer(support):
     graded = GradedLayer(thickness=2.0, youngs_modulus=table, poissons_ratio=0.4, support=support)
     for indenter, loading in (
         (PARABOLOID, ContactRadii([0.3, 2.0])),
-        (Cone(slope=0.1), IndentationDepths([0.05, 0.2])),
+        (Cone(slope=0.1), IndentationDepths([0.2])),
         (FlatPunch(radius=1.0), NormalForces([1.0])),
-        (PARABOLOID, NormalForces([0.5])),
     ):
         one, other = (solve(layer, indenter, loading) for layer in (plain, graded))
         for quantity in ("contact_radius", "indentation_depth", "normal_force", "contact_stiffness"):
@@ -95,23 +69,6 @@ def test_a_constant_modulus_is_one_layer(support):
         )
 
 
-def test_many_sublayers_come_close():
-    middles = (np.arange(8) + 0.5) / 8
-    sublayers = tuple(Sublayer(thickness=1 / 8, youngs_modulus=4.0**z, poissons_ratio=0.3) for z in middles)
-    stack = LayerStack(sublayers=sublayers, interfaces=("bonded",) * 7)
-    graded, cut = (solve(layer, PARABOLOID, ContactRadii([1.0])) for layer in (EXPONENTIAL, stack))
-    np.testing.assert_allclose(cut.normal_force, graded.normal_force, rtol=2e-2)
-
-
-def test_the_pressure_carries_the_force():
-    path = solve(EXPONENTIAL, PARABOLOID, ContactRadii([1.0]))
-    nodes, weights = np.polynomial.legendre.leggauss(40)
-    theta = np.pi / 4 * (nodes + 1)
-    r = np.sin(theta)
-    force = 2 * np.pi * np.pi / 4 * np.sum(weights * path.pressure(r, 0) * r * np.cos(theta))
-    np.testing.assert_allclose(force, path.normal_force[0], rtol=1e-7)
-
-
 def test_adhesion_obeys_griffith():
     """c_N = dk_N/da/2 from k_N at neighbouring radii, fourth order."""
     work, a, step = 1e-3, 0.6, 0.012
@@ -122,8 +79,6 @@ def test_adhesion_obeys_griffith():
     springs = (8 * (k[3] - k[1]) - (k[4] - k[0])) / (12 * step) / 2
     elongation = np.sqrt(2 * np.pi * work * a / springs)
     np.testing.assert_allclose(bare.indentation_depth[2] - path.indentation_depth, elongation, rtol=1e-6)
-    torn = solve(EXPONENTIAL, PARABOLOID, Detachment(), effects=(Adhesion(work_of_adhesion=work),))
-    assert torn.pull_off_force < 0.0
 
 
 def test_what_is_not_modelled_is_refused_by_name():
@@ -142,6 +97,7 @@ def test_the_pressure_is_even_about_the_axis(radius):
     np.testing.assert_allclose(path.pressure(near, 0), even, rtol=2e-6, atol=0)
 
 
+@pytest.mark.slow
 def test_the_pressure_beside_the_axis_continues_that_further_out():
     """Taken from slopes at four points near by it was 2.1e-9 off."""
     path = solve(EXPONENTIAL.replace(poissons_ratio=0.5), PARABOLOID, ContactRadii([5.0]))
@@ -151,6 +107,7 @@ def test_the_pressure_beside_the_axis_continues_that_further_out():
     np.testing.assert_allclose(path.pressure(0.3 * near, 0), expected, rtol=1e-9, atol=0)
 
 
+@pytest.mark.slow
 def test_pressures_have_the_digits_of_the_direct_equation():
     """On 12 nodes a panel the slope of the density was 1.5e-8 of the pressure off at 0.87 a."""
     layer = GradedLayer(thickness=1.0, youngs_modulus=ExponentialDepth(surface=1.0, base=100.0), poissons_ratio=0.3)

@@ -31,8 +31,8 @@ def spherocone_depth(slope, x):
     return x * (sphere + slope * mp.acos(b / x))
 
 
-@pytest.mark.parametrize("slope", [0.1, 1.0, 3.0, 5.0, 10.0, 20.0, 57.0, 200.0])
-@pytest.mark.parametrize("radius", [0.3, 0.99, 1.01, 1.5, 4.0, 50.0])
+@pytest.mark.parametrize("slope", [0.1, 3.0, 200.0])
+@pytest.mark.parametrize("radius", [0.3, 0.99, 1.01, 50.0])
 def test_a_spherical_tip_on_a_steep_cone(slope, radius):
     answer = solved(Spheroconical(radius=1.0, slope=slope), radius)
     with mp.workdps(40):
@@ -55,7 +55,7 @@ CLOSE = {
 
 
 @pytest.mark.parametrize("radii", CLOSE)
-@pytest.mark.parametrize("radius", [0.3, 1.7, 2.95])
+@pytest.mark.parametrize("radius", [1.7])
 def test_a_measured_table_with_uneven_radii(radii, radius):
     r = np.asarray(CLOSE[radii], dtype=float)
     table = Tabulated(radii=r, heights=r**2 / 2)

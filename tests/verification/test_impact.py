@@ -24,43 +24,25 @@ from contact import (
     TruncatedParaboloid,
 )
 from mdr import Mdr
-from mdr.closed_forms.flat_punch_restitution import damping_ratio, kelvin_voigt_restitution
+from mdr.closed_forms.flat_punch_restitution import kelvin_voigt_restitution
 from mdr.impact.solver import impact_batch, solve_impact
 from tests.bed import bed_of
 from tests.mdr.impact_explicit import explicit_impact
 from tests.mdr.viscoelastic_scenes import (
     GLASSY_BRANCH,
     LONG_TERM,
-    MASS,
-    RADIUS_TIMES_VELOCITY,
     RELAXATION_TIME,
     figure_12,
     incompressible,
     kelvin_voigt_punch,
     kelvin_voigt_sphere,
 )
-from tests.verification.impact_numbers import bonded_thin_layer_number, half_space_number, unbonded_thin_layer_number
 
 PUNCH = IntegralEquation()
 
 
 def history(scene, accuracy=1e-9):
     return solve_impact(scene, PUNCH, {"accuracy": accuracy})
-
-
-# Argatov 2013 and Willert 2020, closed form evaluated to six digits.
-CLOSED_FORM = {
-    0.05: 0.858758, 0.1: 0.744079, 0.2: 0.571740, 0.3: 0.450975, 0.5: 0.298436, 0.7: 0.210285,
-    0.9: 0.155283, 1.0: 0.135335, 1.5: 0.075588, 2.0: 0.047769, 3.0: 0.023770,
-}  # fmt: skip
-
-
-@pytest.mark.parametrize(("damping", "expected"), CLOSED_FORM.items())
-def test_flat_punch_restitution_of_the_closed_form_and_of_the_integration(damping, expected):
-    assert round(float(kelvin_voigt_restitution(damping)), 6) == expected
-    assert history(kelvin_voigt_punch(damping)).coefficient_of_restitution == pytest.approx(
-        float(kelvin_voigt_restitution(damping)), rel=1e-9, abs=0.0
-    )
 
 
 def test_flat_punch_restitution_is_smooth_through_critical_damping():
@@ -79,56 +61,6 @@ def test_flat_punch_restitution_is_smooth_through_critical_damping():
     assert kelvin_voigt_restitution(1e3) == pytest.approx(exact(1e3), rel=1e-13, abs=0.0)
 
 
-def test_damping_ratio_of_the_scene_is_the_one_asked_for():
-    scene = kelvin_voigt_punch(0.7)
-    stiffness = 8.0 * scene.layer.shear_modulus * scene.indenter.radius
-    assert damping_ratio(scene.effects[0].viscosity, scene.layer.shear_modulus, 1.0, stiffness) == pytest.approx(
-        0.7, rel=1e-12, abs=0.0
-    )
-
-
-# Independent half-space integration, REFERENCES section 7 (units rho = m = v0 = 1), six printed digits.
-KELVIN_VOIGT_SPHERE = {0.01: 0.982940, 0.03: 0.950215, 0.1: 0.848611, 0.2: 0.731357, 0.5: 0.501410, 1.0: 0.309894}
-
-
-@pytest.mark.parametrize(("tau", "expected"), KELVIN_VOIGT_SPHERE.items())
-def test_kelvin_voigt_sphere_on_the_half_space(tau, expected):
-    assert history(kelvin_voigt_sphere(tau)).coefficient_of_restitution == pytest.approx(expected, abs=1e-6)
-
-
-# Fig. 12: independent integration quoted to six digits, two resolutions of which agreed to 3e-5.
-FIGURE_12 = {np.inf: (0.454573, 3.02797), 3e-3: (0.52344, None), 2e-3: (0.559244, 4.69143), 1e-3: (0.64341, None)}
-
-
-@pytest.mark.parametrize("thickness", FIGURE_12)
-def test_figure_12_restitution_peak_audit_and_self_convergence(thickness):
-    restitution, peak = FIGURE_12[thickness]
-    coarse, fine = history(figure_12(thickness), 1e-9), history(figure_12(thickness), 1e-11)
-    assert fine.coefficient_of_restitution == pytest.approx(restitution, abs=1e-5)
-    if peak is not None:
-        assert fine.peak_force == pytest.approx(peak, rel=1e-5, abs=0.0)
-    assert coarse.coefficient_of_restitution == pytest.approx(fine.coefficient_of_restitution, rel=1e-9, abs=0.0)
-    assert coarse.energy_residual < 1e-9
-
-
-@pytest.mark.parametrize("thickness", FIGURE_12)
-def test_only_the_product_of_radius_and_velocity_matters(thickness):
-    one, other = history(figure_12(thickness, 10e-3), 1e-10), history(figure_12(thickness, 20e-3), 1e-10)
-    assert one.coefficient_of_restitution == pytest.approx(other.coefficient_of_restitution, rel=1e-9, abs=0.0)
-    assert one.contact_time == pytest.approx(other.contact_time, rel=1e-9, abs=0.0)
-    assert one.peak_force == pytest.approx(2.0 * other.peak_force, rel=1e-9, abs=0.0)  # momentum over the same time
-
-
-@pytest.mark.parametrize("thickness", [np.inf, 1e-3])
-def test_the_result_does_not_know_its_units(thickness):
-    si, lab = history(figure_12(thickness)), history(figure_12(thickness, scale=(1e3, 1e3, 1e3)))
-    assert si.coefficient_of_restitution == pytest.approx(lab.coefficient_of_restitution, rel=1e-12, abs=0.0)
-    assert si.peak_force == pytest.approx(
-        lab.peak_force, rel=1e-12, abs=0.0
-    )  # kg m/s^2 and g mm/ms^2 are the same unit
-    assert si.contact_time * 1e3 == pytest.approx(lab.contact_time, rel=1e-12, abs=0.0)
-
-
 def test_an_elastic_impact_gives_everything_back_and_lasts_as_hertz_says():
     scene = Scene(
         layer=Layer.half_space(youngs_modulus=2e9, poissons_ratio=0.3),
@@ -143,31 +75,6 @@ def test_an_elastic_impact_gives_everything_back_and_lasts_as_hertz_says():
     assert answer.peak_force == pytest.approx(stiffness * depth**1.5, rel=1e-11, abs=0.0)
     factor = 0.8 * np.sqrt(np.pi) * gamma(0.4) / gamma(0.9)  # Landau and Lifshitz, Theory of Elasticity, section 9
     assert answer.contact_time == pytest.approx(factor * depth / 0.2, rel=1e-10, abs=0.0)
-
-
-@pytest.mark.parametrize("thickness", [np.inf, 2e-3, 1e-3])
-def test_the_papers_explicit_springs_agree(thickness):
-    """First order: halving both steps halves the difference, and Richardson's value agrees far closer."""
-    scene, fine = figure_12(thickness), history(figure_12(thickness), 1e-10)
-    radius = 1.05 * fine.peak_contact_radius
-    springs = bed_of(scene.layer, scene.indenter, PUNCH)
-
-    def explicit(count):
-        return explicit_impact(
-            springs,
-            relaxation_of(scene),
-            mass=MASS,
-            velocity=scene.loading.velocity,
-            radius=radius,
-            count=count,
-            time_step=fine.contact_time / (4.0 * count),
-        )
-
-    coarse, middle = explicit(250), explicit(500)
-    for name in ("coefficient_of_restitution", "peak_force"):
-        errors = [getattr(e, name) / getattr(fine, name) - 1.0 for e in (coarse, middle)]
-        assert abs(errors[1]) < 2e-3
-        assert abs(2.0 * errors[1] - errors[0]) < 2e-4
 
 
 def test_a_layer_that_softens_a_thousandfold_on_the_way_in():
@@ -196,26 +103,6 @@ def test_a_layer_that_softens_a_thousandfold_on_the_way_in():
     batch = impact_batch([stiffer, scene], PUNCH)
     alone = [history(stiffer).coefficient_of_restitution, fine.coefficient_of_restitution]
     assert batch.coefficient_of_restitution.tolist() == alone
-
-
-def test_weak_damping_and_extreme_moduli_tend_to_the_right_limits():
-    weak = [1.0 - history(kelvin_voigt_sphere(tau), 1e-11).coefficient_of_restitution for tau in (1e-3, 1e-4)]
-    assert weak[0] / weak[1] == pytest.approx(10.0, rel=2e-2, abs=0.0)  # 1 - e is linear in weak damping
-    assert weak[1] == pytest.approx(
-        1.73e-4, rel=2e-2, abs=0.0
-    )  # 1 - e = 1.73 tau from the two smallest values of the table
-
-
-@pytest.mark.parametrize(("long_term", "expected"), [(1e6, 1.0), (1e4, 1.0)])
-def test_a_stiff_long_term_spring_makes_the_impact_elastic(long_term, expected):
-    scene = figure_12(2e-3)
-    total = LONG_TERM + GLASSY_BRANCH
-    branch = total / (1.0 + long_term)
-    model = PronySeries(
-        long_term_shear_modulus=total - branch, shear_moduli=[branch], relaxation_times=[RELAXATION_TIME]
-    )
-    answer = history(scene.replace(effects=(model,)))
-    assert answer.coefficient_of_restitution == pytest.approx(expected, abs=3.0 / long_term)
 
 
 def test_a_vanishing_long_term_spring_is_approached_continuously():
@@ -270,17 +157,6 @@ def test_a_blunt_cone_ends_as_a_flat_punch():
     assert abs(gaps[1]) < 1e-5
 
 
-def test_dimensionless_groups():
-    data = {"viscosity": GLASSY_BRANCH * RELAXATION_TIME, "mass": MASS, "long_term_modulus": LONG_TERM}
-    one = {"radius": 0.01, "velocity": RADIUS_TIMES_VELOCITY / 0.01}
-    two = {"radius": 0.02, "velocity": RADIUS_TIMES_VELOCITY / 0.02}
-    assert half_space_number(**data, **one) == pytest.approx(2.65, abs=5e-6)  # the paper's value
-    for number in (unbonded_thin_layer_number, bonded_thin_layer_number):
-        assert number(**data, **one, thickness=1e-3) == pytest.approx(
-            number(**data, **two, thickness=1e-3), rel=1e-14, abs=0.0
-        )
-
-
 @pytest.mark.parametrize("support", ["bonded", "unbonded"])
 def test_thin_layers_obey_their_own_group(support):
     """Two impacts on a thin layer with equal chi_TL and equal G_inf/G_1 rebound alike, Eq. (54)."""
@@ -309,21 +185,7 @@ def test_batches_are_what_single_impacts_are():
     assert seen[-1] == (len(scenes), len(scenes))
 
 
-def test_flat_punch_on_a_layer_follows_its_closed_form():
-    layer = incompressible(1e-3, 1e6)
-    punch = FlatPunch(radius=1.5e-3)
-    stiffness = float(bed_of(layer, punch, PUNCH).contact_stiffness(punch.radius))
-    scene = kelvin_voigt_punch(0.0).replace(
-        layer=layer, indenter=punch, effects=(kelvin_voigt_punch(0.0).effects[0].replace(
-            shear_modulus=layer.shear_modulus, viscosity=0.3 * 2.0 * layer.shear_modulus * np.sqrt(0.01 / stiffness)
-        ),), loading=Impact(mass=0.01, velocity=0.5),
-    )  # fmt: skip
-    assert history(scene).coefficient_of_restitution == pytest.approx(
-        float(kelvin_voigt_restitution(0.3)), rel=1e-9, abs=0.0
-    )
-
-
-@pytest.mark.parametrize("viscosity", [1e2, 1e3, 5e5])
+@pytest.mark.parametrize("viscosity", [1e2, 5e5])
 def test_a_dashpot_that_stops_a_blunt_cone_far_below_what_its_table_spans(viscosity):
     """The peak of m x'' + (G + eta d/dt) k x/G = 0, a damped oscillator: 2.4e-6 off at worst, 6e-10 stated at first."""
     layer, flat = Layer.incompressible(thickness=1.0, shear_modulus=1.0), 3.0
@@ -379,7 +241,7 @@ def test_an_impact_beyond_the_rim_is_refused():
         history(heavy)
 
 
-@pytest.mark.parametrize("ratio", [1e-7, 1e-5, 1e-4, 1e-2, 1e2, 1e5])
+@pytest.mark.parametrize("ratio", [1e-7, 1e-4, 1e-2, 1e5])
 def test_relaxation_far_faster_or_slower_than_the_impact(ratio):
     """Both ends are elastic: very fast branches leave G_inf alone, very slow ones never relax."""
     scene = figure_12(1e-3)

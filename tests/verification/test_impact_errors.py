@@ -11,7 +11,7 @@ from bem.flat_punch import IntegralEquation
 from cases.declare.quantities import IMPACT_NUMBERS
 from contact import Impact, Layer, PowerLaw, Scene
 from mdr.impact.solver import impact_batch
-from tests.drawn_scenes import random_scenes
+from tests.drawn_scenes import scene_of
 
 PUNCH = IntegralEquation()
 
@@ -22,18 +22,16 @@ def outcome(scene, accuracy):
 
 
 # Of seed 9 these are the scenes in which both runs miss the truth alike: by up to 68 times what they tell.
-@pytest.mark.parametrize(
-    ("number", "accuracy"), [(39, 1e-5), (59, 1e-5), (78, 1e-5), (28, 1e-6), (33, 1e-6), (41, 1e-6), (8, 1e-9)]
-)
+@pytest.mark.parametrize(("number", "accuracy"), [(39, 1e-5), (28, 1e-6), (8, 1e-9)])
 def test_two_runs_that_agree_by_chance_still_state_an_error(number, accuracy):
     """Fails without the floor under stated errors: three tenths of the accuracy asked for."""
-    scene = random_scenes(9, number + 1, "impact", (1e-2, 5.0))[number]
+    scene = scene_of(9, number)
     truth, own = outcome(scene, 1e-12)
     values, stated = outcome(scene, accuracy)
     assert np.all(np.abs(values / truth - 1.0) <= stated + own)
 
 
-@pytest.mark.parametrize("power", [1.1, 1.3, 1.7, 2.9, 3.456, 4.147])
+@pytest.mark.parametrize("power", [1.1, 1.7, 4.147])
 @pytest.mark.parametrize("accuracy", [1e-6, 1e-8])
 def test_contact_times_of_tips_whose_power_is_no_integer(power, accuracy):
     """On the half-space, in closed form: T = 2 sqrt(pi) Gamma(1 + 1/q) / Gamma(1/2 + 1/q) d/v0 with q = 2 + 1/p.
@@ -51,7 +49,7 @@ def test_contact_times_of_tips_whose_power_is_no_integer(power, accuracy):
     assert error <= 0.25 * accuracy
 
 
-@pytest.mark.parametrize("power", [3.456135651863879, 4.146969196385718, 4.81535267007686])
+@pytest.mark.parametrize("power", [4.146969196385718])
 def test_contact_times_of_steep_tips_on_thin_incompressible_layers(power):
     """Time integrated along with the front was 2.6e-10 off at the second power, 1.6e-10 stated."""
     layer = Layer(thickness=1e-3, youngs_modulus=1e6, poissons_ratio=0.5, support="bonded")

@@ -7,7 +7,7 @@ from contact import ContactRadii, ElasticBase, LayerStack, Paraboloid, Scene, Su
 from mdr import Mdr
 
 
-@pytest.mark.parametrize("thickness", [0.05, 0.38, 0.59, 0.62, 0.71, 0.83, 0.86, 0.89, 0.5])
+@pytest.mark.parametrize("thickness", [0.05, 0.59, 0.83])
 @pytest.mark.parametrize("interface", ["bonded", "unbonded"])
 def test_the_base_interface_is_the_upper_layers(thickness, interface):
     stack = LayerStack(

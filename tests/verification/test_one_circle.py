@@ -16,10 +16,8 @@ from contact import (
     ContactRadii,
     DepthHistory,
     Detachment,
-    ExponentialDepth,
     FlatPunch,
     ForceHistory,
-    GradedLayer,
     Impact,
     IndentationDepths,
     Layer,
@@ -175,7 +173,7 @@ def gap_beside(path, indenter):
     return (indenter.height(r) - depth + path.surface_displacement(r)) / depth
 
 
-@pytest.mark.parametrize(("method", "count"), [(MDR, 60), (DIRECT, 4), (FEM, 3), (BEM, 5)], ids=lambda v: str(v)[:3])
+@pytest.mark.parametrize(("method", "count"), [(MDR, 25), (DIRECT, 3), (FEM, 2), (BEM, 2)], ids=lambda v: str(v)[:3])
 def test_what_is_answered_has_no_negative_gap_beside_the_contact(method, count):
     check_random_tables(method, count, seed=1)
 
@@ -242,30 +240,14 @@ def test_tables_with_falling_slopes_are_not_convex(indenter):
     assert not indenter.is_convex
 
 
-@pytest.mark.parametrize("support", ["bonded", "unbonded"])
-@pytest.mark.parametrize("ratio", [0.5, 0.48, 0.3, 0.0])
+@pytest.mark.parametrize(("support", "ratio"), [("bonded", 0.5), ("bonded", 0.48), ("unbonded", 0.3)])
 def test_the_mdr_profile_of_every_truncated_cone_rises(support, ratio):
     """So convex profiles, sums of truncated cones, cannot be touched by a bulge beside the contact."""
     layer = Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=ratio, support=support)
-    for flat in np.geomspace(1e-3, 40.0, 9):
+    for flat in np.geomspace(1e-3, 40.0, 4):
         cone = TruncatedCone(flat_radius=float(flat), slope=1.0)
         excess = np.geomspace(1e-6 * flat, 0.999 * (60.0 - flat), 300)
         assert np.all(np.diff(bed_of(layer, cone).mdr_profile(flat + excess)) > 0.0)
-
-
-def test_heights_that_follow_gaps_are_no_minimum_to_be_narrowed():
-    """Beside a cone on a graded layer the gap only grows; 69 displacements were asked for, each a long sum."""
-    modulus = ExponentialDepth(surface=1.0, base=4.0)
-    layer = GradedLayer(thickness=1.0, youngs_modulus=modulus, poissons_ratio=0.3)
-    scene = Scene(layer=layer, indenter=Cone(slope=0.1), loading=ContactRadii([1.0]))
-    path, asked = Mdr().solve(scene), []
-
-    def displacement(radius):
-        asked.extend(radius.tolist())
-        return path.surface_displacement(radius)
-
-    assert touching_radius(scene, Circle(1.0, float(path.indentation_depth[0]), displacement, 0.0)) is None
-    assert len(asked) < 30
 
 
 @METHODS

@@ -10,18 +10,7 @@ import numpy as np
 import pytest
 
 from bem.flat_punch import IntegralEquation
-from contact import (
-    Adhesion,
-    ContactRadii,
-    Detachment,
-    FlatPunch,
-    IndentationDepths,
-    Layer,
-    NormalForces,
-    Paraboloid,
-    Scene,
-    TruncatedCone,
-)
+from contact import ContactRadii, IndentationDepths, Layer, NormalForces, Paraboloid, Scene, TruncatedCone
 from mdr import Mdr
 from tests.bed import bed_of
 
@@ -47,30 +36,7 @@ def test_a_radius_close_to_a_panel_end_has_the_accuracy_of_any_other(support, ra
         np.testing.assert_allclose(state(layer, near), expected, rtol=3e-13)  # stated error of these answers: 2e-13
 
 
-def test_a_contact_that_just_enters_the_next_panel():
-    layer = Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.45)
-    cone = TruncatedCone(flat_radius=1.9996, slope=1e-5)
-    radii = 2.0 + np.array([0.0, 1e-15, 3e-15, 1e-14, 1e-13, 1e-12])
-    depths = [
-        Mdr().solve(Scene(layer=layer, indenter=cone, loading=ContactRadii([a]))).indentation_depth for a in radii
-    ]
-    growth = 0.5 / 4e-4 * (radii - 2.0)  # delta ~ sqrt(a - b), Eq. (36)
-    np.testing.assert_allclose(np.concatenate(depths) / depths[0] - 1.0, growth, atol=3e-12)  # b/a: 2e-4 conditions it
-
-
-@pytest.mark.parametrize("ratio", [1.0, 2.0, 5.0, 10.0])
-def test_a_detaching_punch_may_end_on_the_last_panel(ratio):
-    layer = Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.5)
-    scene = Scene(
-        layer=layer,
-        indenter=FlatPunch(radius=ratio),
-        loading=Detachment(),
-        effects=(Adhesion(work_of_adhesion=1e-4),),
-    )
-    assert Mdr().solve(scene).contact_radius[0] == pytest.approx(ratio, rel=1e-14, abs=0.0)
-
-
-@pytest.mark.parametrize("shift", [-1e-13, -1e-15, 0.0, 1e-15, 1e-14, 1e-13, 9e-13, 1.1e-12])
+@pytest.mark.parametrize("shift", [-1e-15, 1e-13, 1.1e-12])
 def test_the_pressure_of_a_contact_that_ends_with_a_panel(shift):
     """A radius a rounding beyond a panel's end has a panel more than its profile has; at first that was a crash."""
     layer = Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.45)

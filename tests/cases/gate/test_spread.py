@@ -1,14 +1,10 @@
 """The spread between solutions that should be equal."""
 
-import dataclasses
-import os
-
 import numpy as np
 import pytest
 
 from cases.answers import Table
 from cases.declare import methods
-from cases.declare.registry import load_cases
 from cases.gate import spread
 from cases.gate.spread import measured_spreads, nudged_scene
 from cases.run.solve_task import job_of, solve
@@ -25,7 +21,6 @@ from contact import (
     Tabulated,
 )
 from tests.cases.fake_case import FAST, SLOW, fake_case, spoiled
-from tests.cases.in_flight import recording
 
 
 @pytest.fixture
@@ -39,19 +34,6 @@ def methods_executor(jobs):
 
     assert "fake" in methods.BUILT_IN
     return serial(jobs)
-
-
-def test_few_repetitions_are_under_way_at_a_time(monkeypatch):
-    """Seen to fail: all were handed over at once."""
-    made = []
-    monkeypatch.setattr(spread, "process_pool", recording(made))
-    case = fake_case()
-    several = dataclasses.replace(
-        case, scenes=tuple(dataclasses.replace(case.scenes[0], name=f"{n}") for n in range(5))
-    )
-    tasks = [several.task(scene, use) for scene in several.scenes for use in several.methods]
-    measured_spreads(several, Table(solve(job_of(task)) for task in tasks), jobs=1)
-    assert max(executor.largest for executor in made) <= 2 < made[0].submitted
 
 
 def spreads_of(case):
@@ -93,19 +75,6 @@ def test_a_history_is_nudged_where_it_is_not_zero(kind, name):
     assert nudged.tolist() == [0.0, *[np.nextafter(1e-5, np.inf)] * 2]
 
 
-def test_repetitions_are_not_refined_for_an_error(monkeypatch):
-    """Only their numbers count; a referee's refinement takes many times as long as its answer."""
-    asked = []
-    (scene, *_), (use, *_) = fake_case().scenes, fake_case().methods
-    task = fake_case().task(scene, use)
-    monkeypatch.setattr("cases.run.solve_task.registered", lambda: {task.use.method: None})
-    monkeypatch.setattr("cases.run.solve_task.with_estimated_errors", lambda *a: asked.append(a) or a[-1])
-    solve(job_of(task, estimates=False))
-    assert not asked
-    solve(job_of(task))
-    assert len(asked) == 1
-
-
 @pytest.mark.usefixtures("in_this_process")
 def test_the_spread_of_a_closed_form_is_round_off():
     found = spreads_of(fake_case())
@@ -127,24 +96,3 @@ def test_a_repetition_that_breaks_down_is_refused():
     answers = Table(solve(job_of(task)) for task in case.tasks() if not task.variant)
     with pytest.raises(InvalidInput, match="should change nothing, but INVALID"):
         measured_spreads(fake_case(slow=spoiled(SLOW, plant="raise")), answers)
-
-
-def test_the_plain_kernel_is_asked_for_only_inside(monkeypatch):
-    monkeypatch.delenv("OPENBLAS_CORETYPE", raising=False)
-    with spread._plain_kernel():
-        assert os.environ["OPENBLAS_CORETYPE"] == spread.PLAIN_KERNEL
-    assert "OPENBLAS_CORETYPE" not in os.environ
-
-
-def test_different_numbers_of_steps_are_refused():
-    task = next(fake_case().tasks())
-    answer = solve(job_of(task))
-    shorter = {n: dataclasses.replace(q, values=q.values[:1], error=()) for n, q in answer.quantities.items()}
-    with pytest.raises(InvalidInput, match="steps"):
-        list(spread._spreads(task, [answer, dataclasses.replace(answer, quantities=shorter)]))
-
-
-def test_every_scene_of_the_library_can_be_nudged():
-    for case in load_cases().values():
-        for scene in case.scenes:
-            assert nudged_scene(scene.scene, np.inf).layer != scene.scene.layer, (case.name, scene.name)

@@ -5,10 +5,10 @@ import pytest
 
 from bem.kernels.of_layer import surface_kernel
 from cases.declare.quantities import values_of
-from cases.library.stacks import film_on_substrate, graded_layer, three_zone_cartilage, two_layers
-from cases.library.stacks._second_kernel import surface_compliance
-from cases.library.stacks._shape_test import COMPARED, Pressed
-from cases.library.stacks._stacks import base, pressed, stack
+from cases.library import film_on_substrate, graded_layer, three_zone_cartilage, two_layers
+from cases.library._second_kernel import surface_compliance
+from cases.library._shape_test import COMPARED, Pressed
+from cases.library._stacks import base, pressed, stack
 from contact import FlatPunch, InvalidInput, Layer
 from mdr import Mdr
 

@@ -7,7 +7,7 @@ from types import ModuleType, SimpleNamespace
 import numpy as np
 import pytest
 
-from cases.library.referees.outside_referees import CURVES
+from cases.library.outside_referees import CURVES
 from cases.referees import contact_mechanics, process
 from cases.referees.contact_mechanics import ContactMechanics
 from contact import IndentationDepths

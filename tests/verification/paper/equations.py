@@ -7,8 +7,8 @@ import numpy as np
 from numpy.polynomial.chebyshev import Chebyshev
 from numpy.polynomial.legendre import leggauss
 
-from cases.library.elastic.coated_pair import pair
-from cases.library.in_time.sphere_impact import (
+from cases.library.coated_pair import pair
+from cases.library.sphere_impact import (
     LONG_TERM_MODULUS,
     MASS,
     MAXWELL_MODULUS,
@@ -16,7 +16,7 @@ from cases.library.in_time.sphere_impact import (
     RELAXATION_TIME,
     VELOCITY,
 )
-from cases.library.in_time.sphere_impact import scene_of as impact_of
+from cases.library.sphere_impact import scene_of as impact_of
 from contact import CoatedPair, ContactRadii, FlatPunch, IndentationDepths, Layer, Paraboloid, PowerLaw, Profile, Scene
 from docs.gallery._parts import SOURCE, UNBONDED, layer, name_of, punch
 from docs.gallery.figure_07 import pressed

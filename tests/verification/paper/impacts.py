@@ -3,8 +3,8 @@
 from collections.abc import Iterator
 from functools import cache, partial
 
-from cases.library.in_time.flat_punch_impact import restitution
-from cases.library.in_time.sphere_impact import scene_of, twice_the_radius_at_half_the_speed
+from cases.library.flat_punch_impact import restitution
+from cases.library.sphere_impact import scene_of, twice_the_radius_at_half_the_speed
 from contact import ImpactHistory, Layer
 from docs.gallery._parts import SOURCE, UNBONDED, layer, name_of
 from docs.gallery.figure_12 import elastic_half_space

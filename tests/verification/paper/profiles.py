@@ -5,7 +5,7 @@ from functools import partial
 
 import numpy as np
 
-from cases.library.elastic.coated_pair import RATIOS, one_body_on_its_plane, symmetric
+from cases.library.coated_pair import RATIOS, one_body_on_its_plane, symmetric
 from contact import Layer, Paraboloid, TruncatedCone
 from docs.gallery._parts import SOURCE, UNBONDED, layer, name_of
 from docs.gallery.figure_07 import depth_over_height, pressed

@@ -1,0 +1,91 @@
+"""What each effect of a scene costs and changes: one more solution without it, for the page of a case."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+from cases.advice import NOTHING_PULLS, STATIC, nothing_left, parts_of, without
+from cases.answers import Answer, Table
+from cases.case import Case, Task
+from cases.claims import Study
+from cases.declare.quantities import IMPACT_NUMBERS
+from cases.studies import Effect
+from contact import DetachmentPath
+
+_COMPARED = (*IMPACT_NUMBERS, *DetachmentPath.SCALARS, *STATIC)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Ablation(Study):
+    """Every part of one scene left out in turn.
+
+    Attributes:
+        name: "effects" where a case has one such study.
+        scene: name of the scene.
+        methods: labels of the methods that solve it with and without.
+        slow: labels of those that do so in the nightly suite only.
+    """
+
+    name: str = "effects"
+    scene: str
+    methods: tuple[str, ...] = ("mdr",)
+    slow: tuple[str, ...] = ()
+
+    def in_suite(self, suite: str) -> "Ablation":
+        """Return the study as a suite carries it out."""
+        return replace(self, methods=(*self.methods, *self.slow), slow=()) if suite == "nightly" else self
+
+    def tasks(self, case: Case) -> Iterator[Task]:
+        """Yield the whole scene and the scene without each of its parts, as first solutions."""
+        for whole in self._wholes(case):
+            yield whole
+            yield from (task for _, task in _ablated(whole))
+
+    def records(self, case: Case, answers: Table) -> Iterator[Effect]:
+        """Yield one effect for each part and method; nothing for a method that does not solve the whole scene."""
+        for task in self._wholes(case):
+            whole = answers.get(task.identity)
+            if whole is None or not whole.solved:
+                continue
+            for part, changed in _ablated(task):
+                less = answers.get(changed.identity)
+                if less is not None:
+                    yield _effect(whole, part, less)
+            for part in parts_of(task.problem):
+                if nothing_left(task.problem, part):
+                    yield _unanswered(whole, part, NOTHING_PULLS)
+
+    def _wholes(self, case: Case) -> Iterator[Task]:
+        """The scene by each method that is left on it."""
+        scene = case.by_name.get(self.scene)
+        for use in case.methods_of(scene) if scene else ():
+            if scene and use.label in self.methods:
+                yield replace(case.task(scene, use), variant="whole, as a first solution", first=True)
+
+
+def _ablated(whole: Task) -> Iterator[tuple[str, Task]]:
+    for part in parts_of(whole.problem):
+        if not nothing_left(whole.problem, part):
+            yield part, whole.changed(f"without {part}", without(whole.problem, [part]))
+
+
+def _effect(whole: Answer, part: str, less: Answer) -> Effect:
+    if not less.solved:
+        return _unanswered(whole, part, less.reason)
+    return replace(_unanswered(whole, part, ""), seconds_without=less.seconds, changes=dict(_changes(whole, less)))
+
+
+def _unanswered(whole: Answer, part: str, remark: str) -> Effect:
+    return Effect(
+        case=whole.case, scene=whole.scene, method=whole.method, part=part, seconds=whole.seconds, remark=remark
+    )
+
+
+def _changes(whole: Answer, less: Answer) -> Iterator[tuple[str, float]]:
+    """Largest change over the steps relative to the largest value; of single numbers where an answer has any."""
+    single = any(len(q.values) == 1 and name in _COMPARED for name, q in whole.quantities.items())
+    for name, q in whole.quantities.items():
+        others = less.quantities[name].values if name in less.quantities else ()
+        if name in _COMPARED and len(q.values) == len(others) and (len(q.values) == 1 or not single):
+            largest = max(map(abs, q.values))
+            if largest > 0:
+                yield name, max(abs(x - y) for x, y in zip(q.values, others, strict=True)) / largest

@@ -1,0 +1,491 @@
+"""What cases share: layers, scenes, methods, reasons, requirements, reference numbers, and the claims that most make.
+
+A requirement is a tolerance that is fixed beforehand. No method sets its own: errors that methods state stand beside a
+verdict. A method that is too coarse is told so (INCONCLUSIVE), and one that misses it by more than it states disagrees.
+"""
+
+import tomllib
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import fields, replace
+from functools import partial
+from pathlib import Path
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.polynomial import chebyshev
+
+from cases.answers import Answer
+from cases.case import CaseScene, Sampling
+from cases.claims import Agree, Approach, Equal, Expected, Law, Norm, Zero
+from cases.declare.methods import MethodUse
+from cases.verdicts import Origin, Why
+from contact import ContactRadii, ElasticLayer, InvalidInput, Layer, Loading, NormalForces, Profile, Scene
+from contact.records.validation import FloatArray
+
+# A scene on any layer, under any loading.
+AnyScene: TypeAlias = Scene[Any, Any]
+Scenes: TypeAlias = Iterable[CaseScene]
+# Named arguments that several calls share.
+Words: TypeAlias = dict[str, Any]
+
+
+def _table(name: str) -> dict[str, Any]:
+    return tomllib.loads(Path(__file__).with_name(name).read_text(encoding="utf-8"))
+
+
+# Reference numbers of `benchmarks.references`, by kind and name; what each list holds stands in its ``table``.
+NUMBERS: dict[str, dict[str, list[float]]] = _table("reference_numbers.toml")
+# kbar of the bonded layer by a/h as Hayes et al. (1972) printed it, by label of the layer.
+HAYES: dict[str, dict[float, float]] = {
+    label: dict(zip(column["a_over_h"], column["kbar"], strict=True)) for label, column in _table("hayes.toml").items()
+}
+
+# -- reasons ----------------------------------------------------------------------------------------------------------
+# Why claims hold, by case and name.
+REASONS = _table("reasons.toml")
+
+
+def reasons(case: str) -> dict[str, Why]:
+    """Return the reasons of a case (or those that several share) by name.
+
+    Raises:
+        InvalidInput: for an entry that leaves something out.
+    """
+    return {name: _reason(f"{case}.{name}", entry) for name, entry in REASONS[case].items()}
+
+
+def _reason(place: str, entry: Mapping[str, str]) -> Why:
+    """Return an entry, with what the entry that it is like says beside it."""
+    case, _, name = entry.get("like", "").partition(".")
+    whole = {**REASONS[case][name], **entry} if name else entry
+    try:
+        return Why(Origin(whole["origin"]), whole["source"], whole["because"], whole["tolerance"])
+    except KeyError as error:
+        raise InvalidInput(f"reasons.toml: {place} has no entry {error}; add it") from None
+
+
+SHARED = reasons("shared")
+
+
+def with_tolerance(why: Why, derived_from: str) -> Why:
+    """Return the reason with another origin of its tolerance."""
+    return replace(why, tolerance=derived_from)
+
+
+# -- layers and scenes ------------------------------------------------------------------------------------------------
+THICKNESS = 1e-3  # m
+YOUNGS_MODULUS = 1e6  # Pa
+LAYERS: dict[str, tuple[str, float]] = {
+    "unbonded": ("unbonded", 0.3),
+    "bonded nu=0.3": ("bonded", 0.3),
+    "bonded nu=0.45": ("bonded", 0.45),
+    "bonded nu=0.5": ("bonded", 0.5),
+}
+
+
+def layer(label: str) -> Layer:
+    """Return the layer called ``label``: its support and, when bonded, its Poisson's ratio; or the half-space."""
+    if label == "half-space":
+        return half_space()
+    support, poissons_ratio = LAYERS[label]
+    return layer_of(poissons_ratio, support)
+
+
+def layer_of(poissons_ratio: float, support: str = "bonded") -> Layer:
+    """Return a layer of the usual thickness and modulus."""
+    return Layer(
+        thickness=THICKNESS,
+        youngs_modulus=YOUNGS_MODULUS,
+        poissons_ratio=poissons_ratio,
+        support="unbonded" if support == "unbonded" else "bonded",
+    )
+
+
+def half_space(poissons_ratio: float = 0.3) -> Layer:
+    """Return a half-space of the usual modulus."""
+    return Layer.half_space(youngs_modulus=YOUNGS_MODULUS, poissons_ratio=poissons_ratio)
+
+
+def contact_modulus(layer: Any) -> float:
+    """E* = E / (1 - nu^2) [Pa] for expected numbers, which must not share a mistake with `Layer.contact_modulus`."""
+    return float(layer.youngs_modulus / (1 - layer.poissons_ratio**2))
+
+
+def confined_modulus(layer: Layer) -> float:
+    """E (1 - nu) / ((1 + nu) (1 - 2 nu)) [Pa] for expected numbers, written out for the same reason."""
+    nu = layer.poissons_ratio
+    return layer.youngs_modulus * (1 - nu) / ((1 + nu) * (1 - 2 * nu))
+
+
+def scene_name(label: str, ratio: float) -> str:
+    """Return the name of a scene: the layer and its confinement ratio."""
+    return f"{label} a/h={ratio:g}"
+
+
+def scene(
+    name: str,
+    layer: ElasticLayer,
+    indenter: Profile,
+    loading: Loading,
+    /,
+    *,
+    effects: tuple[Any, ...] = (),
+    steep: bool = False,
+    sampling: Sampling | None = None,
+    methods: tuple[MethodUse, ...] = (),
+    nightly: tuple[str, ...] = (),
+    **parameters: bool | float | str,
+) -> CaseScene:
+    """Return a scene of a case.
+
+    Args:
+        name: unique within the case.
+        layer: or stack.
+        indenter: its profile.
+        loading: what is prescribed.
+        effects: beside elasticity.
+        steep: whether its strains are beyond small ones; the scene is solved all the same.
+        sampling: what is kept of each answer.
+        methods: that solve it; empty for those of the case.
+        nightly: labels of those that take too long for the suite "ci".
+        parameters: what sets it apart.
+    """
+    problem: AnyScene = Scene(
+        layer=layer, indenter=indenter, loading=loading, effects=effects, beyond_small_strains=steep
+    )
+    kept = Sampling() if sampling is None else sampling
+    return CaseScene(name=name, parameters=parameters, scene=problem, sampling=kept, methods=methods, nightly=nightly)
+
+
+def rings(contact_radius: float, *fractions: float) -> Sampling:
+    """Keep the pressure on rings between fractions of the contact radius [m]."""
+    return Sampling(ring_edges=tuple(float(x) for x in contact_radius * np.asarray(fractions)))
+
+
+def names_of(scenes: Scenes) -> tuple[str, ...]:
+    """Return the names of scenes."""
+    return tuple(scene.name for scene in scenes)
+
+
+def having(scenes: Scenes, **wanted: float | str) -> tuple[CaseScene, ...]:
+    """Return the scenes with these parameters."""
+    return tuple(s for s in scenes if all(s.parameters.get(name) == value for name, value in wanted.items()))
+
+
+def radius(scene: AnyScene) -> float:
+    """Return the last prescribed contact radius a [m], or that of a flat punch."""
+    return float(scene.loading.values[-1] if isinstance(scene.loading, ContactRadii) else scene.indenter.flat_radius)
+
+
+def thinness(scene: AnyScene) -> float:
+    """h/a."""
+    return float(scene.layer.thickness) / radius(scene)
+
+
+def half_space_stiffness(scene: AnyScene) -> float:
+    """2 E* a [N/m], the unit of stiffnesses."""
+    return 2 * contact_modulus(scene.layer) * radius(scene)
+
+
+def part(values: Callable[[AnyScene], Mapping[str, float]], name: str) -> Callable[[AnyScene], float]:
+    """Return one of the numbers that a function gives by name, as a function."""
+    return lambda scene: values(scene)[name]
+
+
+def known(
+    kind: str, scenes: Scenes, number: int, unit: Callable[[AnyScene], float], name: Callable[[str], str] = str
+) -> dict[str, tuple[float, ...]]:
+    """Return reference numbers of a kind by scene.
+
+    Args:
+        kind: of ``NUMBERS``.
+        scenes: those without a number are left out.
+        number: which of the numbers of a name.
+        unit: SI value of one, of the scene.
+        name: of the numbers, by that of the scene.
+    """
+    rows = {s.name: (NUMBERS[kind].get(name(s.name)), s.scene) for s in scenes}
+    return {place: (row[number] * unit(problem),) for place, (row, problem) in rows.items() if row}
+
+
+# Exact twins of a scene.
+def doubled_modulus(scene: AnyScene) -> AnyScene:
+    """Return the scene with twice Young's modulus: at given radii depth stays and force doubles."""
+    return scene.replace(layer=scene.layer.replace(youngs_modulus=2 * scene.layer.youngs_modulus))
+
+
+def other_poissons_ratio(scene: AnyScene) -> AnyScene:
+    """Return the scene with nu = 0.1 at the same E*: an unbonded layer must not see the difference."""
+    modulus = contact_modulus(scene.layer) * (1 - 0.1**2)
+    return scene.replace(layer=scene.layer.replace(poissons_ratio=0.1, youngs_modulus=modulus))
+
+
+def in_millimetres(scene: AnyScene) -> AnyScene:
+    """Return the same contact written in another consistent system: lengths in mm and stresses in MPa.
+
+    With the force in N, lengths are 1000 times and stresses 1e-6 times the SI numbers; forces keep their numbers.
+    """
+    lengths, names = ("radius", "flat_radius", "radius_of_curvature"), [f.name for f in fields(scene.indenter)]
+    own = {name: 1e3 * getattr(scene.indenter, name) for name in lengths if name in names}
+    layer, loading = scene.layer, scene.loading
+    thinner = layer.replace(thickness=1e3 * layer.thickness, youngs_modulus=1e-6 * layer.youngs_modulus)
+    if not isinstance(loading, NormalForces):
+        loading = type(loading)(values=1e3 * loading.values)
+    return scene.replace(layer=thinner, indenter=scene.indenter.replace(**own), loading=loading)
+
+
+# -- methods ----------------------------------------------------------------------------------------------------------
+# A method that does not model a scene answers with its reason.
+MDR = MethodUse(label="mdr")
+FEM = MethodUse(label="fem", settings={"order": 4, "growth": 0.33, "edge_cell": 1e-7, "truncation": 1e-10})
+QUICK_FEM = MethodUse(label="fem", settings={"accuracy": 1e-4})
+DETACHING_FEM = MethodUse(label="fem", settings={"accuracy": 3e-5})
+PEELING_FEM = MethodUse(label="fem", settings={"accuracy": 5e-5})
+BEM = MethodUse(label="bem", settings={"points": 256})
+DETACHING_BEM = MethodUse(label="bem", settings={"points": 128})
+EQUATION = MethodUse(label="integral_equation")
+TABLE = MethodUse(label="mdr_table", settings={"cells": 128, "ratios": 60, "radii": 200})
+EVERY = (MDR, FEM, BEM, EQUATION, TABLE)
+
+# -- requirements -----------------------------------------------------------------------------------------------------
+PATH = ("indentation_depth", "normal_force", "contact_stiffness")
+# Finite elements and the integral equation serve as references: six and nine digits. Grids of some hundred cells serve
+# for two or three digits where a layer is as thick as many cells, ..
+BY_METHOD: dict[str, dict[str, float]] = {
+    "fem": {**dict.fromkeys(PATH, 3e-6), "contact_radius": 2e-5, "pressure": 2e-4},
+    "integral_equation": dict.fromkeys((*PATH, "contact_radius"), 1e-9),
+    "bem": dict.fromkeys((*PATH, "contact_radius"), 2e-3),
+    "mdr_table": dict(zip(PATH, (2.5e-3, 6e-3, 3e-4), strict=True)),
+}
+# .. for less where a cell is a sixth (a/h = 10) or a third (a/h = 20) of the thickness, ..
+COARSE = {"mdr_table": dict(zip(PATH, (1e-2, 5e-2, 5e-3), strict=True))}
+VERY_COARSE = {"mdr_table": dict(zip(PATH, (3e-2, 1e-1, 1.5e-2), strict=True))}
+# .. and for the order of magnitude of the load where it is half of it (a/h = 40).
+COARSEST = {
+    "bem": dict(zip(PATH, (1.5e-2, 1.2e-2, 1.5e-3), strict=True)),
+    "mdr_table": dict(zip(PATH, (4e-2, 1.8e-1, 2e-2), strict=True)),
+}
+
+
+def required(*labels: str) -> dict[str, dict[str, float]]:
+    """Return the requirements of methods by quantity, on layers that grids resolve."""
+    return {label: BY_METHOD[label] for label in labels}
+
+
+# -- claims -----------------------------------------------------------------------------------------------------------
+def equal(
+    name: str,
+    quantity: str,
+    to: Expected,
+    scenes: Scenes,
+    why: Why,
+    /,
+    *,
+    tolerance: float,
+    methods: tuple[str, ...] = (),
+    identities: Mapping[str, str] | None = None,
+    **tolerances: float,
+) -> Equal:
+    """Return the claim that a quantity equals expected numbers.
+
+    Args:
+        name: of the claim.
+        quantity: what is compared.
+        to: the numbers, by scene.
+        scenes: what must give the numbers; empty for those that have a number.
+        why: where the numbers come from.
+        tolerance: relative.
+        methods: labels; empty for every method of the case.
+        identities: of methods for which it holds by construction: why.
+        tolerances: of methods that need another one.
+    """
+    return Equal(
+        name=name,
+        quantity=quantity,
+        to=to,
+        scenes=names_of(scenes),
+        methods=methods,
+        tolerance=tolerance,
+        tolerances=tolerances,
+        identities=identities or {},
+        why=why,
+    )
+
+
+def agreements(
+    scenes: Scenes,
+    tolerances: Mapping[str, float | Mapping[str, float]],
+    quantities: Iterable[str] = PATH,
+    *,
+    why: Why | None = None,
+    derived_from: str = "",
+    suffix: str = "",
+) -> Iterator[Agree]:
+    """Yield the agreement of MDR with each method of ``tolerances`` (or those of its quantities) in ``quantities``.
+
+    Args:
+        scenes: what they answer.
+        tolerances: by label, or by label and quantity.
+        quantities: what is compared.
+        why: in place of the usual one of the method, which holds for ``PATH``.
+        derived_from: how these tolerances were chosen, where that is not what the reason says.
+        suffix: of the names of the claims.
+    """
+    on, quantities = names_of(scenes), tuple(quantities)
+    for label, tolerance in tolerances.items():
+        whole = why or SHARED[label]
+        for quantity in quantities:
+            yield Agree(
+                name=f"{quantity.replace('_', ' ')}: MDR and {label}{suffix}",
+                quantity=quantity,
+                scenes=on,
+                fast="mdr",
+                reference=label,
+                tolerance=tolerance[quantity] if isinstance(tolerance, Mapping) else tolerance,
+                why=with_tolerance(whole, derived_from) if derived_from else whole,
+            )
+
+
+def pressure_agreements(scenes: Scenes, norms: Mapping[str, Norm], limit: str) -> Iterator[Agree]:
+    """Yield the agreement of the pressures of MDR and finite elements, one claim for each name and norm of ``norms``.
+
+    ``limit`` is what limits finite elements to about 2e-5, far inside the requirement.
+    """
+    why = with_tolerance(SHARED["fem"], f"a requirement: 2e-4; {limit} finite elements to about 2e-5")
+    claims = agreements(scenes, required("fem"), ("pressure",), why=why)
+    for claim, (name, norm) in zip(list(claims) * len(norms), norms.items(), strict=True):
+        yield replace(claim, name=name, norm=norm, refined=("mdr",))
+
+
+def zero(
+    name: str,
+    quantity: str,
+    scenes: Scenes,
+    why: Why,
+    /,
+    *,
+    tolerance: float,
+    methods: tuple[str, ...] = (),
+    derive: Callable[[CaseScene, Answer], Iterable[float]] | None = None,
+    **tolerances: float,
+) -> Zero:
+    """Return the claim that a residual vanishes; arguments as of `equal`, ``derive`` as of `Zero`."""
+    return Zero(
+        name=name,
+        quantity=quantity,
+        scenes=names_of(scenes),
+        methods=methods,
+        tolerance=tolerance,
+        tolerances=tolerances,
+        why=why,
+        derive=derive,
+    )
+
+
+def carried_force(name: str, scenes: Scenes, method: str) -> Zero:
+    """Return the claim that sampled pressures add up to the force; the rings must reach the contact's edge."""
+    return zero(
+        name, "pressure", scenes, SHARED["equilibrium"], tolerance=1e-3, methods=(method,), derive=lacking_force
+    )
+
+
+def lacking_force(scene: CaseScene, answer: Answer) -> list[float]:
+    """Return what the loads of rings out to the contact's edge lack of the normal force of the last step."""
+    load = float(np.sum(scene.sampling.rings.loads(np.array(answer.quantities["pressure"].values))))
+    return [load / answer.quantities["normal_force"].values[-1] - 1]
+
+
+def incremental_stiffness(scene: CaseScene, answer: Answer) -> FloatArray:
+    """Return dF/(k_N d delta) - 1 along a loading path: one more step presses like a flat punch, whatever the profile.
+
+    With F = int c (g(a) - g(x)) dx and k_N the stiffness of the flat punch of radius a, this vanishes exactly where the
+    spring stiffness is the derivative c = dk_N/da, Eq. (10), which for the data of a layer reads
+    c_bar = d(xi k_bar)/dxi. The radii of the path are `chebyshev_radii`.
+    """
+    a, depth, force, stiffness = (np.array(answer.quantities[name].values) for name in ("contact_radius", *PATH))
+    fit = partial(chebyshev.Chebyshev.fit, a, deg=len(a) - 1)
+    return np.asarray(fit(force).deriv()(a) / (stiffness * fit(depth).deriv()(a)) - 1)
+
+
+def chebyshev_radii(lowest: float, highest: float, count: int) -> FloatArray:
+    """Increasing Chebyshev-Lobatto points of [lowest, highest], where a polynomial through smooth values converges."""
+    return lowest + (highest - lowest) * np.sin(np.linspace(0, np.pi / 2, count)) ** 2
+
+
+def energy_balance(scenes: Scenes, time_steps: int, **tolerances: Any) -> Zero:
+    """Return the claim that the energies of an impact add up, by finite elements in so many ``time_steps``."""
+    steps = f"finite elements: 1e-5 by {time_steps} time steps, ten times"
+    why = with_tolerance(SHARED["energy balance"], f"MDR: tolerance of its time integration; {steps}")
+    return zero("energy balance", "energy_residual", scenes, why, tolerance=1e-7, **tolerances)
+
+
+def scaling_law(
+    name: str,
+    scenes: Scenes,
+    change: Callable[[AnyScene], AnyScene],
+    factors: tuple[float, ...],
+    why: Why,
+    /,
+    *,
+    tolerance: float = 1e-12,
+    identities: Mapping[str, str] | None = None,
+    **tolerances: float,
+) -> Law:
+    """Return the claim that a changed scene gives known multiples of depth, force and (if named) stiffness.
+
+    ``factors`` are those of ``PATH``, the last may be left out; other arguments as of `equal`.
+    """
+    return Law(
+        name=name,
+        quantity="normal_force",
+        scenes=names_of(scenes),
+        change=change,
+        tolerance=tolerance,
+        why=why,
+        factors=dict(zip(PATH, factors, strict=False)),
+        tolerances=tolerances,
+        identities=identities or {},
+    )
+
+
+def same_in_millimetres(scenes: Scenes, factors: tuple[float, ...] = (1e3, 1.0, 1e-3)) -> Law:
+    """Return the claim that the unit system does not matter; ``factors`` as of `scaling_law`."""
+    return scaling_law(
+        "the unit system does not matter", scenes, in_millimetres, factors, SHARED["units"], tolerance=1e-9, bem=1e-7
+    )
+
+
+def approach(
+    name: str,
+    quantity: str,
+    scenes: Scenes,
+    limit: Callable[[AnyScene], float],
+    why: Why,
+    /,
+    *,
+    largest: float,
+    parameter: Callable[[AnyScene], float] = thinness,
+    **more: Any,
+) -> Approach:
+    """Return the claim that a quantity approaches a limit as a parameter, h/a by default, falls.
+
+    Args:
+        name: of the claim.
+        quantity: whose last step approaches.
+        scenes: the one closest to the limit last.
+        limit: closed form, of the scene.
+        why: why it does.
+        largest: relative distance of the last scene.
+        parameter: what falls, of the scene.
+        more: order and methods, as of `Approach`.
+    """
+    return Approach(
+        name=name,
+        quantity=quantity,
+        scenes=names_of(scenes),
+        limit=limit,
+        largest=largest,
+        why=why,
+        parameter=parameter,
+        **more,
+    )

@@ -1,1 +1,0 @@
-"""Adhesive contact and detachment."""

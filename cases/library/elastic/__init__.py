@@ -1,1 +1,0 @@
-"""Elastic contact: flat punches, paraboloids, truncated cones and coated pairs on layers of any thickness."""

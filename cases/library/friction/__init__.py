@@ -1,1 +1,0 @@
-"""Contact with friction: what sticks instead of slipping."""

@@ -1,1 +1,0 @@
-"""Impacts on elastic and relaxing layers."""

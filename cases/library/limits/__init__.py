@@ -1,1 +1,0 @@
-"""Limits: thick layers, thin layers, and Poisson's ratio up to exactly one half."""

@@ -1,0 +1,120 @@
+"""Poisson's ratio up to exactly one half: no locking, and the right limit.
+
+Bonded layers of soft matter are nearly incompressible, and there displacement elements lock: their stiffness grows
+without bound as nu -> 1/2. A flat punch at a/h = 1 walks from nu = 0.3 to exactly 0.5. Mixed elements must stay as
+accurate as MDR says they are, and on one and the same mesh as accurate at nu = 1/2 as at nu = 0.3. The stiffness must
+approach that of the incompressible layer with the first order of 1/2 - nu.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import ClassVar
+
+from cases.answers import Answer
+from cases.case import Case, CaseScene, Task, text_of
+from cases.claims import PerScene
+from cases.cost import elastic_costs
+from cases.declare.methods import MethodUse
+from cases.library import _common as c
+from cases.library import _refinements as r
+from cases.rules import Judgement, judge_residual, nothing_compared
+from cases.verdicts import Kind, Status
+from contact import FlatPunch, IndentationDepths
+
+WHY = c.reasons("near_incompressible")
+DEPTH = 1e-5  # m
+RATIOS_OF_POISSON = (0.3, 0.4, 0.45, 0.49, 0.499, 0.4999, 0.49999, 0.4999999, 0.5)
+ONE_MESH = MethodUse(
+    label="fem one mesh", method="fem", settings={"order": 4, "growth": 0.5, "edge_cell": 1e-7, "outer_distance": 10.0}
+)
+
+
+def punch(nu: float) -> CaseScene:
+    """Return the flat punch at a/h = 1."""
+    name = f"bonded nu={nu:.8g} a/h=1"
+    late = () if name in c.NUMBERS["stiffness"] else ("mdr_table",)
+    tip, depth = FlatPunch(radius=c.THICKNESS), IndentationDepths([DEPTH])
+    return c.scene(name, c.layer_of(nu), tip, depth, nightly=late, poissons_ratio=nu)
+
+
+SCENES = tuple(punch(nu) for nu in RATIOS_OF_POISSON)
+
+
+def compressibility(scene: c.AnyScene) -> float:
+    """1/2 - nu."""
+    return 0.5 - float(scene.layer.poissons_ratio)
+
+
+def incompressible_stiffness(scene: c.AnyScene) -> float:
+    """k_N of the incompressible layer with the scene's contact modulus."""
+    return c.half_space_stiffness(scene) * c.NUMBERS["stiffness"]["bonded nu=0.5 a/h=1"][0]
+
+
+@dataclass(frozen=True, kw_only=True)
+class EvenAccuracy(PerScene):
+    """On one and the same mesh the error exceeds that of the first scene by no more than the fraction ``tolerance``."""
+
+    kind: ClassVar[Kind] = Kind.INVARIANT
+
+    def places(self, case: Case) -> Iterator[tuple[CaseScene, MethodUse]]:
+        """Yield every scene after the first that the direct equation solves, too."""
+        solved = {scene.name for scene in case.scenes if c.EQUATION.label in (u.label for u in case.methods_of(scene))}
+        places = [place for place in super().places(case) if place[0].name in solved]
+        yield from places[1:] if places and places[0][0].name == SCENES[0].name else ()
+
+    def needed(self, case: Case, scene: CaseScene, use: MethodUse) -> Iterator[Task]:
+        """Yield the reference of the scene, then both answers of the first scene."""
+        first = case.scene(SCENES[0].name)
+        for one, label in ((scene, c.EQUATION.label), (first, use.label), (first, c.EQUATION.label)):
+            yield case.task(one, case.use(one, label))
+
+    def judged(self, scene: CaseScene, label: str, answer: Answer, others: list[Answer]) -> Judgement:
+        """Judge by how much the error is larger than that of the first scene."""
+        meshes = [one.settings.get("mesh") for one in (others[1], answer)]
+        if meshes[0] is None or meshes[0] != meshes[1]:
+            return nothing_compared(Status.INCOMPARABLE, f"not one mesh: {meshes[0]} and {meshes[1]}")
+        own, exact, base, base_exact = (one.quantities[self.quantity].values[-1] for one in (answer, *others))
+        growth = abs(own / exact - 1) / abs(base / base_exact - 1) - 1
+        return judge_residual(growth, tolerance=self.tolerance)
+
+
+STIFFNESS = "contact_stiffness"
+KBAR = c.known("stiffness", SCENES, 0, c.half_space_stiffness)
+TEN_DIGITS: c.Words = {"tolerance": 1e-10, "fem": 3e-6, "fem one mesh": 1e-5, "bem": 1e-5, "mdr_table": 1e-4}
+ALMOST, NEAR, EQUATION = (punch(0.4999999),), (punch(0.499), punch(0.4999)), "integral_equation"
+CASE = Case(
+    name="near_incompressible",
+    title="Nearly incompressible layers",
+    question="Do finite elements lock, and does MDR go over into the incompressible layer smoothly?",
+    equations=("Eq. (31)",),
+    text=text_of(__doc__),
+    scenes=SCENES,
+    methods=(c.MDR, c.FEM, ONE_MESH, c.BEM, c.EQUATION, c.TABLE),
+    claims=(
+        *c.agreements(SCENES, {"fem": 3e-6, EQUATION: 1e-9, "mdr_table": 3e-4}, (STIFFNESS,)),
+        *c.agreements(SCENES, {"bem": 1e-5}, (STIFFNESS,), why=c.SHARED["bem, flat punches"]),
+        c.equal("stiffness to ten digits", STIFFNESS, KBAR, (), WHY["twelve digits"], **TEN_DIGITS),
+        EvenAccuracy(
+            name="as accurate at nu = 1/2 as at nu = 0.3, on one mesh",
+            quantity=STIFFNESS,
+            methods=(ONE_MESH.label,),
+            tolerance=1.0,
+            why=WHY["no locking"],
+        ),
+        c.approach(
+            "first order in 1/2 - nu",
+            STIFFNESS,
+            NEAR,
+            incompressible_stiffness,
+            WHY["regular limit"],
+            largest=1e-2,
+            parameter=compressibility,
+            methods=("mdr", "fem", EQUATION),
+        ),
+        *r.studies(ALMOST, r.NODES, (STIFFNESS,), against=EQUATION),
+        *r.studies(ALMOST, r.EDGE_CELL, {STIFFNESS: 1.0}, against=EQUATION),
+        *r.studies(ALMOST, r.OUTER_RADIUS, (STIFFNESS,), against=EQUATION, nightly=True),
+        *r.studies(ALMOST, r.fem_cells(3), {STIFFNESS: 6.0}, against=EQUATION, nightly=True),
+        *elastic_costs("bonded nu=0.4999 a/h=1", ("normal_force",)),
+    ),
+)

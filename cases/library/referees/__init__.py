@@ -1,1 +1,0 @@
-"""Solvers that nobody here wrote, beside ours: the suite "referees"."""

@@ -1,1 +1,0 @@
-"""Layers of several materials, graded layers, and films on elastic bases."""

@@ -1,0 +1,118 @@
+"""Two layers of equal thickness: soft on stiff, stiff on soft, incompressible, and free to slip on each other.
+
+A paraboloid, a truncated cone and a flat punch press two layers on a rigid base, from contacts much smaller than the
+upper layer to contacts five times as wide as both. MDR solves one equation for all radii, the direct integral equation
+one for each; they share the kernel, so the contact's pressure is also put back on the body by a kernel that is written
+separately: inside the contact it must press the shape of the indenter into the surface. Two equal layers are one. Two
+thin incompressible ones flow between base and punch: a force of delta pi a^4/(8 C), with C the integral of s^2/G over
+the depth s. Where a stiff layer lies on a soft one, flat ends would pull and are refused; no such scene stands
+here. The figure shows what bodies made simpler err by, also one on an elastic base and a graded one.
+"""
+
+import math
+
+from cases.case import Case, CaseScene, text_of
+from cases.cost import elastic_costs
+from cases.library import _common as c
+from cases.library import _refinements as r
+from cases.library import _stacks as s
+from contact import Layer
+
+# Thickness, modulus and nu of each layer, from the top, and whether the two slip.
+LAYERS = {
+    "soft on stiff": s.stack((0.5, 1.0, 0.3), (0.5, 10.0, 0.3)),
+    "very soft on stiff": s.stack((0.5, 1.0, 0.3), (0.5, 1e4, 0.3)),
+    "stiff on soft": s.stack((0.5, 10.0, 0.3), (0.5, 1.0, 0.3)),
+    "incompressible on compressible": s.stack((0.5, 1.0, 0.5), (0.5, 3.0, 0.3)),
+    "compressible on incompressible": s.stack((0.5, 1.0, 0.3), (0.5, 3.0, 0.5)),
+    "both incompressible": s.stack((0.5, 1.0, 0.5), (0.5, 4.0, 0.5)),
+    "slipping": s.stack((0.5, 1.0, 0.4), (0.5, 3.0, 0.3), interfaces=("unbonded",)),
+    "slipping everywhere": s.stack((0.5, 2.0, 0.5), (0.5, 3.0, 0.3), interfaces=("unbonded",), support="unbonded"),
+}
+# A flat end would pull there.
+PULLING = {"stiff on soft"}
+# Solved in the suite ci; finite elements and grids solve the first.
+FIRST = ("soft on stiff", "paraboloid", 1.0)
+QUICK = (
+    FIRST,
+    ("stiff on soft", "paraboloid", 1.0),
+    ("slipping everywhere", "flat punch", 1.0),
+    ("incompressible on compressible", "truncated cone", 1.0),
+)
+
+
+def on_two(label: str, indenter: str, ratio: float) -> CaseScene:
+    """Return a scene on two of the layers."""
+    place = label, indenter, ratio
+    slow = () if place == FIRST else ("fem", "bem") if place in QUICK else s.NIGHTLY
+    return s.pressed(label, LAYERS[label], ratio, indenter, nightly=slow)
+
+
+SCENES = tuple(
+    on_two(label, indenter, ratio)
+    for label in LAYERS
+    for indenter in s.INDENTERS
+    for ratio in (0.1, 1.0, 5.0)
+    if indenter == "paraboloid" or label not in PULLING
+)
+SAME = s.stack((0.3, 1.0, 0.4), (0.7, 1.0, 0.4))
+EQUAL = tuple(s.pressed("two equal layers", SAME, 1.0, indenter) for indenter in s.INDENTERS)
+FLOWING = LAYERS["both incompressible"]
+THIN = tuple(s.pressed("thin incompressible", FLOWING, ratio, "flat punch", sampled=False) for ratio in (40.0, 80.0))
+# Legendre-Galerkin in Fourier space, E* of the upper layer, lengths in H, and R = H; here R = 10 H: stiffness, depth
+# and force.
+PUBLISHED = {
+    "soft on stiff, paraboloid, a/H=1": (4.029072582822, 0.582871322414, 2.373099580873),
+    "stiff on soft, paraboloid, a/H=1": (0.650379832415, 0.892382241985, 0.657189735505),
+}
+ON_THEM = tuple(scene for scene in SCENES if scene.name in PUBLISHED)
+
+
+def published(number: int, unit: float, *, per_modulus: bool = True) -> dict[str, tuple[float]]:
+    """Return published numbers by scene; ``unit`` times E* is the SI value of one."""
+    moduli = {one.name: c.contact_modulus(one.scene.layer.surface) if per_modulus else 1.0 for one in ON_THEM}
+    return {name: (PUBLISHED[name][number] * modulus * unit,) for name, modulus in moduli.items()}
+
+
+def merged(scene: c.AnyScene) -> c.AnyScene:
+    """Return the scene on one layer of the upper material."""
+    top = scene.layer.surface
+    one = Layer(thickness=c.THICKNESS, youngs_modulus=top.youngs_modulus, poissons_ratio=top.poissons_ratio)
+    return scene.replace(layer=one)
+
+
+def flowing(scene: c.AnyScene) -> float:
+    """k_N = pi a^4/(8 C) of thin incompressible layers, C = int s^2/G ds: the gradient of pressure drives the flow."""
+    start, compliance = 0.0, 0.0
+    for one in scene.layer.sublayers:
+        shear_modulus, end = one.youngs_modulus / (2 * (1 + one.poissons_ratio)), start + one.thickness
+        compliance += (end**3 - start**3) / (3 * shear_modulus)
+        start = end
+    return math.pi * c.radius(scene) ** 4 / (8 * compliance)
+
+
+H, DIGITS = c.THICKNESS, s.WHY["published digits"]
+BY_FAST: c.Words = {"tolerance": 1e-11, "methods": s.FAST}
+STIFFNESSES, DEPTHS, FORCES = published(0, 2 * H), published(1, 0.1 * H, per_modulus=False), published(2, 0.1 * H**2)
+ALIKE, FLOW, ONE = "two equal layers are one", "incompressible layers flow", (on_two(*FIRST),)
+SAME_ANSWER: c.Words = {"tolerance": 1e-11, "fem": 1e-5, "bem": 1e-3}
+CASE = Case(
+    name="two_layers",
+    title="Two layers",
+    question="Do methods agree on two layers of any contrast, and is their common kernel right?",
+    equations=("Eq. (8)", "Eq. (10)", "Eq. (27)"),
+    text=text_of(__doc__),
+    scenes=(*SCENES, *EQUAL, *THIN),
+    methods=s.METHODS,
+    claims=(
+        *s.two_methods((*SCENES, *EQUAL)),
+        s.pressed_shape((*SCENES, *EQUAL)),
+        c.equal("published stiffness", "contact_stiffness", STIFFNESSES, (), DIGITS, **BY_FAST),
+        c.equal("published depth", "indentation_depth", DEPTHS, (), DIGITS, **BY_FAST),
+        c.equal("published force", "normal_force", FORCES, (), DIGITS, **BY_FAST),
+        c.scaling_law(ALIKE, EQUAL, merged, (1.0, 1.0, 1.0), s.WHY["equal layers"], **SAME_ANSWER),
+        s.stiffness_limit(FLOW, THIN, flowing, "flow", largest=0.1),
+        *r.studies(ONE, r.EQUATION_NODES, ("normal_force",), against=r.FINEST_MDR),
+        *elastic_costs(ONE[0].name),
+    ),
+)
