@@ -35,6 +35,7 @@ from contact import (
     StageLog,
     Supported,
     Unsupported,
+    not_round,
     other_layer,
 )
 from contact.records.extras import NOT_INSTALLED
@@ -208,8 +209,10 @@ class CalculiX:
             "elastic contact only": bool(scene.effects),
             "contact radii or depths only": not isinstance(scene.loading, _loadings(scene)),
         }
-        other = other_layer("CalculiX", scene.layer)
-        return other or support(next((reason for reason, lacks in lacking.items() if lacks), ""))
+        for other in (other_layer("CalculiX", scene.layer), not_round("CalculiX", scene)):
+            if other is not None:
+                return other
+        return support(next((reason for reason, lacks in lacking.items() if lacks), ""))
 
     def solve(self, scene: Scene) -> ContactPath:
         """The equilibria, each on three meshes."""

@@ -21,7 +21,7 @@ from contact import (
 )
 from contact.answer.accuracy import shortfalls, told_where_less
 from contact.answer.small_strains import depth_note, depth_share, depths_of
-from contact.files.scene_file import scene_notes, uses_units
+from contact.files.scene_file import uses_units
 from reports.answer import (
     critical_facts,
     difference_table,
@@ -155,7 +155,7 @@ def _notes(scene_file: Path, solution: Solution) -> list[tuple[str, str]]:
     """How the file was read, what smoothing a tip changes, and where the theory is valid."""
     from cases.advice import validity_lines  # noqa: PLC0415 - MDR only where it is asked for
 
-    lines = scene_notes(scene_file)
+    lines: list[str] = []
     indenter = solution.scene.indenter
     if isinstance(indenter, Tabulated) and indenter.smoothing and isinstance(solution, ContactPath):
         moved = float(solution.contact_stiffness.max()) * indenter.smoothing

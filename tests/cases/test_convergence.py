@@ -6,13 +6,7 @@ import math
 import pytest
 
 from cases.answers import Table
-from cases.convergence import (
-    Order,
-    behaviour,
-    digits_per_refinement,
-    grid_convergence_index,
-    observed_order,
-)
+from cases.convergence import Order, behaviour, digits_per_refinement, grid_convergence_index, observed_order
 from cases.declare.methods import MethodUse
 from cases.run.solve_task import job_of, solve
 from cases.verdicts import Status

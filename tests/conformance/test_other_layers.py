@@ -42,6 +42,7 @@ def test_friction_on_other_layers_is_refused(layer, names):
             method.solve(scene)
 
 
+@pytest.mark.slow
 def test_the_bound_of_friction_refuses_graded_layers():
     path = build("mdr", {}).solve(scene_of(LAYERS[1]))
     with pytest.raises(UnsupportedSceneError, match=r"under friction .* not a GradedLayer"):

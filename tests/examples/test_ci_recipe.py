@@ -78,6 +78,7 @@ def test_recipe_writes_the_report_and_hands_on_the_exit_code(sound, broken_on_gi
         assert {"report.html", "summary.md", "junit.xml", "run.json", "answers.jsonl"} <= written
 
 
+@pytest.mark.slow
 def test_recipe_gates_where_numbers_are_accepted(tmp_path, sound):
     folder, done = sound
     assert done.returncode == 0
