@@ -23,7 +23,7 @@ import numpy as np
 from numpy.polynomial.legendre import legder, legval, legvander
 from scipy.special import k0, k1
 
-from bem.kernels.of_contact import contact_kernel
+from bem.kernels.of_layer import contact_kernel
 from bem.numerics import EPS, gauss, graded, panels
 from contact import ElasticLayer, PowerLaw, Profile, Sphere, Spheroconical
 from contact.records.validation import FloatArray

@@ -18,7 +18,7 @@ from bem.direct import Density, Kernel, Sizes
 from bem.kernels.moduli import contact_modulus
 from bem.numerics import EPS, gauss
 from contact import ContactPath
-from contact.answer.method import Supported, Unsupported
+from contact.answer.method import Supported, Unsupported, not_round
 from contact.answer.no_contact import without_contact
 from contact.answer.one_circle import never_touches_beside, no_single_circle, refuse_touching_path
 from contact.answer.one_thread import one_thread
@@ -89,6 +89,8 @@ class IntegralEquationMethod(Record):
     def supports(self, scene: Scene) -> Supported | Unsupported:
         """Elastic contact of any profile with layers and half-spaces."""
         reason = ""
+        if (other := not_round("the direct integral equation", scene)) is not None:
+            return other
         if scene.effects:
             names = ", ".join(type(effect).__name__ for effect in scene.effects)
             reason = f"the direct integral equation models elastic contact only, not {names}"

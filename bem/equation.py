@@ -14,7 +14,7 @@ these polynomials,
     M(a)      = a sum_n punch_n m_n,                     F = 2 E* (depth K - M)              force, Eq. (4)
 
 No profile enters punch and resolvent. They are smooth in a and interpolated over octaves.
-Lengths count in units of the kernel (`bem.kernels.of_contact.unit_of`).
+Lengths count in units of the kernel (`bem.kernels.of_layer.unit_of`).
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from bem.kernels.of_contact import ContactKernel
+from bem.kernels.of_layer import ContactKernel
 from bem.numerics import (
     Octaves,
     cholesky,

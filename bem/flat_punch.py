@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 from pydantic import Field
 
 from bem.equation import USUAL, Rows, Sizes, flat_punches
-from bem.kernels.of_contact import contact_kernel
+from bem.kernels.of_layer import contact_kernel
 from bem.numerics import EPS, even_legendre
 from contact import ElasticLayer
 from contact.answer.one_thread import one_thread

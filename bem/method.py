@@ -12,6 +12,7 @@ from bem.grid.answers import PRESCRIBED, GridSolver
 from bem.grid.discs import Unresolved
 from bem.grid.operators import Boundary
 from bem.grid.pressed import LEAST_CELLS, Pressing
+from bem.grid.shape_answers import ShapeSolver
 from contact import (
     Adhesion,
     ContactPath,
@@ -22,10 +23,12 @@ from contact import (
     InvalidInput,
     NotConvergedError,
     Scene,
+    Shape,
     StageLog,
     Supported,
     Unsupported,
     UnsupportedSceneError,
+    not_round,
 )
 from contact.answer.accuracy import asked_errors
 from contact.answer.no_contact import without_contact
@@ -86,7 +89,10 @@ class Bem(Record):
         others = [type(effect).__name__ for effect in scene.effects if not isinstance(effect, Adhesion)]
         machine = isinstance(scene.loading, Detachment) and scene.loading.controlled == "machine"
         kind = type(scene.loading).__name__
+        shape = isinstance(scene.indenter, Shape)
+        other = not_round("bem", scene, 'without effects, and with boundary="free"')
         reasons = {
+            "" if other is None else other.reason: shape and (periodic or bool(scene.effects)),
             'only uniform layers have periodic answers; use boundary="free"': periodic and not scene.layer.is_uniform,
             f"bem models adhesion only, not {next(iter(others), '')}; ask mdr or fem": bool(others),
             f"bem follows radii, depths, forces or a detachment, not {kind}; ask mdr": (
@@ -131,6 +137,8 @@ class Bem(Record):
             raise UnsupportedSceneError(answer.reason)
         if self.accuracy is not None:
             return self._solve_to_accuracy(scene, self.accuracy)
+        if isinstance(scene.indenter, Shape):
+            return ShapeSolver(scene, self.points, self.threads, self.settings(), StageLog()).path()
         adhesion = scene.effect(Adhesion)
         if adhesion is None:
             return self._solver(scene).pressed()

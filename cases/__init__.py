@@ -5,7 +5,8 @@
 - a *verdict* (``verdicts``): a claim on one scene, judged by one rule (``rules``); a whole run is in ``runs``.
 
 ``case`` says how a case is written, ``library`` holds the cases, one file each. ``run`` solves tasks, ``gate`` compares
-a run with accepted answers, ``foreign`` adds methods of installed packages, ``cost`` and ``measurements`` are studies.
+a run with accepted answers, ``foreign`` adds methods of installed packages, ``cost``, ``effects`` and
+``stress`` are studies; ``sweep``, ``advice``, ``accuracy`` and ``uncertain_fit`` answer single scenes.
 
 ``solve(scene, accuracy=1e-4)`` tries methods from cheap to fine. `cases.run.propagation` carries the uncertainty of
 inputs to every quantity.
@@ -15,7 +16,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from cases.measurements.accuracy import solve
+    from cases.accuracy import solve
 
 __all__ = ["solve"]
 
@@ -23,4 +24,4 @@ __all__ = ["solve"]
 def __getattr__(name: str) -> Any:
     if name != "solve":
         raise AttributeError(f"module 'cases' has no attribute {name!r}; it offers solve")
-    return import_module("cases.measurements.accuracy").solve
+    return import_module("cases.accuracy").solve

@@ -9,7 +9,7 @@ from cases.answers import Identity, Table
 from cases.declare.methods import MethodUse
 from cases.norms import RingQuadrature, ring_quadrature
 from cases.verdicts import Scalar, Verdict
-from contact import InvalidInput, Scene
+from contact import InvalidInput, Method, Scene
 
 # Suites that every case is in unless it says otherwise, and that of outside solvers.
 USUAL_SUITES = ("ci", "nightly")
@@ -77,6 +77,7 @@ class Task:
         sampling: what is kept.
         timed: whether the solution is repeated for its time, alone on the machine.
         first: whether it is a first solution: imports are done before, caches are empty.
+        measure: computes fields of the answer from method and scene, in place of one solution.
     """
 
     case: str
@@ -88,6 +89,7 @@ class Task:
     sampling: Sampling = field(default_factory=Sampling)
     timed: bool = False
     first: bool = False
+    measure: Callable[[Method, Scene], Mapping[str, Any]] | None = None
 
     @property
     def identity(self) -> Identity:
@@ -117,9 +119,7 @@ class Case:
         suites: "ci" (minutes) and "nightly"; "referees" asks solvers of others.
         scenes: solved by every method.
         methods: compared methods.
-        claims: what must hold (`cases.claims.Claim`).
-        work: what accuracy costs (`cases.cost.WorkStudy`).
-        ablations: what each effect costs and changes (`cases.measurements.advice.effects.AblationStudy`).
+        claims: what must hold and what is measured (`cases.claims.Study`).
         restricted: whether only some of its methods are left; then nothing may be left to claim.
     """
 
@@ -132,8 +132,6 @@ class Case:
     scenes: tuple[CaseScene, ...]
     methods: tuple[MethodUse, ...]
     claims: tuple[Any, ...]
-    work: tuple[Any, ...] = ()
-    ablations: tuple[Any, ...] = ()
     restricted: bool = False
 
     def __post_init__(self) -> None:
@@ -142,11 +140,11 @@ class Case:
             raise InvalidInput(f"case name {self.name!r}: use letters, digits and underscores")
         if unknown := set(self.suites) - set(SUITES):
             raise InvalidInput(f"case {self.name}: suite {unknown.pop()!r} is none of {', '.join(SUITES)}")
-        lists = {"scenes": self.scenes, "claims": self.claims, "methods": self.methods}
         if self.restricted:
             return
-        for what, value in {**lists, "question": self.question, "title": self.title, "text": self.text}.items():
-            if not value:
+        for what in ("scenes", "claims", "methods", "question", "title", "text"):
+            # A stress test brings scenes of its own.
+            if not getattr(self, what) and (what != "scenes" or next(self.tasks(), None) is None):
                 raise InvalidInput(f"case {self.name}: {what} is empty; a case without it checks nothing")
         for what, names in (
             ("scenes", [s.name for s in self.scenes]),
@@ -199,14 +197,13 @@ class Case:
         """Yield all tasks: every scene by every method, then those that claims and studies need in addition."""
         for scene in self.scenes:
             yield from (self.task(scene, use) for use in self.methods_of(scene))
-        for part in (*self.claims, *self.ablations):
-            yield from part.tasks(self)
-        yield from self.cost_tasks()
+        for claim in self.claims:
+            yield from claim.tasks(self)
 
-    def cost_tasks(self) -> Iterator[Task]:
-        """Yield the tasks of the studies of cost alone."""
-        for study in self.work:
-            yield from study.tasks(self)
+    @property
+    def costs(self) -> tuple[Any, ...]:
+        """The studies of cost."""
+        return tuple(claim for claim in self.claims if claim.timed)
 
     def verdicts(self, answers: Table) -> list[Verdict]:
         """Judge the claims whose answers are there."""
@@ -223,12 +220,11 @@ class Case:
 
         Without a suite each scene keeps its ``nightly`` methods; studies of cost and effects are those of ci.
         """
-        left = self
-        if suite == "ci":
-            left = replace(self, claims=tuple(claim for claim in self.claims if not claim.nightly), restricted=True)
-            left = left.only(lambda scene, use: use.label not in scene.nightly)
-        work, ablations = (tuple(study.in_suite(suite) for study in part) for part in (self.work, self.ablations))
-        return replace(left, work=work, ablations=ablations)
+        claims = tuple(own for claim in self.claims if (own := claim.in_suite(suite)) is not None)
+        if suite != "ci":
+            return replace(self, claims=claims)
+        left = replace(self, claims=claims, restricted=True)
+        return left.only(lambda scene, use: use.label not in scene.nightly)
 
     def only_methods(self, wanted: Collection[str]) -> "Case":
         """Return the case with the methods asked for (all if none is), without timings.
@@ -242,7 +238,8 @@ class Case:
         if not methods:
             known = ", ".join(use.label for use in self.methods)
             raise InvalidInput(f"case {self.name} has no method {' or '.join(wanted)}; it has {known}")
-        return replace(self.only(lambda _, use: use.label in wanted), methods=methods, work=())
+        left = self.only(lambda _, use: use.label in wanted)
+        return replace(left, methods=methods, claims=tuple(claim for claim in self.claims if not claim.timed))
 
     def nightly_only(self) -> frozenset[tuple[str, str]]:
         """Return the scenes and methods that only the nightly suite solves."""

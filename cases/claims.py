@@ -25,6 +25,7 @@ from cases.rules import (
     positive_tolerance,
     worst_judgement,
 )
+from cases.studies import Record
 from cases.verdicts import Kind, Origin, Status, Verdict, Why
 from contact import InvalidInput, Scene
 from contact.records.validation import FloatArray
@@ -39,11 +40,45 @@ COVERAGE = 2.0
 
 
 @dataclass(frozen=True, kw_only=True)
-class Claim(ABC):
-    """Base of all claims, which are stated before anything is computed.
+class Study:
+    """What a case asks for beside its scenes: tasks, and verdicts and records of their answers.
 
     Attributes:
         name: unique within the case.
+        nightly: whether it takes too long for the suite "ci".
+    """
+
+    # Whether its tasks are timed, alone on the machine.
+    timed: ClassVar[bool] = False
+
+    name: str
+    nightly: bool = False
+
+    def check(self, case: Case) -> None:
+        """Refuse what the case does not have."""
+
+    def in_suite(self, suite: str) -> "Study | None":
+        """Return the study as a suite carries it out, or None."""
+        return None if self.nightly and suite == "ci" else self
+
+    def tasks(self, case: Case) -> Iterator[Task]:
+        """Yield the tasks that are needed in addition to the case's own."""
+        yield from ()
+
+    def judge(self, case: Case, answers: Table) -> Iterator[Verdict]:
+        """Yield the verdicts whose answers are there."""
+        yield from ()
+
+    def records(self, case: Case, answers: Table) -> Iterator[Record]:
+        """Yield what was measured, for tables and figures."""
+        yield from ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class Claim(Study, ABC):
+    """Base of all claims, which are stated before anything is computed.
+
+    Attributes:
         quantity: what is compared.
         tolerance: largest permitted error, relative.
         why: why it should hold, and where its numbers come from.
@@ -51,12 +86,10 @@ class Claim(ABC):
         methods: labels of the methods it speaks about; empty for every method that solves a scene.
         tolerances: of methods that need another one, by label.
         identities: of methods for which it holds by construction, by label: why; such checks are not counted.
-        nightly: whether it takes too long for the suite "ci".
     """
 
     kind: ClassVar[Kind]
 
-    name: str
     quantity: str
     tolerance: float
     why: Why
@@ -64,7 +97,6 @@ class Claim(ABC):
     methods: tuple[str, ...] = ()
     tolerances: Mapping[str, float] = field(default_factory=dict)
     identities: Mapping[str, str] = field(default_factory=dict)
-    nightly: bool = False
 
     def __post_init__(self) -> None:
         """Refuse a claim without words, and a tolerance of the wrong sign."""
@@ -104,10 +136,6 @@ class Claim(ABC):
     def needed(self, case: Case, scene: CaseScene, use: MethodUse) -> Iterator[Task]:
         """Yield the other tasks whose answers one verdict needs."""
         yield from ()
-
-    @abstractmethod
-    def judge(self, case: Case, answers: Table) -> Iterator[Verdict]:
-        """Yield the verdicts whose answers are there."""
 
     def tolerance_of(self, label: str) -> float:
         """Return the tolerance of one method."""

@@ -98,7 +98,7 @@ class Order(Claim):
                 judged = first_missing(*found) or self._order(self._study(case, scene, use, answers))
                 yield self.verdict(case, scene, use, found[0], judged=judged)
 
-    def studies(self, case: Case, answers: Table) -> Iterator[Convergence]:
+    def records(self, case: Case, answers: Table) -> Iterator[Convergence]:
         """Yield the study of each scene whose grids were all solved."""
         for scene, use in self.places(case):
             own = [answers.get(task.identity) for task in self.needed(case, scene, use)]

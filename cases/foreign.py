@@ -192,7 +192,12 @@ def with_restated(case: Case, names: Iterable[str]) -> Case:
     if not twins:
         return case
     # A claim about all scenes says nothing of their twins.
-    own = tuple(replace(c, scenes=tuple(s.name for s in c.scenes_of(case))) for c in case.claims)
+    own = tuple(
+        replace(claim, scenes=tuple(scene.name for scene in claim.scenes_of(case)))
+        if isinstance(claim, Claim)
+        else claim
+        for claim in case.claims
+    )
     new = tuple(twin for claim in case.claims for twin in _on_twins(case, claim, twins))
     return replace(case, scenes=(*case.scenes, *twins.values()), claims=(*own, *new))
 
@@ -268,7 +273,7 @@ def _compared(case: Case, pairs: list[tuple[str, str]], claims: tuple[Agree, ...
         if scene.name in about
     )
     uses = tuple(_use(case, case.scenes[0], label) for label in labels)
-    return replace(case, scenes=scenes, methods=uses, claims=claims, work=(), ablations=())
+    return replace(case, scenes=scenes, methods=uses, claims=claims)
 
 
 def _use(case: Case, scene: CaseScene, label: str) -> MethodUse:
@@ -292,7 +297,7 @@ def beside(case: Case, methods: Collection[str], reference: str) -> Case:
     left = case.only(lambda scene, use: use.label in methods or (use.label == reference and scene.name in compared))
     uses = tuple(use for use in case.methods if use.label in (*methods, reference))
     claims = tuple(own for claim in case.claims for own in _about(claim, methods))
-    return replace(left, methods=uses, claims=claims, work=(), ablations=())
+    return replace(left, methods=uses, claims=claims)
 
 
 def _supports(scene: CaseScene, label: str) -> bool:

@@ -3,9 +3,8 @@
 On disk a folder: ``answers.jsonl`` holds the answers, one per line (`cases.answers`), ``run.json`` all the rest.
 """
 
-from collections.abc import Iterable
 from dataclasses import dataclass as plain
-from dataclasses import field, replace
+from dataclasses import field
 from pathlib import Path
 
 from pydantic import TypeAdapter
@@ -79,29 +78,6 @@ class Judged:
     costs: tuple[CostOfAccuracy, ...] = ()
     stress_tests: tuple[StressTest, ...] = ()
     effects: tuple[Effect, ...] = ()
-
-    def joined(self, parts: Iterable["Part"]) -> "Judged":
-        """Return the run with more studies."""
-        whole = self
-        for part in parts:
-            whole = replace(
-                whole,
-                cases=(*whole.cases, part.text),
-                verdicts=(*whole.verdicts, *part.verdicts),
-                convergence=(*whole.convergence, *part.convergence),
-                stress_tests=(*whole.stress_tests, *part.stress_tests),
-            )
-        return whole
-
-
-@plain(frozen=True, kw_only=True)
-class Part:
-    """Text, verdicts and records of a study that is no case of the library."""
-
-    text: CaseText
-    verdicts: tuple[Verdict, ...]
-    convergence: tuple[Convergence, ...] = ()
-    stress_tests: tuple[StressTest, ...] = ()
 
 
 _JUDGED: TypeAdapter[Judged] = TypeAdapter(Judged)

@@ -1,6 +1,7 @@
 """Records of studies: convergence, cost of accuracy, stress tests, effects of the parts of a scene."""
 
 from dataclasses import field
+from typing import TypeAlias
 
 from pydantic.dataclasses import dataclass
 
@@ -167,3 +168,6 @@ class Effect:
         quantity = max(self.changes, key=lambda name: self.changes[name])
         changed = f"without it {quantity.replace('_', ' ')} changes by {100 * self.changes[quantity]:.2g} %"
         return f"{changed}. It takes {100 * self.share_of_time:.0f} % of the run time."
+
+
+Record: TypeAlias = Convergence | CostOfAccuracy | StressTest | Effect

@@ -7,6 +7,7 @@ from contact.answer.evidence import UNITS as UNITS
 from contact.answer.method import Method as Method
 from contact.answer.method import Supported as Supported
 from contact.answer.method import Unsupported as Unsupported
+from contact.answer.method import not_round as not_round
 from contact.answer.method import other_layer as other_layer
 from contact.answer.paths import ContactPath as ContactPath
 from contact.answer.paths import CriticalPoint as CriticalPoint
@@ -71,3 +72,10 @@ from contact.scene.profiles import TruncatedCone as TruncatedCone
 from contact.scene.profiles import TruncatedParaboloid as TruncatedParaboloid
 from contact.scene.scene import AnyScene as AnyScene
 from contact.scene.scene import Scene as Scene
+from contact.scene.shapes import EllipticParaboloid as EllipticParaboloid
+from contact.scene.shapes import EllipticPunch as EllipticPunch
+from contact.scene.shapes import Harmonic as Harmonic
+from contact.scene.shapes import Harmonics as Harmonics
+from contact.scene.shapes import PolygonalPunch as PolygonalPunch
+from contact.scene.shapes import Pyramid as Pyramid
+from contact.scene.shapes import Shape as Shape

@@ -23,7 +23,6 @@ from contact import (
     NotConvergedError,
     Scene,
     StageLog,
-    UnsupportedSceneError,
 )
 from contact.answer.friction import told_of_friction
 from contact.answer.one_circle import Circle, no_single_circle, refuse_touching
@@ -62,14 +61,17 @@ class FemEquilibrium:
     Attributes:
         contact: the solved contact.
         depth: delta / a.
-        force: F / (E* a^2).
         radius_factor: contact radius over that of the mesh, one up to a last correction.
     """
 
     contact: PrescribedContact
     depth: float
-    force: float
     radius_factor: float = 1.0
+
+    @property
+    def force(self) -> float:
+        """F / (E* a^2)."""
+        return self.contact.force(self.depth)
 
     @property
     def contact_radius(self) -> float:
@@ -95,7 +97,7 @@ class FemEquilibrium:
 
 def held_equilibrium(contact: PrescribedContact, depth: float) -> FemEquilibrium:
     """Contact held at its radius, at depth / a."""
-    return FemEquilibrium(contact=contact, depth=depth, force=contact.force(depth), radius_factor=contact.radius)
+    return FemEquilibrium(contact=contact, depth=depth, radius_factor=contact.radius)
 
 
 def smooth_equilibrium(contact: PrescribedContact) -> FemEquilibrium:
@@ -103,30 +105,23 @@ def smooth_equilibrium(contact: PrescribedContact) -> FemEquilibrium:
     return held_equilibrium(contact, contact.smooth_depth)
 
 
+def targets_of(scene: Scene) -> tuple[FloatArray, bool]:
+    """Prescribed depths [m] or forces / E* [m^2], and whether they are depths."""
+    loading = scene.loading
+    if isinstance(loading, NormalForces):
+        return loading.values / contact_modulus(scene.layer), False
+    if isinstance(loading, IndentationDepths):
+        return loading.values, True
+    raise InvalidInput(f"loading = {type(loading).__name__}: a flat punch takes depths or forces")
+
+
 def flat_punch_equilibria(scene: Scene, solve: ContactSolver) -> list[FemEquilibrium]:
     """A flat punch at prescribed depths or forces: one solution, scaled."""
-    radius, loading = scene.indenter.flat_radius, scene.loading
+    targets, by_depth = targets_of(scene)
+    radius = scene.indenter.flat_radius
     contact = solve(radius)
-    if isinstance(loading, IndentationDepths):
-        depths = loading.values / radius
-    elif isinstance(loading, NormalForces):
-        depths = loading.values / (contact_modulus(scene.layer) * radius**2 * contact.stiffness)
-    else:
-        raise InvalidInput(f"loading = {type(loading).__name__}: a flat punch takes depths or forces")
+    depths = targets / radius / (1.0 if by_depth else radius * contact.stiffness)
     return [held_equilibrium(contact, depth) for depth in map(float, depths)]
-
-
-def targets_of(scene: Scene) -> tuple[FloatArray, bool]:
-    """Prescribed depths [m] or forces / E* [m^2], and whether they are depths.
-
-    Raises:
-        UnsupportedSceneError: another loading.
-    """
-    loading = scene.loading
-    if not isinstance(loading, IndentationDepths | NormalForces):
-        raise UnsupportedSceneError(f"fem has no path of equilibria for loading {type(loading).__name__}")
-    by_depth = isinstance(loading, IndentationDepths)
-    return loading.values / (1.0 if by_depth else contact_modulus(scene.layer)), by_depth
 
 
 def elastic_equilibria(
@@ -198,9 +193,7 @@ def state_at_load(
         if abs(defect - 1) <= (LEFT_OVER if attempt < ATTEMPTS - 1 else most_left):
             moved = 0.0 if by_depth else (scaled - contact.smooth_force) / contact.stiffness
             depth = scaled if by_depth else contact.smooth_depth + moved
-            force = contact.force(depth) if by_depth else scaled
-            factor = corrected / contact.contact_radius
-            return FemEquilibrium(contact=contact, depth=depth, force=force, radius_factor=factor)
+            return FemEquilibrium(contact=contact, depth=depth, radius_factor=corrected / contact.contact_radius)
         radius = min(corrected, scene.indenter.max_radius)
     raise NotConvergedError("the contact radius does not settle", {"load_defect": abs(defect - 1)})
 

@@ -12,6 +12,7 @@ from functools import cached_property
 from pathlib import Path
 
 import numpy as np
+from skfem import Basis, ElementVector
 
 from contact import InvalidInput
 from contact.answer.inside import InsideFields, KnownContact
@@ -102,25 +103,21 @@ class MeridianSection:
     @cached_property
     def by_triangle(self) -> FloatArray:
         """Values of each triangle alone at its nodes, shape (triangle, basis, 9)."""
-        layer, local = self.contact.layer, self.local_nodes
+        layer = self.contact.layer
         space, unknowns = layer.space, self.contact.solutions @ [self.depth, 1.0]
-        nodal = unknowns[space.element_displacements].reshape(len(layer.corners), -1, 2)
-        radius, depth = np.moveaxis(np.einsum("tvc,vb->tbc", layer.corners, barycentric(local)), -1, 0)
-        first, second, third = np.moveaxis(layer.corners, 1, 0)
-        inverse = np.linalg.inv(np.stack([second - first, third - first], axis=-1))
-        slope = np.einsum(
-            "tbi,kbn,tkj->tnij", nodal, tabulate(layer.pair.displacement, local)[1], inverse, optimize=True
-        )
+        at_nodes = self.local_nodes, np.ones(self.local_nodes.shape[1])
+        basis = Basis(layer.section.mesh, ElementVector(layer.pair.displacement), quadrature=at_nodes)
+        moved = basis.interpolate(unknowns[space.owner])
+        pressed = basis.with_element(layer.pair.pressure).interpolate(unknowns[space.displacement_count :])
+        u, slope, p = np.asarray(moved), moved.grad, np.asarray(pressed)
+        radius, depth = np.swapaxes(space.positions[:, space.displacement_dofs.element_dofs], 1, 2)
         # On the axis the hoop strain is u_r,r.
-        hoop = np.divide(nodal[..., 0], radius, out=slope[..., 0, 0].copy(), where=radius > 0)
-        normal = np.stack([slope[..., 0, 0], hoop, slope[..., 1, 1]], axis=-1)
+        hoop = np.divide(u[0], radius, out=slope[0, 0].copy(), where=radius > 0)
+        normal = np.array([slope[0, 0], hoop, slope[1, 1]])
         shear = layer.parts.at(layer.section.part, depth).shear
-        values, gradients = tabulate(layer.pair.pressure, local)
-        pressures = unknowns[space.element_pressures]
-        pressure, rise = pressures @ values, np.einsum("tb,kbn,tkj->tnj", pressures, gradients, inverse, optimize=True)
-        stress = 2 * shear[..., None] * (normal - normal.mean(axis=-1, keepdims=True)) - pressure[..., None]
-        tangential = shear * (slope[..., 0, 1] + slope[..., 1, 0])
-        return np.concatenate([nodal, stress, tangential[..., None], pressure[..., None], rise], axis=-1)
+        stress = 2 * shear * (normal - normal.mean(axis=0)) - p
+        tangential = shear * (slope[0, 1] + slope[1, 0])
+        return np.moveaxis(np.array([*u, *stress, tangential, p, *pressed.grad]), 0, -1)
 
     def places_of(self, points: FloatArray) -> tuple[IntArray, FloatArray]:
         """Triangles of points (2, n), and the points in the reference triangle: where the least barycentric is largest.
@@ -129,26 +126,22 @@ class MeridianSection:
         """
         from scipy.spatial import cKDTree  # noqa: PLC0415 - takes 0.1 s to import, and only fields inside need it
 
-        corners = self.corners
-        near = cKDTree(corners.mean(axis=1).T).query(points.T, min(NEAREST, corners.shape[2]))[1]
-        near = near.reshape(points.shape[1], -1)
-        least, local = _coordinates(corners[:, :, near], points[:, :, None])
-        rows, best = np.arange(points.shape[1]), np.argmax(least, axis=1)
-        found, inside = near[rows, best], local[:, rows, best]
-        for n in np.flatnonzero(least[rows, best] < ROUNDING):
-            least, local = _coordinates(corners, points[:, n, None])
-            found[n] = np.argmax(least)
-            inside[:, n] = local[:, found[n]]
-        return found, inside
+        centres = self.corners.mean(axis=1).T
+        near = cKDTree(centres).query(points.T, min(NEAREST, len(centres)))[1].reshape(points.shape[1], -1)
+        found, local, least = self._best(points, near)
+        if (lost := least < ROUNDING).any():
+            every = np.broadcast_to(np.arange(len(centres)), (int(lost.sum()), len(centres)))
+            found[lost], local[:, lost], _ = self._best(points[:, lost], every)
+        return found, local
 
-
-def _coordinates(corners: FloatArray, point: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Smallest barycentric coordinate, and the second and third, of points in triangles with corners (2, 3, ...)."""
-    (ax, bx, cx), (ay, by, cy) = corners
-    area = (bx - ax) * (cy - ay) - (cx - ax) * (by - ay)
-    second = ((point[0] - ax) * (cy - ay) - (cx - ax) * (point[1] - ay)) / area
-    third = ((bx - ax) * (point[1] - ay) - (point[0] - ax) * (by - ay)) / area
-    return np.minimum(np.minimum(second, third), 1 - second - third), np.array([second, third])
+    def _best(self, points: FloatArray, triangles: IntArray) -> tuple[IntArray, FloatArray, FloatArray]:
+        """Of k triangles (n, k) of each point the one with the largest least barycentric, the place in it, and that."""
+        repeated = np.repeat(points, triangles.shape[1], axis=1)[:, :, None]
+        mapping = self.contact.layer.section.mesh.mapping()
+        local = mapping.invF(repeated, tind=triangles.ravel()).reshape(2, *triangles.shape)
+        least = np.minimum(local.min(axis=0), 1 - local.sum(axis=0))
+        best = np.arange(len(triangles)), least.argmax(axis=1)
+        return triangles[best], local[:, *best], least[best]
 
 
 @dataclass(frozen=True, eq=False)

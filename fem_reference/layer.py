@@ -126,11 +126,10 @@ class DiscreteLayer:
         39-62). A residual off the boundary is an error of assembly: geometry, quadrature, hoop strain or coupling.
         """
         space, nu, (r, z) = self.space, self.parts.poissons_ratio, self.space.positions
-        elements = self.elements
-        if len(self.parts.parts) > 1:
-            at_top = np.zeros_like(self.section.part), np.zeros_like(self.moduli.shear)
-            elements = element_matrices(self.pair, self.corners, self.parts.at(*at_top))
-        shear = float(self.parts.at(np.zeros(1, dtype=np.int64), np.zeros(1)).shear[0])
+        surface = self.parts.at(np.zeros_like(self.section.part), np.zeros_like(self.moduli.shear))
+        is_uniform = all(map(np.array_equal, surface, self.moduli))
+        elements = self.elements if is_uniform else element_matrices(self.pair, self.corners, surface)
+        shear = float(surface.shear[0, 0])
         state = np.full(space.size, -2 * shear * (1 + nu) / 3)  # p = -K div u with K = 2 mu (1 + nu) / (3 (1 - 2 nu))
         state[: space.displacement_count] = np.column_stack([STRETCH * r, ((1 - 2 * nu) - 2 * STRETCH) * z]).ravel()
         local, unknowns = state[space.element_unknowns][..., None], space.element_unknowns.ravel()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, fields, replace
 from functools import cache, partial
 from typing import ClassVar, Self, TypeAlias, overload
 
@@ -34,6 +34,7 @@ from contact import (
     other_layer,
 )
 from contact.answer.accuracy import told_where_less
+from contact.answer.method import not_round
 from contact.answer.no_contact import without_contact
 from contact.answer.one_thread import one_thread
 from contact.answer.small_strains import within_small_strains
@@ -49,7 +50,7 @@ from fem_reference.fields import FemFields
 from fem_reference.materials import contact_modulus
 from fem_reference.prescribed_contact import ContactSolver, solve_contact
 from fem_reference.settings import Discretisation
-from fem_reference.stated import meshes_that_fit, path_with_errors, settings_for, solve_to_accuracy
+from fem_reference.stated import path_with_errors, settings_for, solve_to_accuracy
 
 Answer: TypeAlias = ContactPath | DetachmentPath | ImpactHistory | HistoryPath
 MOTIONS = Impact, DepthHistory, ForceHistory
@@ -100,17 +101,13 @@ class Fem:
         """The settings that make meshes."""
         if self.accuracy is not None:
             return settings_for(self.accuracy)
-        return Discretisation(
-            order=self.order,
-            edge_cell=self.edge_cell,
-            growth=self.growth,
-            truncation=self.truncation,
-            half_space_thickness=self.half_space_thickness,
-            outer_distance=self.outer_distance,
-        )
+        written = asdict(self)
+        return Discretisation(**{f.name: written[f.name] for f in fields(Discretisation) if f.name in written})
 
     def supports(self, scene: Scene) -> Supported | Unsupported:
         """Whether this method models the scene."""
+        if (other := not_round("fem", scene)) is not None:
+            return other
         if scene.effect(Friction) is not None:
             punch = isinstance(scene.indenter, FlatPunch)
             other = other_layer("full stick of a FlatPunch by fem", scene.layer) if punch else None
@@ -148,8 +145,12 @@ class Fem:
         support = self.supports(scene)
         if isinstance(support, Unsupported):
             raise UnsupportedSceneError(support.reason)
-        with meshes_that_fit():
+        try:
             answer = self._solve(scene, StageLog())
+        except MemoryError:
+            raise UnsupportedSceneError(
+                "the mesh does not fit into memory: ask fem for a less strict accuracy, or give it a larger growth"
+            ) from None
         return answer if self.accuracy is None else told_where_less(answer, self.accuracy, self.pressure_accuracy)
 
     def _solve(self, scene: Scene, log: StageLog) -> Answer:
@@ -175,7 +176,7 @@ class Fem:
 
             return partial(impact if isinstance(scene.loading, Impact) else history, scene, written=written, log=log)
         if isinstance(scene.loading, Detachment):
-            from fem_reference.detachment import detachment_path  # noqa: PLC0415
+            from fem_reference.adhesion import detachment_path  # noqa: PLC0415
 
             return partial(detachment_path, scene, partial(self._solver, scene, log), written, log)
         return partial(self._at_rest, scene, cache(partial(searched_radius, scene, log)), log)
@@ -186,14 +187,14 @@ class Fem:
         """Equilibria at prescribed radii, depths or forces."""
         modulus, sticks = contact_modulus(scene.layer), scene.effect(Friction) is not None
         coarser, states = (self._states(scene, each, search, log) for each in (settings.coarser(), settings))
-        fields = FemFields(states, modulus, coarser)
+        on_top = FemFields(states, modulus, coarser)
         if sticks:
             from fem_reference.friction.answers import AdheredFemFields, with_shear_error  # noqa: PLC0415
 
-            fields = AdheredFemFields(states, modulus, coarser)
+            on_top = AdheredFemFields(states, modulus, coarser)
         else:
             refuse_other_contacts(scene, states, coarser)
-        path, companion = (contact_path(scene, each, fields, asdict(self), log) for each in (states, coarser))
+        path, companion = (contact_path(scene, each, on_top, asdict(self), log) for each in (states, coarser))
         answer = path_with_errors(path, companion, states, coarser)
         return with_shear_error(answer, states, coarser) if sticks else answer
 

@@ -13,7 +13,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import NamedTuple, Self
+from typing import NamedTuple
 
 import numpy as np
 from scipy.interpolate import make_interp_spline
@@ -28,8 +28,7 @@ from fem_reference.mesh import Section
 from fem_reference.prescribed_contact import solve_contact
 from fem_reference.profiles import ScaledIndenter, shape
 from fem_reference.settings import Discretisation, contact_section
-from fem_reference.surface import condense, strip_section
-from fem_reference.trace import TraceSpace
+from fem_reference.surface import TraceSpace, condense, strip_section
 
 # Steps after which a body counts as held by the layer: five hundred times what an impact at the default settings takes.
 MAX_STEPS = 200_000
@@ -232,8 +231,9 @@ def simulate_prescribed(
         for before, now in pairwise([t0, *ends]):
             load = v1 if now == t1 else v0 + (v1 - v0) * (now - t0) / (t1 - t0)
             if by_depth and surface.viscosity and v1 > v0 and active is not None:
-                walk = Touches(condensed, depth, (v1 - v0) / (t1 - t0), active, marks, float(before))
-                pressure, active = walk.advance(float(now - before))
+                rate = (v1 - v0) / (t1 - t0)
+                pressure, active, found = touch_to_touch(condensed, depth, rate, active, float(now - before))
+                marks += [(before + after, force) for after, force in found]
                 depth = float(load)
             else:
                 pressure = advance(float(now - before), float(load))
@@ -262,75 +262,65 @@ def smooth_dashpot(samples: list[Sample], marks: Sequence[tuple[float, float]]) 
     ]
 
 
-@dataclass(frozen=True)
-class Touches:
-    """Steps under a growing depth that end where a vertex touches or leaves, for a layer with a dashpot.
+def touch_to_touch(
+    condensed: CondensedLayer, depth: float, rate: float, active: BoolArray, duration: float
+) -> tuple[FloatArray, BoolArray, list[tuple[float, float]]]:
+    """A step under a growing depth in parts that end where a vertex touches or leaves, for a layer with a dashpot.
 
     While the set of pressed vertices is fixed, the surface is linear in the depth, and rates by Euler steps are exact.
     At other instants a dashpot's force errs like the cell: the stiffness of a contact on cells is a staircase.
 
-    Attributes:
-        condensed: the layer and its indenter.
+    Args:
+        condensed: the layer, whose memory moves on, and its indenter.
         depth: at the start.
         rate: of the depth.
-        active: pressed vertices.
-        marks: instants of touches, which are appended, with the dashpot's force before them.
-        time: at the start [s].
+        active: pressed vertices at the start.
+        duration: of the step [s].
+
+    Returns:
+        Pressures and pressed vertices at the end, and each touch: the time since the start [s], and the dashpot's
+        force before it.
     """
+    touches: list[tuple[float, float]] = []
+    surface, elapsed, active = condensed.surface, 0.0, active.copy()
 
-    condensed: CondensedLayer
-    depth: float
-    rate: float
-    active: BoolArray
-    marks: list[tuple[float, float]]
-    time: float
-
-    def advance(self, duration: float) -> tuple[FloatArray, BoolArray]:
-        """Pressures and pressed vertices after a duration [s]; the memory moves on."""
-        elapsed, active = 0.0, self.active.copy()
-        for _ in range(2 * len(active)):
-            left = duration - elapsed
-            pressure, slack = self._held(elapsed, left, active)
-            if slack.min() >= 0.0:
-                self.condensed.surface.accept(pressure)
-                return np.maximum(pressure, 0.0), active
-            part = self._crossing(elapsed, left, active)
-            wrong = self._held(elapsed, min(left, part + SLIGHTLY * left), active)[1] < 0.0
-            if part:
-                self.condensed.surface.accept(self._held(elapsed, part, active)[0])
-                elapsed += part
-                self.marks.append((self.time + elapsed, self.condensed.surface.dashpot_force))
-            active ^= wrong
-        # Vertices touch and leave again and again.
-        state = solve_complementarity(*self._problem(elapsed, duration - elapsed), active)
-        self.condensed.surface.accept(state.pressure)
-        return state.pressure, state.active
-
-    def _problem(self, elapsed: float, duration: float) -> tuple[FloatArray, FloatArray]:
-        """Compliance and approach of the contact after a duration, with an Euler step of the dashpot."""
-        surface = self.condensed.surface
+    def problem(part: float) -> tuple[FloatArray, FloatArray]:
+        """Compliance and approach of the contact after a part, with an Euler step of the dashpot."""
         surface.restart()
-        matrix, offset = surface.begin(duration)
-        depth = self.depth + self.rate * (elapsed + duration)
-        return matrix, depth * surface.resultants - self.condensed.profile - offset
+        matrix, offset = surface.begin(part)
+        return matrix, (depth + rate * (elapsed + part)) * surface.resultants - condensed.profile - offset
 
-    def _held(self, elapsed: float, duration: float, active: BoolArray) -> tuple[FloatArray, FloatArray]:
-        """Pressures with a fixed set after a duration, and what must not be negative, plus roundings."""
-        matrix, approach = self._problem(elapsed, duration)
+    def held(part: float) -> tuple[FloatArray, FloatArray]:
+        """Pressures with a fixed set after a part, and what must not be negative, plus roundings."""
+        matrix, approach = problem(part)
         pressure = np.zeros_like(approach)
         if active.any():
             pressure[active] = np.linalg.solve(matrix[np.ix_(active, active)], approach[active])
         slack = np.where(active, matrix.diagonal() * pressure, matrix @ pressure - approach)
         return pressure, slack + 1e-11 * np.abs(approach).max()
 
-    def _crossing(self, elapsed: float, left: float, active: BoolArray) -> float:
-        """Time after which the first vertex touches or leaves [s], by bisection and secants; zero if at once."""
+    def least(part: float) -> float:
+        return float(held(part)[1].min())
 
-        def least(part: float) -> float:
-            return float(self._held(elapsed, part, active)[1].min())
-
-        low, high = SLIGHTLY * left, left
-        return 0.0 if least(low) < 0.0 else float(brentq(least, low, high, xtol=0.1 * SLIGHTLY * left, rtol=1e-7))
+    for _ in range(2 * len(active)):
+        left = duration - elapsed
+        if least(left) >= 0.0:
+            pressure = held(left)[0]
+            surface.accept(pressure)
+            return np.maximum(pressure, 0.0), active, touches
+        # Zero where a vertex touches or leaves at once.
+        first = SLIGHTLY * left
+        part = 0.0 if least(first) < 0.0 else float(brentq(least, first, left, xtol=0.1 * first, rtol=1e-7))
+        wrong = held(min(left, part + first))[1] < 0.0
+        if part:
+            surface.accept(held(part)[0])
+            elapsed += part
+            touches.append((elapsed, surface.dashpot_force))
+        active ^= wrong
+    # Vertices touch and leave again and again.
+    state = solve_complementarity(*problem(duration - elapsed), active)
+    surface.accept(state.pressure)
+    return state.pressure, state.active, touches
 
 
 def _depth_of_force(
@@ -355,8 +345,7 @@ def _depth_of_force(
     raise NotConvergedError("no depth carries the prescribed force", {"force_defect": defect})
 
 
-@dataclass(frozen=True)
-class Resolution:
+class Resolution(NamedTuple):
     """How finely a motion is resolved.
 
     Attributes:
@@ -369,44 +358,40 @@ class Resolution:
     steps: int
     per_octave: int
 
-    @classmethod
-    def of(cls, settings: Discretisation) -> Resolution:
-        """Cells and steps shrink with the growth of the meshes; a companion has half of the cells."""
-        growth, halves = settings.growth / settings.coarsening, 1 if settings.coarsening == 1.0 else 2
-        cells = 2 * max(10, round(30 / growth)) // halves
-        return cls(cells, 2 * max(20, round(100 / growth)), 2 * max(2, round(4 / growth)))
-
-    def half_the_steps(self) -> Self:
-        """The same cells with half the steps, whose instants are every other one of a history's."""
-        return replace(self, steps=self.steps // 2, per_octave=self.per_octave // 2)
-
 
 class HistorySetup:
     """Condensed layers of one scene at one resolution, a fresh one for every motion that is simulated."""
 
     def __init__(self, scene: Scene, settings: Discretisation, log: StageLog) -> None:
         self.scene, self.log, self.relaxation = scene, log, relaxation_of(scene)
-        self.resolution = Resolution.of(settings)
         self._settings = replace(settings, truncation=max(settings.truncation, TRUNCATION * settings.coarsening**6))
-        relaxes = bool(np.any(self.relaxation.moduli)) or self.relaxation.viscosity > 0
         self._modes: dict[tuple[float, int], Modes] = {}
+        relaxes = bool(np.any(self.relaxation.moduli)) or self.relaxation.viscosity > 0
         self._needs_field = relaxes and scene.layer.poissons_ratio < 0.5
 
     @classmethod
     def resolutions(
         cls, scene: Scene, settings: Discretisation, log: StageLog
     ) -> list[tuple[HistorySetup, Resolution]]:
-        """Setups and resolutions with half the cells and steps, with half the cells, and of the answer."""
+        """Setups and resolutions with half the cells and steps, with half the cells, and of the answer.
+
+        Of a history half the steps end at every other instant.
+        """
         coarser, setup = (cls(scene, each, log) for each in (settings.coarser(), settings))
-        cells = coarser.resolution
-        return [(coarser, cells.half_the_steps()), (coarser, cells), (setup, setup.resolution)]
+        cells, steps, octave = (max(a, round(b / settings.growth)) for a, b in ((10, 30), (20, 100), (2, 4)))
+        half_both, half_cells = Resolution(cells, steps, octave), Resolution(cells, 2 * steps, 2 * octave)
+        return [(coarser, half_both), (coarser, half_cells), (setup, Resolution(2 * cells, 2 * steps, 2 * octave))]
 
     def condensed(self, radius: float, cells: int) -> CondensedLayer:
         """The layer at rest with a strip of ``radius`` [m]."""
         if (radius, cells) not in self._modes:
             self._modes[radius, cells] = self._condensed_modes(radius, cells)
         modes = self._modes[radius, cells]
-        profile = self._profile(modes.radii, radius) if len(modes.radii) > 1 else np.zeros(1)
+        space, indenter = TraceSpace(modes.radii, 1), self.scene.indenter
+        profile = np.zeros(1)
+        if len(modes.radii) > 1:
+            inside = np.minimum(space.gauss(4)[0] * radius, min(radius, indenter.max_radius))
+            profile = space.moments(shape(indenter, inside).height / radius, 4)
         return CondensedLayer(Top(modes, self.relaxation), modes.radii, profile, radius, modes.unknowns)
 
     def _condensed_modes(self, radius: float, cells: int) -> Modes:
@@ -429,12 +414,6 @@ class HistorySetup:
                 settings = replace(self._settings, edge_cell=1e-4 * self._settings.coarsening**6)
                 return contact_section(layer, ScaledIndenter(indenter, radius), settings)
             return strip_section(layer, radius, cells, indenter.kinks, self._settings, outside=OUTSIDE)
-
-    def _profile(self, radii: FloatArray, radius: float) -> FloatArray:
-        """Moments of the profile by the strip's radius."""
-        space = TraceSpace(radii, 1)
-        inside = np.minimum(space.gauss(4)[0] * radius, min(radius, self.scene.indenter.max_radius))
-        return space.moments(shape(self.scene.indenter, inside).height / radius, 4)
 
     def fitted_radius(
         self, guess: float, simulate: Callable[[CondensedLayer], list[Sample]]

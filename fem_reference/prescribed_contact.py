@@ -23,7 +23,7 @@ from contact.records.validation import FloatArray
 from fem_reference.layer import DiscreteLayer
 from fem_reference.profiles import ScaledIndenter
 from fem_reference.settings import Discretisation, contact_section, narrowest_radius
-from fem_reference.trace import TraceSpace
+from fem_reference.surface import TraceSpace
 
 # Largest relative difference of the stiffness by energy and by reactions: sound solutions agree to 1e-12, a broken
 # factorisation errs by 1e-2.

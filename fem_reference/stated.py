@@ -6,8 +6,7 @@ narrow rings, nodes of a branch and time steps are all coarser in the companion.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import TypeVar
 
@@ -25,7 +24,6 @@ from contact import (
     NotConvergedError,
     Scene,
     Solution,
-    UnsupportedSceneError,
 )
 from contact.answer.accuracy import shortfalls
 from contact.records.validation import FloatArray
@@ -192,18 +190,3 @@ def _finer(settings: Discretisation, numbers: float, pressure: float) -> Discret
         edge_cell=float(max(settings.edge_cell * max(edge, 1e-4), 1e-12)),
         truncation=max(settings.truncation / 10, 1e-13),
     )
-
-
-@contextmanager
-def meshes_that_fit() -> Iterator[None]:
-    """Turns the end of the memory into words.
-
-    Raises:
-        UnsupportedSceneError: the memory ended.
-    """
-    try:
-        yield
-    except MemoryError:
-        raise UnsupportedSceneError(
-            "the mesh does not fit into memory: ask fem for a less strict accuracy, or give it a larger growth"
-        ) from None

@@ -1,4 +1,4 @@
-"""The layer condensed to its top: one factorisation, then contact problems of a few hundred unknowns.
+"""Functions on the top, and the layer condensed to it: contact problems of a few hundred unknowns.
 
 Tractions are continuous and piecewise linear on a strip of equal cells, with hat functions phi_i; displacements are of
 fourth degree, so that the mesh errs less than the contact set, which is found to a cell. For pressures p and tangential
@@ -12,17 +12,19 @@ symmetric by reciprocity. Units: lengths by the strip's radius, stresses by E*.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cache
 
 import numpy as np
+from scipy import sparse
+from scipy.linalg import solveh_banded
 
-from contact import ElasticLayer, StageLog
-from contact.records.validation import FloatArray
+from contact import ElasticLayer, NotConvergedError, StageLog
+from contact.records.validation import FloatArray, IntArray
 from fem_reference.assembly import taylor_hood
 from fem_reference.layer import DiscreteLayer
 from fem_reference.materials import Parts, parts_of
 from fem_reference.mesh import Section, section_mesh
 from fem_reference.settings import Discretisation
-from fem_reference.trace import TraceSpace
 
 # Degree of the displacements on a strip.
 STRIP_ORDER = 4
@@ -33,6 +35,95 @@ STRIDE, RUBBED_STRIDE = 2, 4
 STRIP_CELLS = 120
 # Cells from the axis below which a kink gets no vertex: narrow cells next to the axis make pressures there oscillate.
 NEAREST_KINK = 0.5
+
+
+@cache
+def _gauss_rule(points: int) -> tuple[FloatArray, FloatArray]:
+    """Gauss nodes and weights on [-1, 1]."""
+    return np.polynomial.legendre.leggauss(points)
+
+
+@dataclass(frozen=True)
+class TraceSpace:
+    """Continuous piecewise polynomials of ``degree`` along the top.
+
+    Attributes:
+        radii: r of all nodes, increasing; each cell has ``degree + 1`` equispaced nodes and shares its end nodes.
+        degree: polynomial degree.
+    """
+
+    radii: FloatArray
+    degree: int
+
+    @property
+    def vertices(self) -> FloatArray:
+        """Cell ends."""
+        return self.radii[:: self.degree]
+
+    def basis(self, t: FloatArray) -> FloatArray:
+        """The degree + 1 basis functions at local coordinates t in [0, 1], shape (..., node)."""
+        # Products of differences: each value has the same bits for any set of arguments.
+        nodes = np.arange(self.degree + 1) / self.degree
+        others = [[m for m in range(self.degree + 1) if m != n] for n in range(self.degree + 1)]
+        ways = [np.prod((t[..., None] - nodes[own]) / (nodes[n] - nodes[own]), axis=-1) for n, own in enumerate(others)]
+        return np.stack(ways, axis=-1)
+
+    def _values(self, cell: IntArray, t: FloatArray) -> sparse.csr_array:
+        """Values of all functions at local coordinates t of cells, shape (n, node)."""
+        nodes, ends = cell[:, None] * self.degree + np.arange(self.degree + 1), np.arange(len(t) + 1)
+        entries = self.basis(t).ravel(), nodes.ravel(), (self.degree + 1) * ends
+        return sparse.csr_array(entries, shape=(len(t), len(self.radii)))
+
+    def evaluate(self, values: FloatArray, radius: FloatArray) -> FloatArray:
+        """Function with nodal ``values`` at radii within the trace; zero beyond it."""
+        vertices = self.vertices
+        cell = np.clip(np.searchsorted(vertices, radius, side="right") - 1, 0, len(vertices) - 2)
+        t = (radius - vertices[cell]) / (vertices[cell + 1] - vertices[cell])
+        return np.where((radius >= vertices[0]) & (radius <= vertices[-1]), self._values(cell, t) @ values, 0.0)
+
+    def gauss(self, points: int) -> tuple[FloatArray, FloatArray]:
+        """Radii (cell, point) and weights ``2 pi r dr`` of a Gauss rule on every cell."""
+        x, w = _gauss_rule(points)
+        length = np.diff(self.vertices)[:, None]
+        radius = self.vertices[:-1, None] + length * (x + 1) / 2
+        return radius, 2 * np.pi * radius * length * w / 2
+
+    def at_gauss(self, points: int, parts: int = 1) -> sparse.csr_array:
+        """Values of all functions at a Gauss rule on each of some equal parts of every cell, shape (n, node)."""
+        part = np.repeat(np.arange(parts * (len(self.vertices) - 1)), points)
+        x = np.resize((_gauss_rule(points)[0] + 1) / 2, len(part))
+        return self._values(part // parts, (part % parts + x) / parts)
+
+    def moments(self, function_values: FloatArray, points: int) -> FloatArray:
+        """``int f v 2 pi r dr`` for every basis function v, f given at ``gauss(points)``."""
+        return np.asarray(self.at_gauss(points).T @ (self.gauss(points)[1] * function_values).ravel())
+
+    def hat_moments(self, stride: int) -> FloatArray:
+        """``int v hat 2 pi r dr`` for every basis function v and the hat functions on every ``stride``-th node.
+
+        Shape (node, hat); ``stride`` divides the degree, so that hats bend at nodes only.
+        """
+        hats, points = TraceSpace(self.radii[::stride], 1), self.degree + 1
+        weighted = hats.at_gauss(points).multiply(hats.gauss(points)[1].reshape(-1, 1))
+        return np.asarray((self.at_gauss(points, self.degree // stride).T @ weighted).toarray())
+
+    def mass_bands(self) -> FloatArray:
+        """``int u v 2 pi r dr``, its diagonals from the first one down, shape (degree + 1, node)."""
+        values, weights = self.at_gauss(self.degree + 2), self.gauss(self.degree + 2)[1].reshape(-1, 1)
+        mass = values.T @ values.multiply(weights)
+        return np.array([np.append(mass.diagonal(-k), np.zeros(k)) for k in range(self.degree + 1)])
+
+    def recover(self, nodal_forces: FloatArray) -> FloatArray:
+        """Nodal values of the pressure p with ``int p v 2 pi r dr = force(v)`` for every v: the consistent recovery.
+
+        Raises:
+            NotConvergedError: two nodes coincide.
+        """
+        if not np.all(np.diff(self.radii) > 0):
+            raise NotConvergedError(
+                "two nodes of the contact coincide: its cells are smaller than roundings of the radius"
+            )
+        return np.asarray(solveh_banded(self.mass_bands(), nodal_forces, lower=True, check_finite=False))
 
 
 @dataclass(frozen=True)

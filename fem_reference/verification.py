@@ -27,7 +27,7 @@ from contact.records.validation import FloatArray
 from fem_reference import weak_forms
 from fem_reference.assembly import ElementPair
 from fem_reference.layer import DiscreteLayer
-from fem_reference.materials import moduli, uniform
+from fem_reference.materials import uniform
 from fem_reference.mesh import Section, named_section
 
 # Cells along a side of the mesh that is halved.
@@ -58,12 +58,6 @@ def irregular_section(cells: int) -> Section:
     inner, places = square.interior_nodes(), square.p.copy()
     places[:, inner] += SHIFT / COARSEST * np.random.default_rng(1).uniform(-1, 1, (2, inner.size))
     return plain_section(MeshTri(places, square.t).refined((cells // COARSEST).bit_length() - 1))
-
-
-def with_compressibility(constant: float, poissons_ratio: float) -> float:
-    """Inf-sup constant of the mixed form at nu, from that of its pair."""
-    material = moduli(np.array(1 - poissons_ratio**2), np.array(poissons_ratio))
-    return float(np.sqrt(constant**2 + material.shear * material.compressibility))
 
 
 def inf_sup_constant(pair: ElementPair, mesh: MeshTri) -> float:

@@ -1,7 +1,7 @@
 """The method of dimensionality reduction: layers and half-spaces as beds of independent springs.
 
-Enters: a scene. Leaves: its answer, with stated errors. Read `method` first, then `dispatch`, `spring_bed` and
-`equilibria`; `bem.equation` solves the layer's equation, `contact.stated` states errors.
+Enters: a scene. Leaves: its answer, with stated errors. Read `method` first, then `spring_bed` and `equilibria`;
+`bem.equation` solves the layer's equation, `contact.stated` states errors.
 """
 
 from __future__ import annotations

@@ -1,19 +1,23 @@
-"""Adhesive equilibria at prescribed radii, depths or forces, with stated errors: Eqs. (40), (41), (4).
+"""All equilibria of an adhering contact (JKR), sampled over the contact radius, so that no fold is ever met.
 
-Errors: the same answer on finer springs, and rounding errors of the terms whose differences depth and force are.
+dl(a) = sqrt(2 pi dgamma a/c_N)   the outermost spring lets go                  Eq. (40)
+depth = g(a) - dl(a),  F = 2 E* (depth K - M)                                   Eqs. (41), (4)
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TypeAlias
 
 import numpy as np
 
 from bem.branch import DEPTH, FORCE, Branch
 from bem.flat_punch import FlatPunchSource
+from bem.kernels.moduli import contact_modulus
 from contact import (
+    Adhesion,
     ContactPath,
     ContactRadii,
     FlatPunch,
@@ -26,9 +30,10 @@ from contact import (
 )
 from contact.answer.solution import Setting, StatedErrors
 from contact.records.validation import FloatArray
+from contact.scene.extent import radius_of_elongation
 from contact.stated import stated_error
-from mdr.adhesive_branch import Adhesive, refuse_touching, work_of_adhesion
-from mdr.contact_surface import Surface
+from mdr.admissible import is_touched_nowhere, refuse_touching_outside
+from mdr.contact_surface import Surface, surface_of
 from mdr.equilibria import (
     PathFields,
     StatedError,
@@ -39,10 +44,122 @@ from mdr.equilibria import (
     springs_of,
     surface_pair,
 )
-from mdr.radius_search import RadiusSearch, refuse_too_wide
+from mdr.radius_search import RadiusSearch, growing_radii, refuse_too_wide
+from mdr.spring_bed import Springs
 
 # Contact radius [m], depth [m] and force [N].
 Triple: TypeAlias = tuple[FloatArray, FloatArray, FloatArray]
+# Relative error down to which branches are sampled. A tenth of it meets rounding.
+_SAMPLED = 2e-14
+# The companion's branch is so much longer, so that its polynomials have other nodes.
+_LONGER = 1.03
+# First trial radius over the flat end, in units of where height and elongation are equal on the half-space.
+FIRST_WAY = 2.0
+# a/h from which the half-space is no guide to the first trial radius.
+_THIN = 10.0
+# Largest number of contacts of a path that are checked for touching outside.
+_CHECKED = 12
+
+
+def work_of_adhesion(scene: Scene) -> float:
+    """The scene's dgamma [J/m^2]."""
+    adhesion = scene.effect(Adhesion)
+    return 0.0 if adhesion is None else adhesion.work_of_adhesion
+
+
+def balance_radius(scene: Scene) -> float:
+    """The contact radius [m] at which the indenter is as high as the elongation on the half-space is long."""
+    return radius_of_elongation(scene.indenter, work_of_adhesion(scene) / contact_modulus(scene.layer))
+
+
+@dataclass(frozen=True, eq=False)
+class Adhesive:
+    """Equilibria of one scene at one resolution.
+
+    Attributes:
+        scene: The problem.
+        springs: Springs of the scene.
+        longer: Factor by which branches exceed their first trial radius.
+    """
+
+    scene: Scene
+    springs: Springs
+    longer: float = 1.0
+
+    @property
+    def finer(self) -> Adhesive:
+        """The companion whose change states errors."""
+        return replace(self, springs=self.springs.finer, longer=_LONGER)
+
+    @cached_property
+    def _work(self) -> float:
+        return work_of_adhesion(self.scene)
+
+    def elongation(self, radius: FloatArray, y1: FloatArray) -> FloatArray:
+        """dl [m], Eq. (40)."""
+        return np.asarray(np.sqrt(2 * np.pi * self._work * radius / self.springs.modulus) / y1)
+
+    def states(self, radius: FloatArray, excess: FloatArray | None = None) -> FloatArray:
+        """Depth [m] and force [N] at contact radii [m], with their excess over a flat end if known, shape (2, n)."""
+        radius = np.maximum(radius, np.finfo(float).tiny)
+        values = self.springs.at(radius, excess)
+        depth = values.g - self.elongation(radius, values.y1)
+        return np.stack([depth, 2 * self.springs.modulus * (depth * values.K - values.M)])
+
+    def rounding(self, radius: FloatArray) -> FloatArray:
+        """Rounding errors of depth [m] and force [N] at contact radii [m], from the terms of their differences."""
+        radius = np.maximum(radius, np.finfo(float).tiny)
+        values, floor = self.springs.at(radius), np.max(self.springs.floor(radius), axis=0)
+        terms = values.g + self.elongation(radius, values.y1)
+        return np.asarray(floor * np.stack([terms, 2 * self.springs.modulus * (terms * values.K + values.M)]))
+
+    def branch(self, radius: float, compliance: float = 0.0) -> Branch:
+        """All equilibria up to a contact radius [m], held by a machine of some compliance [m/N]."""
+        indenter, flat = self.scene.indenter, self.scene.indenter.flat_radius
+        refuse_too_wide(self.springs, radius)
+        if not isinstance(indenter, FlatPunch):
+            RadiusSearch(self.springs, may_fall=not is_simple(self.scene)).refuse_falls(radius)
+        return Branch.sampled(
+            lambda start, way: self.states(start + way, (start - flat) + way if start >= flat > 0.0 else None),
+            breakpoints=(indenter.flat_radius, *indenter.breakpoints),
+            radius=radius,
+            error=max(_SAMPLED, float(np.max(self.springs.floor(np.array([radius]))))),
+            compliance=compliance,
+        )
+
+    def reaching(self, enough: Callable[[Branch], bool], compliance: float = 0.0) -> Branch:
+        """A branch that is long enough, or ends with the indenter."""
+        for radius in growing_radii(self.scene.indenter, self._first_radius()):
+            try:
+                branch = self.branch(radius, compliance)
+            except InvalidInput as refusal:
+                raise InvalidInput(
+                    f"the adhering contact is sought up to a = {radius:g} m, where the flat-punch data end "
+                    f"({refusal}); a Detachment may begin at a smaller initial_contact_radius"
+                ) from None
+            if enough(branch):
+                break
+        return branch
+
+    def _first_radius(self) -> float:
+        flat, thickness = self.scene.indenter.flat_radius, self.scene.layer.surface.thickness
+        first = flat + self.longer * FIRST_WAY * (balance_radius(self.scene) - flat)
+        is_guided = first <= self.springs.largest_ratio / 6 * thickness
+        return first if is_guided else self.longer * max(_THIN * thickness, 2 * flat)
+
+
+def refuse_touching(contacts: Adhesive, radius: FloatArray, depth: FloatArray) -> None:
+    """Refuse contacts outside which the indenter would touch; adhesion, which lifts it, only widens gaps."""
+    scene, springs = contacts.scene, contacts.springs
+    if is_touched_nowhere(scene) or isinstance(scene.indenter, FlatPunch):
+        return
+    widest = float(radius.max())
+    try:
+        refuse_touching_outside(scene, surface_of(springs, widest, float(springs.at([widest]).g[0])))
+    except UnsupportedSceneError:
+        order = np.argsort(radius)[::-1]
+        for i in order[:: -(-order.size // _CHECKED)].tolist():
+            refuse_touching_outside(scene, surface_of(springs, float(radius[i]), float(depth[i]), is_singular=True))
 
 
 def solve_adhesive(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[str, Setting]) -> ContactPath:
@@ -123,44 +240,32 @@ def _refuse_missing(y: FloatArray, values: FloatArray, branch: Branch, quantity:
     )
 
 
-def _path_errors(
-    contacts: Adhesive,
-    found: Triple,
-    other: Triple,
-) -> dict[str, StatedError]:
+def _path_errors(contacts: Adhesive, found: Triple, other: Triple) -> dict[str, StatedError]:
     """Stated errors of a path, relative to its largest values."""
     springs, (radius, depth, force) = contacts.springs, found
     loading, rounding = contacts.scene.loading, contacts.rounding(radius)
+    by_depth, by_force = (isinstance(loading, kind) for kind in (IndentationDepths, NormalForces))
     values, floor = springs.at(radius), np.max(springs.floor(radius), axis=0)
-    size = [max(float(np.abs(one).max()), 1e-300) for one in found]
-    by_radius, is_punch = isinstance(loading, ContactRadii), isinstance(contacts.scene.indenter, FlatPunch)
-    given = 0.0 if by_radius or is_punch else 1.0
-    slope = _rise(contacts, radius, DEPTH if isinstance(loading, IndentationDepths) else FORCE)
-    row = DEPTH if isinstance(loading, IndentationDepths) else FORCE
-    moved = np.asarray(stated_error(radius, other[0], scale=size[0], floor=given * 2 * rounding[row] / slope / size[0]))
-    stiffness, finer = values.K, springs.finer.at(other[0]).K
-    growth = radius * values.y1**2 / values.K
+    scale = [max(float(np.abs(one).max()), 1e-300) for one in found]
+    # Where a depth or force is prescribed, its rounding moves the radius by the slope of the branch.
+    row, step = FORCE if by_force else DEPTH, 1e-4
+    rise = np.abs(contacts.states(radius)[row] - contacts.states(radius * (1 - step))[row]) / (step * radius)
+    is_sought = (by_depth or by_force) and not isinstance(contacts.scene.indenter, FlatPunch)
+    moved = np.asarray(
+        stated_error(radius, other[0], scale=scale[0])
+        + is_sought * 2 * rounding[row] / np.maximum(rise, 1e-300) / scale[0]
+    )
+    finer, growth = springs.finer.at(other[0]).K, radius * values.y1**2 / values.K
+    stiffness = stated_error(values.K, finer, scale=values.K.max(), floor=floor + growth * moved * scale[0] / radius)
+    depth_error = stated_error(depth, other[1], scale=scale[1], floor=rounding[DEPTH] / scale[1])
+    force_error = stated_error(force, other[2], scale=scale[2], floor=rounding[FORCE] / scale[2])
     errors: dict[str, StatedError] = {
         "contact_radius": moved,
-        "indentation_depth": stated_error(depth, other[1], scale=size[1], floor=rounding[DEPTH] / size[1]),
-        "normal_force": stated_error(force, other[2], scale=size[2], floor=rounding[FORCE] / size[2]),
-        "contact_stiffness": stated_error(
-            stiffness, finer, scale=stiffness.max(), floor=floor + growth * moved * size[0] / radius
-        ),
+        "indentation_depth": 0 * moved if by_depth else depth_error,
+        "normal_force": 0 * moved if by_force else force_error,
+        "contact_stiffness": stiffness,
     }
-    if isinstance(loading, IndentationDepths | NormalForces):
-        errors["indentation_depth" if isinstance(loading, IndentationDepths) else "normal_force"] = np.zeros(
-            radius.size
-        )
     return errors | _field_errors(contacts, found, moved)
-
-
-def _rise(contacts: Adhesive, radius: FloatArray, row: int) -> FloatArray:
-    """|d(depth or force)/da| by differences."""
-    step = 1e-4
-    inner = radius * (1 - step)
-    change = contacts.states(radius)[row] - contacts.states(inner)[row]
-    return np.asarray(np.maximum(np.abs(change), 1e-300) / (step * radius))
 
 
 def _field_errors(contacts: Adhesive, found: Triple, moved: FloatArray) -> dict[str, StatedError]:

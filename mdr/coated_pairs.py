@@ -16,9 +16,8 @@ from typing import ClassVar, NoReturn
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from bem.kernels.of_contact import ContactKernel
-from bem.kernels.of_layer import surface_kernel
-from bem.kernels.protocol import SurfaceKernel
+from bem.kernels.of_layer import ContactKernel, surface_kernel
+from bem.kernels.stack import SurfaceKernel
 from contact import CoatedPair, InvalidInput, UnsupportedSceneError
 from contact.records.validation import FloatArray
 from mdr.spring_bed import Springs

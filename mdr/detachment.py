@@ -1,6 +1,6 @@
 """Detachment of an adhering indenter: where its contact goes when it is withdrawn, and where it is lost.
 
-The whole branch of equilibria (`mdr.adhesive_branch`) gives stability and pull-off under every control
+The whole branch of equilibria (`mdr.adhesive`) gives stability and pull-off under every control
 (`bem.branch`). Errors: the same path on finer springs, and rounding errors of depth and force.
 """
 
@@ -17,7 +17,7 @@ from contact import Detachment, DetachmentPath, FlatPunch, InvalidInput, Scene, 
 from contact.answer.solution import Setting
 from contact.records.validation import BoolArray, FloatArray
 from contact.stated import stated_error
-from mdr.adhesive_branch import Adhesive, refuse_touching, work_of_adhesion
+from mdr.adhesive import Adhesive, refuse_touching, work_of_adhesion
 from mdr.contact_surface import surface_of
 from mdr.equilibria import springs_of
 from mdr.profiles import FlatTip

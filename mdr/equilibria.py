@@ -69,7 +69,7 @@ def solve_elastic(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
         values = springs.at(radius)
         state = _states(scene, springs, radius, values)
         refuse_inadmissible(scene, springs, state)
-        errors = StatedErrors(ElasticErrors(scene, springs, state, values).stated(), "mdr")
+        errors = StatedErrors(_elastic_errors(scene, springs, state, values), "mdr")
     return ContactPath(
         scene=scene,
         method="mdr",
@@ -88,12 +88,11 @@ def solve_elastic(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
 
 def springs_of(scene: Scene, flat_punch: FlatPunchSource, log: StageLog) -> Springs:
     """Springs of a scene; those of a layer are solutions of its equation, or of a table."""
-    springs = springs_on(scene.layer, scene.indenter, flat_punch)
-    if not scene.layer.is_half_space:
-        with log.stage("flat_punch_data"):
-            log.count("flat_punch_solutions")
-            springs.punches.at(np.ones(1))
-    return springs
+    if scene.layer.is_half_space:
+        return springs_on(scene.layer, scene.indenter, flat_punch)
+    with log.stage("flat_punch_data"):
+        log.count("flat_punch_solutions")
+        return springs_on(scene.layer, scene.indenter, flat_punch)
 
 
 def springs_on(layer: ElasticLayer, indenter: Profile, flat_punch: FlatPunchSource) -> Springs:
@@ -195,77 +194,46 @@ def _spread(radius: FloatArray, count: int) -> NDArray[np.intp]:
     return order[sorted(set(np.linspace(0, order.size - 1, min(order.size, count)).astype(int).tolist()))]
 
 
-@dataclass(frozen=True, eq=False)
-class ElasticErrors:
-    """Stated errors of a path.
+def _elastic_errors(scene: Scene, springs: Springs, state: State, values: SpringValues) -> dict[str, StatedError]:
+    """Relative errors of what was not prescribed, each of shape (n,); those of fields when they are first read."""
+    some = _spread(state.radius, _COMPARED)
+    seen = State(*(one[some] for one in state))
+    finer, flat, a = springs.finer.at(seen.radius), springs.tip.flat, state.radius
+    is_punch = isinstance(scene.indenter, FlatPunch)
+    by_radius, by_depth = (isinstance(scene.loading, kind) for kind in (ContactRadii, IndentationDepths))
+    companion = springs.finer.state(seen.radius, finer, None if by_radius else seen.depth)
+    floor, whole = springs.floor(a)
+    if scene.indenter.ends_upright:  # the last digit of a changes g
+        floor = floor + EPS * a * springs.tip.transform_slope(a) / springs.tip.transform(a)
+    depth = _largest(values.g[some], finer.g, seen.depth) + floor
+    force = _largest(seen.force, companion.force, seen.force) + whole + floor
+    stiffness = _largest(seen.stiffness, companion.stiffness, seen.stiffness) + whole
+    zero = np.zeros(a.size)
+    moved = zero if by_radius or is_punch else depth * _sensitivity(scene, springs, seen)
+    of_depth, of_force = force if is_punch else force + depth, force + (depth if by_radius else 0.0)
+    # Between the rim of a flat end and the edge pressures go with a - b.
+    pressure = whole + moved / np.maximum(1 - flat / a, 1e-12)
+    # Outside thin layers w is a small difference of terms of the size of phi, K/a times the depth.
+    displacement = (force if is_punch else depth) + moved + EPS * values.K / a
+    # Functions outlive the answer's other arrays, so they refer to a few states only.
+    pair = partial(_pair, scene, springs, seen)
+    return {
+        "contact_radius": moved,
+        "indentation_depth": zero if by_depth else of_depth,
+        "normal_force": of_force if by_radius or by_depth else zero,
+        "contact_stiffness": stiffness + moved * a * values.y1**2 / values.K,  # d(ln k_N)/d(ln a) = a y_1^2/K
+        "pressure": lambda: _pressure_error(pair, seen) + pressure,
+        "surface_displacement": lambda: compared_displacement(pair(-1)) + displacement,
+    }
 
-    Attributes:
-        scene: The problem.
-        springs: Its springs.
-        state: Its equilibria.
-        values: Springs at their radii.
-    """
 
-    scene: Scene
-    springs: Springs
-    state: State
-    values: SpringValues
-
-    def stated(self) -> dict[str, StatedError]:
-        """Relative errors of what was not prescribed, each of shape (n,); those of fields when they are first read."""
-        loading, count = self.scene.loading, self.state.radius.size
-        some = _spread(self.state.radius, _COMPARED)
-        seen = State(*(one[some] for one in self.state))
-        finer = self.springs.finer
-        values = finer.at(seen.radius)
-        by_radius, by_depth = (isinstance(loading, kind) for kind in (ContactRadii, IndentationDepths))
-        companion = finer.state(seen.radius, values, None if by_radius else seen.depth)
-        floor, whole = self.springs.floor(self.state.radius)
-        floor = floor + self._position_rounding()
-        is_punch = isinstance(self.scene.indenter, FlatPunch)
-        depth = _largest(self.values.g[some], values.g, seen.depth) + floor
-        force = _largest(seen.force, companion.force, seen.force) + whole + floor
-        stiffness = _largest(seen.stiffness, companion.stiffness, seen.stiffness) + whole
-        moved = np.zeros(count) if by_radius or is_punch else depth * self._sensitivity(seen)
-        zero = np.zeros(count)
-        of_depth, of_force = force if is_punch else force + depth, force + (depth if by_radius else 0.0)
-        # Between the rim of a flat end and the edge pressures go with a - b.
-        pressure = whole + moved / np.maximum(1 - self.springs.tip.flat / self.state.radius, 1e-12)
-        # Outside thin layers w is a small difference of terms of the size of phi, K/a times the depth.
-        displacement = (force if is_punch else depth) + moved + EPS * self.values.K / self.state.radius
-        # Functions outlive the answer's other arrays, so they refer to a few states only.
-        pair = partial(_pair, self.scene, self.springs, seen)
-        return {
-            "contact_radius": moved,
-            "indentation_depth": zero if by_depth else of_depth,
-            "normal_force": of_force if by_radius or by_depth else zero,
-            "contact_stiffness": stiffness + moved * self._growth(),
-            "pressure": lambda: _pressure_error(pair, seen) + pressure,
-            "surface_displacement": lambda: compared_displacement(pair(-1)) + displacement,
-        }
-
-    def _position_rounding(self) -> FloatArray | float:
-        """Relative error of g by the last digit of a, where the indenter is upright at its end."""
-        if not self.scene.indenter.ends_upright:
-            return 0.0
-        a, tip = self.state.radius, self.springs.tip
-        return np.asarray(EPS * a * tip.transform_slope(a) / tip.transform(a))
-
-    def _sensitivity(self, seen: State) -> float:
-        """d(ln a)/d(ln g), one at most where g rises faster than a."""
-        if is_simple(self.scene):
-            return 1.0
-        step = 1e-4
-        inner = np.maximum(seen.radius * (1 - step), self.springs.tip.flat)
-        before = self.springs.at(inner).g
-        rise = (
-            (seen.depth - before) / np.where(seen.depth == 0, 1, seen.depth) / np.maximum(1 - inner / seen.radius, EPS)
-        )
-        return float(np.max(1 / np.maximum(rise, 1e-3), initial=1.0))
-
-    def _growth(self) -> FloatArray:
-        """d(ln k_N)/d(ln a) = a y_1^2/K."""
-        return np.asarray(self.state.radius * self.values.y1**2 / self.values.K)
+def _sensitivity(scene: Scene, springs: Springs, seen: State) -> float:
+    """d(ln a)/d(ln g), one at most where g rises faster than a."""
+    if is_simple(scene):
+        return 1.0
+    inner = np.maximum(seen.radius * (1 - 1e-4), springs.tip.flat)
+    risen = (seen.depth - springs.at(inner).g) / np.where(seen.depth == 0, 1, seen.depth)
+    return float(np.max(1 / np.maximum(risen / np.maximum(1 - inner / seen.radius, EPS), 1e-3), initial=1.0))
 
 
 def _pair(scene: Scene, springs: Springs, seen: State, step: int) -> list[Surface]:

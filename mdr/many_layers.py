@@ -13,7 +13,7 @@ import numpy as np
 
 from bem.equation import Sizes
 from bem.kernels.moduli import contact_modulus
-from bem.kernels.of_contact import ContactKernel
+from bem.kernels.of_layer import ContactKernel
 from contact import ContactRadii, FlatPunch, IndentationDepths, Layer, NormalForces, Scene
 from contact.records.validation import FloatArray
 from mdr.equilibria import is_simple

@@ -4,15 +4,15 @@
     m_n(x)  = int_0^1 g_hs(x s) b_n(s) ds = x int_0^(pi/2) f'(x cos t) sqrt(4n+1) Q_n(sin t) sin t dt
 
 b_n = sqrt(4n+1) P_2n, Q_n as in `bem.numerics.abel_legendre`. The second integrand is smooth wherever f' is, so kinks
-of g_hs cost nothing: panels in the angle end at the radii where f' is not analytic. Profiles with closed forms are
-registered below; every other profile of `contact` is integrated from its `slope_at`.
+of g_hs cost nothing: panels in the angle end at the radii where f' is not analytic. Profiles with closed forms stand
+in `tip_of`; every other profile of `contact` is integrated from its `slope_at`.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from functools import cached_property, singledispatch
+from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
@@ -342,56 +342,28 @@ class PiecewiseTip(Tip):
         return found.reshape(np.shape(x))
 
 
-@singledispatch
 def tip_of(profile: Profile) -> Tip:
     """The transform of a profile, in closed form where one is known."""
-    return Tip(profile)
-
-
-@tip_of.register
-def _(profile: FlatPunch) -> Tip:
-    return FlatTip(profile)
-
-
-@tip_of.register
-def _(profile: Cone) -> Tip:
-    return PowerTip(profile, profile.slope, 1.0, 1.0)
-
-
-@tip_of.register
-def _(profile: Paraboloid) -> Tip:
-    R = profile.radius_of_curvature
-    return PowerTip(profile, R / 2, R, 2.0)
-
-
-@tip_of.register
-def _(profile: PowerLaw) -> Tip:
-    return PowerTip(profile, profile.reference_height, profile.reference_radius, profile.exponent)
-
-
-@tip_of.register
-def _(profile: Sphere) -> Tip:
-    return BallTip(profile, profile.radius)
-
-
-@tip_of.register
-def _(profile: Spheroconical) -> Tip:
-    return BallTip(profile, profile.radius, profile.slope)
-
-
-@tip_of.register
-def _(profile: TruncatedCone) -> Tip:
-    return PiecewiseTip(profile, np.array([profile.flat_radius]), np.array([[profile.slope, 0.0, 0.0]]))
-
-
-@tip_of.register
-def _(profile: TruncatedParaboloid) -> Tip:
-    b, R = profile.flat_radius, profile.radius_of_curvature
-    return PiecewiseTip(profile, np.array([b]), np.array([[b / R, 1 / R, 0.0]]))
-
-
-@tip_of.register
-def _(profile: Tabulated) -> Tip:
-    """Shape-preserving cubics: f' is quadratic between the measured radii."""
-    cubic, square, linear, _ = profile._curve.c
-    return PiecewiseTip(profile, profile.radii[:-1], np.column_stack([linear, 2 * square, 3 * cubic]))
+    match profile:
+        case FlatPunch():
+            tip: Tip = FlatTip(profile)
+        case Cone(slope=slope):
+            tip = PowerTip(profile, slope, 1.0, 1.0)
+        case Paraboloid(radius_of_curvature=R):
+            tip = PowerTip(profile, R / 2, R, 2.0)
+        case PowerLaw():
+            tip = PowerTip(profile, profile.reference_height, profile.reference_radius, profile.exponent)
+        case Sphere(radius=R):
+            tip = BallTip(profile, R)
+        case Spheroconical(radius=R, slope=slope):
+            tip = BallTip(profile, R, slope)
+        case TruncatedCone(flat_radius=b, slope=slope):
+            tip = PiecewiseTip(profile, np.array([b]), np.array([[slope, 0.0, 0.0]]))
+        case TruncatedParaboloid(flat_radius=b, radius_of_curvature=R):
+            tip = PiecewiseTip(profile, np.array([b]), np.array([[b / R, 1 / R, 0.0]]))
+        case Tabulated():  # shape-preserving cubics: f' is quadratic between the measured radii
+            cubic, square, linear, _ = profile._curve.c
+            tip = PiecewiseTip(profile, profile.radii[:-1], np.column_stack([linear, 2 * square, 3 * cubic]))
+        case _:
+            tip = Tip(profile)
+    return tip

@@ -18,7 +18,7 @@ from bem.flat_punch import FlatPunchSource, IntegralEquation
 from bem.piecewise import Piecewise
 from contact import Detachment, ElasticLayer, Profile, Scene
 from contact.records.validation import FloatArray
-from mdr.adhesive_branch import FIRST_WAY, balance_radius, work_of_adhesion
+from mdr.adhesive import FIRST_WAY, balance_radius, work_of_adhesion
 from mdr.detachment import solve_detachment
 from mdr.equilibria import is_simple
 from mdr.own_units import OwnUnits, is_power_law, own_units

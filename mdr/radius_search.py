@@ -12,12 +12,10 @@ from collections.abc import Callable, Iterator
 from typing import Literal
 
 import numpy as np
-from scipy.interpolate import CubicSpline
-from scipy.optimize.elementwise import bracket_root, find_root
 
 from bem.numerics import EPS
 from contact import InvalidInput, NotConvergedError, Profile, UnsupportedSceneError
-from contact.records.validation import FloatArray
+from contact.records.validation import BoolArray, FloatArray
 from mdr.spring_bed import Springs
 
 Quantity = Literal["depth", "force"]
@@ -32,6 +30,8 @@ _NEAR = 1e-10
 _WIDER = 2.0
 # Steps before a search gives up; four are usual, and halving alone needs sixty.
 _MOST_STEPS = 200
+# ln(load) missed by roundings, which reach 4e-15. Twice of it shows in radii.
+_SMALLEST = 1e-14
 # ln(a/h) below which the layers under the first change g too little to let it fall.
 _WITHIN_LAYER = -5.0
 # Places around each maximum of g. Half as many miss depths within 0.3 % of the maximum.
@@ -246,12 +246,11 @@ class RadiusSearch:
             return self.refined(quantity, y, np.interp(y, table, z), np.interp(y, table, slope))
         knots = np.linspace(y.min(), y.max(), _KNOTS)
         inner = self.scale(self.refined(quantity, knots, np.interp(knots, table, z), np.interp(knots, table, slope)))
-        place, parts = CubicSpline(knots, inner), np.array_split(y, y.size // _KNOTS)
-        return np.concatenate([self._between(quantity, part, place) for part in parts])
+        parts = np.array_split(y, y.size // _KNOTS)
+        return np.concatenate([self._between(quantity, part, *_cubics(knots, inner, part)) for part in parts])
 
-    def _between(self, quantity: Quantity, y: FloatArray, place: CubicSpline) -> FloatArray:
-        """Radii [m] with these logarithms by one step of Newton from cubics z(y), where it suffices."""
-        z, slope = place(y), 1 / np.maximum(place(y, 1), 1e-300)
+    def _between(self, quantity: Quantity, y: FloatArray, z: FloatArray, slope: FloatArray) -> FloatArray:
+        """Radii [m] with these logarithms by one step of Newton from cubics between knots, where it suffices."""
         missed = self.logarithm(self.springs, quantity, z) - y
         radius, far = self._radius(z - missed / slope), np.abs(missed) > _NEAR
         radius[far] = self.refined(quantity, y[far], z[far], slope[far]) if far.any() else 0.0
@@ -300,27 +299,76 @@ class RadiusSearch:
         raise objection
 
     def refined(self, quantity: Quantity, y: FloatArray, z: FloatArray, slope: FloatArray) -> FloatArray:
-        """Radii [m] with these logarithms, from a start and its slope, by Chandrupatla's method.
+        """Radii [m] with these logarithms, from a start and its slope.
 
         Raises:
             NotConvergedError: If one was not found.
         """
 
-        def missed(z: FloatArray, y: FloatArray) -> FloatArray:
-            return self.logarithm(self.springs, quantity, z) - y
+        def missed(z: FloatArray, at: BoolArray) -> FloatArray:
+            return self.logarithm(self.springs, quantity, z) - y[at]
 
-        first = missed(z, y)
-        step = _WIDER * np.abs(first) / np.maximum(slope, 1e-3) + EPS * (1 + np.abs(z))
-        low, high = np.where(first < 0, z, z - step), np.where(first < 0, z + step, z)
-        bracket = bracket_root(missed, low, high, args=(y,)).bracket
-        found = find_root(
-            missed,
-            bracket,
-            args=(y,),
-            # In the place, and in the logarithm of the load.
-            tolerances={"xatol": 4 * EPS, "xrtol": EPS, "fatol": 8 * EPS, "frtol": 0.0},
-            maxiter=_MOST_STEPS,
-        )
-        if not found.success.all():
-            raise NotConvergedError("the contact radius was not found", {"ln(load) missed by": np.abs(found.f_x).max()})
-        return self._radius(found.x)
+        first = missed(z, np.ones(z.shape, dtype=np.bool_))
+        step = -_WIDER * first / np.maximum(slope, 1e-3)
+        step = np.where(first < 0, 1, -1) * np.maximum(np.abs(step), EPS * (1 + np.abs(z)))
+        return self._radius(_roots(missed, z, first, step))
+
+
+def _roots(
+    missed: Callable[[FloatArray, BoolArray], FloatArray], start: FloatArray, first: FloatArray, step: FloatArray
+) -> FloatArray:
+    """Roots x of increasing functions, shape (n,), by Chandrupatla's method: Adv. Eng. Softw. 28 (1997) 145.
+
+    Between places of both signs it takes inverse quadratic interpolation where that is safe, and halves elsewhere.
+
+    Args:
+        missed: Values at x of the functions that a mask of shape (n,) names.
+        start: Places to begin with.
+        first: Values there.
+        step: Towards the root. It doubles until it reaches beyond.
+
+    Raises:
+        NotConvergedError: If a root was not found.
+    """
+    x1, f1, x2, f2 = start.copy(), first.copy(), start + step, np.full(start.shape, np.nan)
+    at = np.ones(start.shape, dtype=np.bool_)
+    for _ in range(_MOST_STEPS):
+        f2[at] = missed(x2[at], at)
+        at = ~((f1 * f2 <= 0) | (np.abs(f2) <= _SMALLEST))
+        if not at.any():
+            break
+        x1, f1, step = np.where(at, x2, x1), np.where(at, f2, f1), 2 * step
+        x2 = np.where(at, x2 + step, x2)
+    else:
+        raise NotConvergedError("no contact radius has the load", {"ln(load) missed by": float(np.abs(f2[at]).max())})
+    x3, f3, share, at = x2, f2, np.full(start.shape, 0.5), np.ones(start.shape, dtype=np.bool_)
+    for _ in range(_MOST_STEPS):
+        best: FloatArray
+        best, least = np.where(np.abs(f1) < np.abs(f2), (x1, np.abs(f1)), (x2, np.abs(f2)))
+        narrow = 2 * EPS * (1 + np.abs(best)) / np.maximum(np.abs(x2 - x1), 1e-300)
+        at = (least > _SMALLEST) & (narrow < 0.5)
+        if not at.any():
+            return best
+        x = x1 + np.clip(share, narrow, 1 - narrow) * (x2 - x1)
+        f = np.where(at, 0.0, f1)
+        f[at] = missed(x[at], at)
+        same = f * f1 > 0
+        x, f = np.where(at, (x, f), (x1, f1))
+        x3, f3, x2, f2 = np.where(at, np.where(same, (x1, f1, x2, f2), (x2, f2, x1, f1)), (x3, f3, x2, f2))
+        x1, f1 = x, f
+        with np.errstate(all="ignore"):
+            xi, phi = (x1 - x2) / (x3 - x2), (f1 - f2) / (f3 - f2)
+            quadratic = f1 / (f2 - f1) * f3 / (f2 - f3) + (x3 - x1) / (x2 - x1) * f1 / (f3 - f1) * f2 / (f3 - f2)
+            share = np.where((phi**2 < xi) & ((1 - phi) ** 2 < 1 - xi), quadratic, 0.5)
+    raise NotConvergedError("the contact radius was not found", {"ln(load) missed by": float(least.max())})
+
+
+def _cubics(knots: FloatArray, z: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """z at y by cubics with mean slopes between equidistant knots, and dy/dz."""
+    step, rise, pace = knots[1] - knots[0], np.diff(z), np.gradient(z)
+    before, after = pace[:-1] - rise, pace[1:] - rise
+    s = (y - knots[0]) / step
+    i = np.minimum(s.astype(int), rise.size - 1)
+    s -= i
+    found = z[i] + s * (pace[i] - s * ((2 * before + after)[i] - s * (before + after)[i]))
+    return found, step / np.maximum(pace[i] + s * (after - before)[i], 1e-300)

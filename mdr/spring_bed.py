@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 
 from bem.equation import COARSE, USUAL, FlatPunches, Radius, Rows, Sizes, flat_punches
 from bem.kernels.moduli import contact_modulus
-from bem.kernels.of_contact import ContactKernel, contact_kernel, unit_of
+from bem.kernels.of_layer import ContactKernel, contact_kernel, unit_of
 from bem.numerics import EPS, graded
 from contact import ElasticLayer, Profile
 from contact.records.validation import FloatArray

@@ -22,7 +22,7 @@ import numpy as np
 from bem.equation import Radius, Rows, Sizes
 from bem.flat_punch import FlatPunchSource
 from bem.grid.discs import shared_error
-from bem.kernels.of_contact import contact_kernel
+from bem.kernels.of_layer import contact_kernel
 from bem.numerics import even_legendre, gauss
 from bem.tables import RUNGS, SMALLEST_RATIO, FftTable, FlatPunchTable, TableFile
 from contact import ElasticLayer, InvalidInput, Profile

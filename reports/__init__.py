@@ -4,7 +4,7 @@
 - ``page``: report.html, one page per case and comparison.html
 - ``ci``: summary.md, junit.xml and annotations
 - ``findings``, ``tables``: what a run found, in words and as tables
-- ``charts``, ``study_charts``, ``pictures``, ``inside``, ``fit_figures``: pictures
+- ``charts``, ``pictures``, ``inside``, ``fit_figures``: pictures
 - ``answer``, ``fit_tables``: single answers and fits as tables and CSV files
 - ``style``, ``words``: one look for all figures; numbers with units and no digit beyond their uncertainty
 - ``terminal``, ``progress``: tables and bars in the terminal

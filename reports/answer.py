@@ -38,8 +38,8 @@ from reports.words import (
 )
 
 if TYPE_CHECKING:
-    from cases.measurements.sweep import Sweep
     from cases.run.propagation import Propagated, PropagatedQuantity
+    from cases.sweep import Sweep
 
 BRACKETS = (
     "Digits in brackets: uncertainty of the last digits, as the method itself estimates it; (?) where it gives none. "

@@ -96,7 +96,13 @@ def method_table(case: Case) -> Table:
 def claim_table(case: Case) -> Table:
     """The claims with tolerance, reason and origin."""
     heads = ("kind", "claim", "quantity", "tolerance", "expected because", "tolerance from", "origin")
-    return Table(title="Claims", note="", heads=heads, rows=tuple(_claim_row(c) for c in case.claims), words=7)
+    return Table(
+        title="Claims",
+        note="",
+        heads=heads,
+        rows=tuple(_claim_row(c) for c in case.claims if isinstance(c, Claim)),
+        words=7,
+    )
 
 
 def _claim_row(claim: Claim) -> tuple[str, ...]:

@@ -3,7 +3,7 @@
 import numpy as np
 
 from cases.files import csv_text
-from cases.measurements.uncertain_fit import UncertainFit
+from cases.uncertain_fit import UncertainFit
 from mdr.curves import CurveFit, MapFit
 from mdr.curves.families import unit_of_parameter
 from reports.words import Table, measured, quantity_words, scaled_unit, small, with_prefix

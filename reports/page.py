@@ -18,9 +18,8 @@ from cases.files import csv_text, write_whole
 from cases.runs import Run
 from cases.verdicts import Kind, Status, Verdict, worst
 from reports import findings, tables
-from reports.charts import front, of_case
+from reports.charts import Picture, front, of_case
 from reports.findings import grouped, severity, who
-from reports.study_charts import Picture
 from reports.style import figure_style, svg_text
 from reports.words import duration, file_name, small
 

@@ -4,7 +4,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from cases.measurements.sweep import Sweep
+from cases.sweep import Sweep
 from contact import (
     ContactRadii,
     DepthHistory,

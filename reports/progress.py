@@ -8,7 +8,7 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 from rich.text import Text
 
-from cases.run.progress import ProgressEvent
+from cases.run.runner import ProgressEvent
 from cases.verdicts import Status
 from reports.findings import in_words, tone_of
 from reports.terminal import STYLES

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Final, TypeAlias
+from typing import Any, Final
 
 import numpy as np
 
 from bem.branch import CONTROLS, DEPTH, FORCE
 from bem.grid.adhering import NODES, AdheringIndenter, edge_density, followed, largest_radius, start_of_withdrawal
 from bem.grid.discs import refuse_unresolved, shared_error
-from bem.grid.fields import ContactFields, NoContact, field_changes
+from bem.grid.fields import ContactFields, field_changes
 from bem.grid.pressed import Prescribed, PressedState, Pressing, equilibrium, refuse_falling
 from bem.kernels.moduli import contact_modulus
 from contact import (
@@ -48,8 +48,6 @@ LOOKED_AT: Final = 20
 COARSE_CELLS: Final = 128
 UNCERTAIN: Final = 5e-3
 
-_Fields: TypeAlias = ContactFields | NoContact
-
 
 @dataclass(frozen=True)
 class FieldSequence:
@@ -59,7 +57,7 @@ class FieldSequence:
         steps: Of each step.
     """
 
-    steps: Sequence[_Fields]
+    steps: Sequence[ContactFields]
 
     def pressure(self, radius: FloatArray, step: int) -> FloatArray:
         """p(r) [Pa] of one step."""
@@ -115,7 +113,7 @@ class GridSolver:
         found, other = (self._followed(contacts) for contacts in self._branches())
         return self._path(list(zip(found, other, strict=True)), adheres=True)
 
-    def _followed(self, contacts: AdheringIndenter) -> list[_Fields]:
+    def _followed(self, contacts: AdheringIndenter) -> list[ContactFields]:
         """What is prescribed is inserted as it is: a flat punch may be held below its fold."""
         loading = self.scene.loading
         values = np.array(loading.values)  # type: ignore[attr-defined]
@@ -131,9 +129,7 @@ class GridSolver:
             found.append(self._adhering(contacts.pressing, state))
         return found
 
-    def _adhering(self, pressing: Pressing, state: PressedState) -> _Fields:
-        if state.radius == 0.0:
-            return NoContact(state)
+    def _adhering(self, pressing: Pressing, state: PressedState) -> ContactFields:
         # A flat end holds the front: its density is what the contact bears, not what adhesion could.
         held = state.radius == self.scene.indenter.flat_radius
         edge = state.depth * state.edge_flat if held else edge_density(self.scene, state.radius)
@@ -182,7 +178,7 @@ class GridSolver:
                 AdheringIndenter.up_to(self.scene, fine.coarser(), radius, 3 * NODES // 4),
             )
 
-    def _path(self, pairs: Sequence[tuple[_Fields, _Fields]], *, adheres: bool) -> ContactPath:
+    def _path(self, pairs: Sequence[tuple[ContactFields, ContactFields]], *, adheres: bool) -> ContactPath:
         """The answer, with errors of its fields, unless the indenter touches outside a contact."""
         found, other = (self._values([pair[i].state for pair in pairs]) for i in (0, 1))
         errors = self._errors(found, other, adheres=adheres)

@@ -18,10 +18,8 @@ from bem.kernels.of_layer import surface_kernel
 from contact.answer.one_circle import no_single_circle
 from contact.records.validation import FloatArray
 
-# Radii summed at a time, which bounds the memory.
-CHUNK: Final = 16
-# Cells along a quadrant that are summed for displacements far from the edge: groups of cells act at their centres.
-GROUPS: Final = 64
+# Radii summed at a time, which bounds the memory: with four times as many 2048 points take 0.4 GB.
+CHUNK: Final = 4
 # Share of the largest quotient of pressures below which a cell counts as pulled; noise of rings is a tenth of it.
 PULLED: Final = 1e-3
 # Cells of the coarser grid within which it has to show the same.
@@ -61,6 +59,8 @@ class ContactFields:
 
     def pressure(self, radius: FloatArray) -> FloatArray:
         """p(r) [Pa]; at a singular edge the value half a cell inside."""
+        if self.radius == 0.0:
+            return np.zeros_like(radius)
         last = 1.0 - 0.5 / self.punch.disc.radius
         share = np.minimum(radius / self.radius, 1.0 if self.edge == 0.0 else last)
         root = np.sqrt(np.maximum((1.0 - share) * (1.0 + share), np.finfo(float).tiny))
@@ -70,6 +70,8 @@ class ContactFields:
 
     def surface_displacement(self, radius: FloatArray) -> FloatArray:
         """w(r) [m]: delta - f under the indenter, sums over all cells beyond the first cell outside."""
+        if self.radius == 0.0:
+            return np.zeros_like(radius)
         a, s = self.radius, self.radius / self.punch.disc.radius
         w = np.asarray(self.state.depth - self.pressing.indenter.height(np.minimum(radius, a)), dtype=np.float64)
         outside = radius > a
@@ -136,20 +138,10 @@ class ContactFields:
         return PchipInterpolator(np.append(share**2, 1.0), np.append(values, self.edge or 0.0), extrapolate=True)
 
     def _summed(self, radius: FloatArray) -> FloatArray:
-        """w [m] at r > a + s: cells, or groups of them far away, act as point forces at their centres."""
-        cells, s = self._scale * self.cells, self.radius / self.punch.disc.radius
-        group = -(-cells.shape[0] // GROUPS)
-        far = radius > self.radius + 4.0 * group * s
-        w = np.empty(radius.shape)
-        w[~far] = self._of_points(cells, s, radius[~far])
-        padded = np.pad(cells, (0, -cells.shape[0] % group))
-        m = padded.shape[0] // group
-        w[far] = self._of_points(padded.reshape(m, group, m, group).sum(axis=(1, 3)) / group**2, group * s, radius[far])
-        return w
-
-    def _of_points(self, cells: FloatArray, size: float, radius: FloatArray) -> FloatArray:
-        i, j = np.nonzero(cells)
-        x, y, force = size * (i + 0.5), size * (j + 0.5), size**2 * cells[i, j] / pi
+        """w [m] at r > a + s: cells act as point forces at their centres."""
+        s = self.radius / self.punch.disc.radius
+        i, j = np.nonzero(self.cells)
+        x, y, force = s * (i + 0.5), s * (j + 0.5), s**2 * self._scale * self.cells[i, j] / pi
         w = np.empty(radius.shape)
         for start in range(0, radius.size, CHUNK):
             r = radius[start : start + CHUNK, None]
@@ -166,31 +158,14 @@ class ContactFields:
         return answer if layer.has_elastic_base else np.where(distance < REACH * h, answer, 0.0)
 
 
-@dataclass(frozen=True, eq=False)
-class NoContact:
-    """Fields without contact.
-
-    Attributes:
-        state: Of radius zero.
-    """
-
-    state: PressedState
-
-    def pressure(self, radius: FloatArray) -> FloatArray:
-        """Zero."""
-        return np.zeros(radius.shape)
-
-    surface_displacement = pressure
-
-
-def field_changes(one: ContactFields | NoContact, other: ContactFields | NoContact) -> tuple[float, float]:
+def field_changes(one: ContactFields, other: ContactFields) -> tuple[float, float]:
     """Change of pressure and displacement between two grids; all of them where only one grid is in contact.
 
     Pressures at equal r/a in the norm weighted with r (a^2 - r^2); the largest change of displacements outside the
     contact, relative to depth or height at the edge.
     """
-    if isinstance(one, NoContact) or isinstance(other, NoContact):
-        return (0.0, 0.0) if type(one) is type(other) else (1.0, 1.0)
+    if one.radius == 0.0 or other.radius == 0.0:
+        return (0.0, 0.0) if one.radius == other.radius else (1.0, 1.0)
     p, q = (np.sqrt(1.0 - INSIDE**2) * of.pressure(INSIDE * of.radius) for of in (one, other))
     r = OUTSIDE * max(one.radius, other.radius)
     apart = one.surface_displacement(r) - other.surface_displacement(r)

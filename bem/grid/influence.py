@@ -24,7 +24,7 @@ from scipy.special import itj0y0
 
 from bem.grid.transforms import cosine_plan
 from bem.kernels.of_layer import surface_kernel
-from bem.kernels.protocol import SurfaceKernel
+from bem.kernels.stack import SurfaceKernel
 from contact import ElasticLayer
 from contact.records.validation import FloatArray
 

@@ -11,7 +11,7 @@ from typing import Final, Literal, TypeAlias
 import numpy as np
 
 from bem.grid.influence import band_limited_influence, layer_influence, layer_symbol
-from bem.grid.transforms import CosineFilter, cosine_filter, fast_period
+from bem.grid.transforms import CosineFilter, FourierFilter, cosine_filter, fast_period
 from contact import ElasticLayer, Layer, NotConvergedError
 from contact.records.validation import BoolArray, FloatArray
 
@@ -36,9 +36,9 @@ class GridOperator:
         inverse_symbol: Its eigenvalues.
     """
 
-    forward: CosineFilter
+    forward: CosineFilter | FourierFilter
     symbol: FloatArray
-    inverse: CosineFilter
+    inverse: CosineFilter | FourierFilter
     inverse_symbol: FloatArray
 
     def displacement(self, pressure: FloatArray) -> FloatArray:
@@ -51,19 +51,30 @@ class GridOperator:
 
 
 def grid_operator(
-    layer: ElasticLayer, cell_size: float, cells: int, boundary: Boundary = "free", threads: int = 1
+    layer: ElasticLayer,
+    cell_size: float,
+    cells: int,
+    boundary: Boundary = "free",
+    threads: int = 1,
+    *,
+    whole: bool = False,
 ) -> GridOperator:
     """The operator of a layer on `cells` x `cells` cells of `cell_size` [m].
 
     In free space pressures are constant over cells, and displacements exact at their centres. With periodic boundaries
     fields are trigonometric polynomials, so that a sinusoidal load has its exact answer, Eq. (32); a half-space with
-    such pressures stands alone in free space, to measure discs of cells for periodic layers.
+    such pressures stands alone in free space, to measure discs of cells for periodic layers. Fields without the
+    symmetry of a quadrant need the `whole` grid.
     """
-    cyclic = cosine_filter(cells // 2, cells, threads)
+
+    def filter_of(period: int) -> CosineFilter | FourierFilter:
+        return FourierFilter(cells, period, threads) if whole else cosine_filter(cells // 2, period, threads)
+
+    cyclic = filter_of(cells)
     symbol = layer_symbol(2.0 * np.pi / cyclic.period * np.hypot(*cyclic.modes), layer, cell_size)
     if boundary == "periodic" and not layer.is_half_space:
         return GridOperator(cyclic, symbol, cyclic, _reciprocal(symbol))
-    padded = cosine_filter(cells // 2, fast_period(2 * cells), threads)
+    padded = filter_of(fast_period(2 * cells))
     offsets = padded.period // 2
     periodic = boundary == "periodic"
     influence = band_limited_influence(offsets) if periodic else layer_influence(offsets, layer, cell_size)

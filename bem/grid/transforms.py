@@ -13,6 +13,7 @@ from threading import get_ident
 from typing import Any, Final, Literal
 
 import numpy as np
+from scipy.fft import irfft2, rfft2
 
 from bem.compiled_files import compiled
 from contact.records.validation import FloatArray
@@ -59,6 +60,31 @@ class CosineFilter:
         work = kernel.copy()
         cosine_plan(work, 1, (0, 1)).execute()
         return np.asarray(work[:-1, :-1])
+
+
+class FourierFilter:
+    """The same on the whole grid, for fields without symmetry; shape (cells, cells).
+
+    Attributes:
+        cells: Cells along a side of the grid.
+        period: Cells along a side of the lattice, at least `cells`.
+        modes: |j| along both axes, shape (period, 1) and (1, period/2 + 1).
+    """
+
+    def __init__(self, cells: int, period: int, threads: int = 1) -> None:
+        self.cells, self.period, self._threads = cells, period, threads
+        self._offset = np.minimum(np.arange(period), period - np.arange(period))
+        self.modes = self._offset[:, None], np.arange(period // 2 + 1)[None, :]
+
+    def __call__(self, field: FloatArray, symbol: FloatArray) -> FloatArray:
+        """The filtered field, shape (cells, cells); the symbol has a value per mode."""
+        whole = (self.period, self.period)
+        spectrum = rfft2(field, whole, workers=self._threads) * symbol
+        return np.asarray(irfft2(spectrum, whole, workers=self._threads)[: self.cells, : self.cells])
+
+    def convolution_symbol(self, kernel: FloatArray) -> FloatArray:
+        """Eigenvalues of the convolution with an even kernel, given at offsets 0 <= i, j <= period/2."""
+        return np.asarray(rfft2(kernel[np.ix_(self._offset, self._offset)]).real)
 
 
 def cosine_filter(cells: int, period: int, threads: int = 1) -> CosineFilter:

@@ -1,18 +1,24 @@
-"""The kernel of each kind of layer, in units of the thickness of its surface material."""
+"""Kernels of all kinds of layers: of the surface, in units of its thickness, and 1 - chi for the equation of contact.
+
+Uniform layers and stacks: the unit is the thickness of the surface material; 1 - chi falls like exp(-2k), so it is
+rounding beyond k = 21. Graded layers: the unit is an eighth of the thickness; 1 - chi ~ c_1/k + c_2/k^2 + ..
+"""
 
 from __future__ import annotations
 
 import dataclasses
-from functools import lru_cache
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
 from math import inf
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
-from bem.kernels.protocol import SurfaceKernel
-from bem.kernels.stack import Sheet, StackKernel
+from bem.kernels.stack import Sheet, StackKernel, SurfaceKernel
+from bem.numerics import Octaves
 from contact.records.errors import UnsupportedSceneError
 from contact.records.record import Record
+from contact.records.validation import FloatArray
 from contact.scene.graded_layer import GradedLayer
 from contact.scene.layer import ElasticBase, ElasticLayer, Layer, LayerStack
 
@@ -23,6 +29,10 @@ _R = TypeVar("_R", bound=Record)
 # A kernel that was made for a layer serves the same layer in other units, whose numbers are a rounding or two off: so
 # many decimal digits are kept. What the others would change is a twentieth of the kernel's own tolerance.
 _DIGITS = 13
+# Units per thickness of a graded layer. With 4 wide contacts need more wave numbers, with 16 narrow ones do.
+_GRADED_UNITS = 8.0
+# Nodes per octave of the table of a graded kernel: 18 leave 1e-13, 9 leave 1e-7.
+_NODES = 18
 
 
 def surface_kernel(layer: ElasticLayer) -> SurfaceKernel:
@@ -92,3 +102,104 @@ def stack_kernel(layer: ElasticLayer) -> StackKernel:
     raise UnsupportedSceneError(
         f"under friction mdr models uniform layers and stacks, not a {type(layer).__name__}: describe it as a stack"
     )
+
+
+@dataclass(frozen=True)
+class ContactKernel:
+    """1 - chi at wave numbers k in units of 1/`unit(layer)`.
+
+    Attributes:
+        surface: Kernel of the layer in units of its own thickness; None for the half-space.
+    """
+
+    surface: SurfaceKernel | None
+
+    @property
+    def is_uniform(self) -> bool:
+        """Whether the layer is a half-space: 1 - chi = 0."""
+        return self.surface is None
+
+    @property
+    def is_single(self) -> bool:
+        """Whether it is a half-space or one layer on a rigid base: contacts of convex profiles never pull there."""
+        surface = self.surface
+        return surface is None or (isinstance(surface, StackKernel) and len(surface.sheets) == 1 and not surface.base)
+
+    @property
+    def is_graded(self) -> bool:
+        """Whether 1 - chi falls like a power of k."""
+        return self.surface is not None and bool(self.surface.tail)
+
+    @property
+    def units(self) -> float:
+        """Units per thickness of the surface material."""
+        return _GRADED_UNITS if self.is_graded else 1.0
+
+    @property
+    def longest(self) -> float:
+        """Length beyond which chi has its limit for small k."""
+        return 1.0 if self.surface is None else self.units * self.surface.longest
+
+    @cached_property
+    def tail(self) -> tuple[float, ...]:
+        """c_1, c_2, .. of 1 - chi ~ sum c_j/k^j for large k."""
+        tail = () if self.surface is None else self.surface.tail
+        return tuple(c / self.units**power for power, c in enumerate(tail, 1))
+
+    def chi(self, k: FloatArray) -> FloatArray:
+        """chi at wave numbers k > 0, shape (n,)."""
+        if self.surface is None:
+            return np.ones_like(k)
+        return np.asarray(self.surface.chi(k)) if not self.is_graded else self._tabulated(k * self.units)
+
+    def one_minus_chi(self, k: FloatArray) -> FloatArray:
+        """1 - chi at wave numbers k > 0, shape (n,)."""
+        if self.surface is None or self.is_graded:
+            return 1 - self.chi(k)
+        return np.asarray(self.surface.one_minus_chi(k))
+
+    def _tabulated(self, k: FloatArray) -> FloatArray:
+        chi = np.empty_like(k)
+        for octave, index in self._table.groups(k):
+            chi[index] = k[index] ** self._power * self._table(k[index], octave)[:, 0]
+        return chi
+
+    @property
+    def _power(self) -> int:
+        """The power of k by which chi vanishes with k: none on an elastic base."""
+        return 0 if self.surface.layer.has_elastic_base else 1  # type: ignore[union-attr]
+
+    @cached_property
+    def _table(self) -> Octaves:
+        """chi/k, or chi where it does not vanish with k, over octaves of k times thickness."""
+        surface = self.surface
+        assert surface is not None
+        lowest = -2 - int(np.ceil(np.log2(surface.longest)))
+        return Octaves(lambda k, _: (surface.chi(k) / k**self._power)[:, None], lowest, _NODES)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Without tables, which are made again where they are needed."""
+        return {"surface": self.surface}
+
+
+@lru_cache(maxsize=256)
+def _kernel(surface: SurfaceKernel) -> ContactKernel:
+    return ContactKernel(surface)
+
+
+def contact_kernel(layer: ElasticLayer) -> ContactKernel:
+    """The kernel of a layer; equal layers share one, with its tables.
+
+    Raises:
+        UnsupportedSceneError: If none is known of this kind of layer.
+    """
+    if layer.is_half_space:
+        return ContactKernel(None)
+    # Poisson's ratio has no influence on one layer without bond.
+    slides = layer.is_uniform and layer.support == "unbonded"
+    return _kernel(StackKernel.single("unbonded", 0.0) if slides else surface_kernel(layer))
+
+
+def unit_of(layer: ElasticLayer) -> float:
+    """Length [m] in which the kernel of a layer counts; 1 m on the half-space."""
+    return 1.0 if layer.is_half_space else layer.surface.thickness / contact_kernel(layer).units

@@ -1,6 +1,8 @@
 """The only writer of baselines: what accepting a case would change, and everything that is refused."""
 
 import math
+import os
+import subprocess
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -18,12 +20,61 @@ from cases.gate.baseline import (
 )
 from cases.gate.gate import judged_claims
 from cases.gate.spread import Spreads
-from cases.gate.write_permission import WriteConditions
-from cases.measurements.ladders.ladder_study import worse_than
 from cases.rules import SMALLEST_RELATIVE
+from cases.run import stamp
 from cases.runs import Run
+from cases.stress import worse_than
 from cases.verdicts import Kind, Verdict
 from contact import InvalidInput
+
+# The folder that holds every package.
+SOURCE = Path(__file__).resolve().parents[2]
+
+
+@dataclass(frozen=True, kw_only=True)
+class WriteConditions:
+    """Conditions under which a baseline may be written.
+
+    Attributes:
+        revision: commit of the source; "unknown" outside a repository.
+        changed: files that differ from it, baselines apart: those are what is being written.
+        in_ci: whether a continuous integration job asks.
+    """
+
+    revision: str
+    changed: tuple[str, ...]
+    in_ci: bool
+
+
+def write_conditions(repository: Path, baselines: Path, environment: Mapping[str, str] = os.environ) -> WriteConditions:
+    """Return the conditions of this process and the source in ``repository``."""
+    return WriteConditions(
+        revision=stamp.revision(repository),
+        changed=_changed_files(repository, baselines),
+        in_ci=environment.get("CI", "").lower() not in ("", "0", "false"),
+    )
+
+
+def _changed_files(repository: Path, baselines: Path) -> tuple[str, ...]:
+    """Changed tracked files, and untracked files that are not ignored."""
+    outside = f":(exclude){baselines.resolve()}" if baselines.resolve().is_relative_to(repository.resolve()) else "."
+    listed = git(repository, "status", "--porcelain", "--", ".", outside)
+    return tuple(line[3:] for line in listed.splitlines())
+
+
+def git(repository: Path, *arguments: str) -> str:
+    """Return what git prints.
+
+    Raises:
+        InvalidInput: with git's own words if it refuses.
+    """
+    command = ["git", "-C", str(repository), *arguments]
+    try:
+        return subprocess.run(command, capture_output=True, text=True, check=True).stdout
+    except FileNotFoundError:
+        raise InvalidInput("git is not installed; a baseline belongs to a commit") from None
+    except subprocess.CalledProcessError as error:
+        raise InvalidInput(f"git {arguments[0]}: {error.stderr.strip()}") from None
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 
 from cases.answers import Answer, Values
 from cases.gate.baseline import AcceptedClaim, Baseline, kept, permitted_change
-from cases.measurements.ladders.ladder_study import worse_than
 from cases.rules import (
     SMALLEST_RELATIVE,
     Judgement,
@@ -17,6 +16,7 @@ from cases.rules import (
     worst_judgement,
 )
 from cases.runs import CaseText, Run
+from cases.stress import worse_than
 from cases.studies import StressTest
 from cases.verdicts import Kind, Origin, Status, Verdict, Why
 from contact.records.extras import NOT_INSTALLED

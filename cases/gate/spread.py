@@ -16,9 +16,8 @@ import numpy as np
 from cases.answers import Answer, Table
 from cases.case import Case, Task
 from cases.rules import relative_spread
-from cases.run.executors import ahead, closing, process_pool
+from cases.run.executors import Window, ahead, closing, process_pool
 from cases.run.solve_task import job_of, solve
-from cases.run.window import Window
 from contact import (
     ContactRadii,
     DepthHistory,

@@ -12,7 +12,7 @@ exact: two Winkler beds in series.
 import numpy as np
 
 from cases.case import Case, CaseScene, text_of
-from cases.cost_settings import elastic_costs
+from cases.cost import elastic_costs
 from cases.library import _common as c
 from cases.library import _refinements as r
 from contact import CoatedPair, ContactRadii, Paraboloid, Scene
@@ -92,6 +92,6 @@ CASE = Case(
         *r.studies(SYMMETRIC[1:2], r.NODES, FORCE_AND_DEPTH, against="integral_equation"),
         *r.studies(SYMMETRIC[:1], r.EDGE_CELL, {"normal_force": 1.0}, against="integral_equation"),
         *r.studies(SYMMETRIC[:1], r.fem_cells(3), dict.fromkeys(FORCE_AND_DEPTH, 6.0), against="mdr", nightly=True),
+        *elastic_costs(SYMMETRIC[0].name),
     ),
-    work=elastic_costs(SYMMETRIC[0].name),
 )

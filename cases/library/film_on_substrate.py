@@ -14,7 +14,7 @@ from dataclasses import replace
 import numpy as np
 
 from cases.case import Case, CaseScene, text_of
-from cases.cost_settings import elastic_costs
+from cases.cost import elastic_costs
 from cases.declare.methods import MethodUse
 from cases.library import _common as c
 from cases.library import _stacks as s
@@ -127,6 +127,6 @@ CASE = Case(
         c.equal("force without a film", "normal_force", half_space_force, NO_FILM, NONE, **CLOSED),
         s.stiffness_limit(THIN, WIDE, thin_film, "thin film", largest=0.05, parameter=thinness),
         s.stiffness_limit(BENT, PLATES, bent_plate, "plate", largest=0.05, parameter=narrowness),
+        *elastic_costs(film(10.0, 1.0).name),
     ),
-    work=elastic_costs(film(10.0, 1.0).name),
 )

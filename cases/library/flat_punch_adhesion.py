@@ -12,11 +12,11 @@ from typing import Any
 import numpy as np
 
 from cases.case import Case, CaseScene, text_of
-from cases.cost_settings import detachment_costs
+from cases.cost import detachment_costs
 from cases.declare.methods import MethodUse
+from cases.effects import Ablation
 from cases.library import _common as c
 from cases.library import _refinements as r
-from cases.measurements.advice.effects import AblationStudy
 from contact import Adhesion, Detachment, FlatPunch, Layer
 
 WHY = c.reasons("flat_punch_adhesion")
@@ -142,7 +142,9 @@ CASE = Case(
     text=text_of(__doc__),
     scenes=(*HALF_SPACE, *BEYOND_MAXIMUM, *ABRUPT, *UNDER_LOAD, *ON_THE_WAY),
     methods=METHODS,
-    claims=CLAIMS,
-    ablations=(AblationStudy(scene=BEYOND_MAXIMUM[0].name, nightly=("fem", "bem")),),
-    work=detachment_costs(BEYOND_MAXIMUM[0].name),
+    claims=(
+        *CLAIMS,
+        Ablation(scene=BEYOND_MAXIMUM[0].name, slow=("fem", "bem")),
+        *detachment_costs(BEYOND_MAXIMUM[0].name),
+    ),
 )

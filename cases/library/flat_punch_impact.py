@@ -11,10 +11,10 @@ from dataclasses import replace
 from typing import Any
 
 from cases.case import Case, CaseScene, text_of
-from cases.cost_settings import impact_costs
+from cases.cost import impact_costs
+from cases.effects import Ablation
 from cases.library import _common as c
 from cases.library import _refinements as r
-from cases.measurements.advice.effects import AblationStudy
 from contact import FlatPunch, Impact, KelvinVoigt, Layer
 from contact.scene.layer import Support
 
@@ -133,7 +133,5 @@ CASE = Case(
     text=text_of(__doc__),
     scenes=(*HALF_SPACE, *ON_LAYERS),
     methods=c.EVERY,
-    claims=CLAIMS,
-    ablations=(AblationStudy(scene=ON_LAYERS[0].name, nightly=("fem",)),),
-    work=impact_costs(ON_LAYERS[0].name),
+    claims=(*CLAIMS, Ablation(scene=ON_LAYERS[0].name, slow=("fem",)), *impact_costs(ON_LAYERS[0].name)),
 )

@@ -13,7 +13,7 @@ and its depth a^2 / ((1 + m) R), Eq. (34), gives the exponent m of Eq. (33).
 import numpy as np
 
 from cases.case import Case, CaseScene, text_of
-from cases.cost_settings import elastic_costs
+from cases.cost import elastic_costs
 from cases.declare.methods import MethodUse
 from cases.library import _common as c
 from cases.library import _refinements as r
@@ -194,6 +194,5 @@ CASE = Case(
     text=text_of(__doc__),
     scenes=(*PUNCHES, *HAYES_WALKS, BONDED, UNBONDED, *EXPONENTS),
     methods=c.EVERY,
-    claims=(*CLAIMS, *ORDERS),
-    work=elastic_costs("bonded nu=0.5 a/h=2", (STIFFNESS,)),
+    claims=(*CLAIMS, *ORDERS, *elastic_costs("bonded nu=0.5 a/h=2", (STIFFNESS,))),
 )

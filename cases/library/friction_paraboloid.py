@@ -19,7 +19,7 @@ from scipy.integrate import quad
 
 from cases.case import Case, CaseScene, text_of
 from cases.claims import Bound
-from cases.cost import WorkStudy
+from cases.cost import Cost
 from cases.declare.methods import MethodUse
 from cases.library import _common as c
 from cases.library import _refinements as r
@@ -248,6 +248,17 @@ CASE = Case(
     text=text_of(__doc__),
     scenes=(*SLIDING, *STUCK, *STUCK_HALF_SPACES, *REFINED, *SELF_SIMILAR, ON_THICK, CYCLE),
     methods=(c.MDR, CELLS),
-    claims=CLAIMS,
-    work=(WorkStudy(scene="nu=0.5 stick", quantity=FORCE, ladder=LADDER, reference=TIMED, cheap=(TIMED,)),),
+    claims=(
+        *CLAIMS,
+        *(
+            Cost(
+                name="cost of full stick",
+                scene="nu=0.5 stick",
+                quantity=FORCE,
+                ladder=LADDER,
+                reference=TIMED,
+                cheap=(TIMED,),
+            ),
+        ),
+    ),
 )

@@ -11,7 +11,7 @@ layer is approached with nearly the second order of 1/n: the top one, of constan
 import numpy as np
 
 from cases.case import Case, text_of
-from cases.cost_settings import elastic_costs
+from cases.cost import elastic_costs
 from cases.library import _common as c
 from cases.library import _stacks as s
 from contact import ElasticBase, ExponentialDepth, GradedLayer, LayerStack
@@ -98,6 +98,6 @@ CASE = Case(
         c.equal("published stiffness", "contact_stiffness", stiffness, FIRST, DIGITS, **PUBLISHED),
         c.equal("published depth", "indentation_depth", depth, FIRST, DIGITS, **PUBLISHED),
         c.approach(APPROACH, "contact_stiffness", CUT, stiffness, s.WHY["sublayers"], **NEARLY_SECOND),
+        *elastic_costs(FIRST[0].name),
     ),
-    work=elastic_costs(FIRST[0].name),
 )

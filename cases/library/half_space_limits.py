@@ -9,10 +9,10 @@ the limit, what is left must fall with the second order of a/h.
 import numpy as np
 
 from cases.case import Case, CaseScene, text_of
-from cases.cost_settings import elastic_costs
+from cases.cost import elastic_costs
+from cases.effects import Ablation
 from cases.library import _common as c
 from cases.library import _refinements as r
-from cases.measurements.advice.effects import AblationStudy
 from contact import (
     Cone,
     ContactRadii,
@@ -131,7 +131,7 @@ CASE = Case(
         *r.studies(CURVED[1:2], r.HALF_SPACE, {"indentation_depth": 1.0, "contact_stiffness": 1.0}, against="mdr"),
         *r.studies(CURVED[1:2], r.HALF_SPACE_FORCE, {"normal_force": 3.0}, against="mdr", nightly=True),
         *r.studies(CURVED[:1], r.EDGE_CELL, {"normal_force": 1.0}, against="mdr", nightly=True),
+        Ablation(scene="bonded nu=0.3 a/h=0.01"),
+        *elastic_costs("half-space, paraboloid"),
     ),
-    ablations=(AblationStudy(scene="bonded nu=0.3 a/h=0.01"),),
-    work=elastic_costs("half-space, paraboloid"),
 )

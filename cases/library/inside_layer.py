@@ -20,7 +20,7 @@ import numpy as np
 
 from cases.case import Case, CaseScene, Sampling, text_of
 from cases.claims import Norm
-from cases.cost_settings import inside_costs
+from cases.cost import inside_costs
 from cases.declare.methods import MethodUse
 from cases.library import _common as c
 from cases.library import _refinements as r
@@ -138,6 +138,6 @@ CASE = Case(
             largest=0.15,
             methods=("mdr",),
         ),
+        *inside_costs(REFINED[0].name),
     ),
-    work=inside_costs(REFINED[0].name),
 )

@@ -13,7 +13,7 @@ from typing import ClassVar
 from cases.answers import Answer
 from cases.case import Case, CaseScene, Task, text_of
 from cases.claims import PerScene
-from cases.cost_settings import elastic_costs
+from cases.cost import elastic_costs
 from cases.declare.methods import MethodUse
 from cases.library import _common as c
 from cases.library import _refinements as r
@@ -115,6 +115,6 @@ CASE = Case(
         *r.studies(ALMOST, r.EDGE_CELL, {STIFFNESS: 1.0}, against=EQUATION),
         *r.studies(ALMOST, r.OUTER_RADIUS, (STIFFNESS,), against=EQUATION, nightly=True),
         *r.studies(ALMOST, r.fem_cells(3), {STIFFNESS: 6.0}, against=EQUATION, nightly=True),
+        *elastic_costs("bonded nu=0.4999 a/h=1", ("normal_force",)),
     ),
-    work=elastic_costs("bonded nu=0.4999 a/h=1", ("normal_force",)),
 )

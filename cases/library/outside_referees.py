@@ -18,7 +18,7 @@ from dataclasses import replace
 import numpy as np
 
 from cases.case import Case, CaseScene, text_of
-from cases.cost_settings import costs_beside_others
+from cases.cost import costs_beside_others
 from cases.declare.methods import MethodUse
 from cases.library import _common as c
 from contact import FlatPunch, IndentationDepths, Paraboloid, Profile, TruncatedCone
@@ -162,6 +162,5 @@ CASE = Case(
     suites=("referees",),
     scenes=(*SCENES, *CURVES),
     methods=(c.MDR, c.FEM, c.BEM, c.EQUATION, *REFEREES),
-    claims=CLAIMS,
-    work=tuple(study for scene in PRICED for study in costs_beside_others(scene)),
+    claims=(*CLAIMS, *tuple(study for scene in PRICED for study in costs_beside_others(scene))),
 )

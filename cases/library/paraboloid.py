@@ -10,7 +10,7 @@ come back.
 import math
 
 from cases.case import Case, CaseScene, text_of
-from cases.cost_settings import elastic_costs
+from cases.cost import elastic_costs
 from cases.library import _common as c
 from cases.library import _refinements as r
 from contact import ContactRadii, IndentationDepths, Loading, NormalForces, Paraboloid
@@ -158,6 +158,5 @@ CASE = Case(
     text=text_of(__doc__),
     scenes=(*BY_RADIUS, *BY_DEPTH, *BY_FORCE),
     methods=c.EVERY,
-    claims=(*CLAIMS, *ORDERS),
-    work=elastic_costs(c.scene_name("bonded nu=0.5", 2.0), periodic=True),
+    claims=(*CLAIMS, *ORDERS, *elastic_costs(c.scene_name("bonded nu=0.5", 2.0), periodic=True)),
 )

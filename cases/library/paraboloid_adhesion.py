@@ -10,10 +10,10 @@ release rate from the derivative of the strain energy.
 import numpy as np
 
 from cases.case import Case, CaseScene, text_of
-from cases.cost_settings import detachment_costs
+from cases.cost import detachment_costs
+from cases.effects import Ablation
 from cases.library import _common as c
 from cases.library import _refinements as r
-from cases.measurements.advice.effects import AblationStudy
 from contact import Adhesion, Detachment, Paraboloid
 
 WHY = c.reasons("paraboloid_adhesion")
@@ -91,7 +91,7 @@ CASE = Case(
         *r.studies(BONDED, r.NODES, CRITICAL.keys(), against=r.FINEST_MDR),
         *r.studies(BONDED, r.DISCS, dict.fromkeys(CRITICAL, 2.0), against=r.FINEST_MDR, nightly=True),
         *r.studies(BONDED, r.FEM_ACCURACY, CRITICAL.keys(), against=r.FINEST_MDR, nightly=True),
+        Ablation(scene=BONDED[0].name, slow=("fem",)),
+        *detachment_costs(BONDED[0].name),
     ),
-    ablations=(AblationStudy(scene=BONDED[0].name, nightly=("fem",)),),
-    work=detachment_costs(BONDED[0].name),
 )

@@ -8,11 +8,11 @@ livelier the rebound. R and v0 enter only as a product. Kinetic, stored and diss
 
 from cases.case import Case, CaseScene, text_of
 from cases.claims import Equal, Law
-from cases.cost_settings import impact_costs
+from cases.cost import impact_costs
 from cases.declare.methods import MethodUse
+from cases.effects import Ablation
 from cases.library import _common as c
 from cases.library import _refinements as r
-from cases.measurements.advice.effects import AblationStudy
 from contact import Impact, Layer, Paraboloid, Scene, StandardSolid
 
 WHY = c.reasons("sphere_impact")
@@ -136,7 +136,5 @@ CASE = Case(
     text=text_of(__doc__),
     scenes=(HALF_SPACE, *ON_LAYERS),
     methods=(c.MDR, FEM, c.BEM, c.EQUATION, c.TABLE),
-    claims=CLAIMS,
-    ablations=(AblationStudy(scene=STRUCK[0].name, nightly=("fem",)),),
-    work=impact_costs(STRUCK[0].name),
+    claims=(*CLAIMS, Ablation(scene=STRUCK[0].name, slow=("fem",)), *impact_costs(STRUCK[0].name)),
 )

@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from cases.case import Case, CaseScene, text_of
-from cases.cost_settings import elastic_costs
+from cases.cost import elastic_costs
 from cases.library import _common as c
 from cases.library import _refinements as r
 from contact import ContactRadii, Paraboloid, Profile, TruncatedCone
@@ -140,6 +140,6 @@ CASE = Case(
         *r.studies(THIN, r.NODES, QUANTITIES, against="integral_equation"),
         *r.studies(THIN, r.EQUATION_NODES, ("normal_force",), against=r.FINEST_MDR),
         *r.studies(THIN, r.fem_cells(3, thin=True), SIXTH, against="integral_equation", nightly=True),
+        *elastic_costs("bonded nu=0.45 a/h=40, paraboloid"),
     ),
-    work=elastic_costs("bonded nu=0.45 a/h=40, paraboloid"),
 )

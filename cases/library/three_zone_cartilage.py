@@ -10,7 +10,7 @@ left out: a layer of the mean modulus alone errs by a multiple of what methods d
 
 from cases.case import Case, CaseScene, text_of
 from cases.claims import Bound
-from cases.cost_settings import elastic_costs
+from cases.cost import elastic_costs
 from cases.library import _common as c
 from cases.library import _refinements as r
 from cases.library import _stacks as s
@@ -76,6 +76,6 @@ CASE = Case(
         s.pressed_shape(SCENES),
         SOFTER,
         *r.studies(ONE, r.EQUATION_NODES, FORCE, against=r.FINEST_MDR),
+        *elastic_costs(ONE[0].name),
     ),
-    work=elastic_costs(ONE[0].name),
 )

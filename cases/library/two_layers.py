@@ -12,7 +12,7 @@ here. The figure shows what bodies made simpler err by, also one on an elastic b
 import math
 
 from cases.case import Case, CaseScene, text_of
-from cases.cost_settings import elastic_costs
+from cases.cost import elastic_costs
 from cases.library import _common as c
 from cases.library import _refinements as r
 from cases.library import _stacks as s
@@ -113,6 +113,6 @@ CASE = Case(
         c.scaling_law(ALIKE, EQUAL, merged, (1.0, 1.0, 1.0), s.WHY["equal layers"], **SAME_ANSWER),
         s.stiffness_limit(FLOW, THIN, flowing, "flow", largest=0.1),
         *r.studies(ONE, r.EQUATION_NODES, ("normal_force",), against=r.FINEST_MDR),
+        *elastic_costs(ONE[0].name),
     ),
-    work=elastic_costs(ONE[0].name),
 )

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from contact import FlatPunch, Loading, Scene, other_layer
+from contact import FlatPunch, Loading, Scene, Shape, not_round, other_layer
 from contact.scene.extent import radius_of_load
 
 # A repeated layer reaches so many thicknesses beyond the contact on each side: what neighbours feel of one another
@@ -17,9 +17,9 @@ FAR = 1e3
 
 def refusal(scene: Scene, code: str, loadings: tuple[type[Loading], ...]) -> str:
     """Why a grid code does not model a scene, empty where it may."""
-    other = other_layer(code, scene.layer)
+    other = not_round(code, scene) if isinstance(scene.indenter, Shape) else other_layer(code, scene.layer)
     reasons = {
-        other.reason if other else "": other is not None,
+        "" if other is None else other.reason: other is not None,
         "elastic contact only": bool(scene.effects),
         f"takes {' and '.join(kind.__name__ for kind in loadings)} only": not isinstance(scene.loading, loadings),
     }

@@ -11,22 +11,59 @@ from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
-from typing import IO
+from typing import IO, Literal
 
 from cases.answers import NAME, Answer, Identity, Table, read_answers
 from cases.case import Case, Task
-from cases.convergence import Order
 from cases.declare.methods import registered
 from cases.files import write_whole
-from cases.run.executors import ClusterLost, ExecutorFactory, ahead, closing, fresh_processes, process_pool, serial
+from cases.run.executors import (
+    ClusterLost,
+    ExecutorFactory,
+    Window,
+    ahead,
+    closing,
+    fresh_processes,
+    process_pool,
+    serial,
+)
 from cases.run.lock import locked
-from cases.run.progress import Progress, ProgressEvent, silent
 from cases.run.solve_task import Job, job_of, solve
 from cases.run.stamp import stamp
-from cases.run.window import Window
 from cases.runs import CaseText, Judged, Run, Stamp, write_run
+from cases.studies import Convergence, CostOfAccuracy, Effect, StressTest
 from cases.verdicts import Status, worst
 from contact import InvalidInput
+
+
+@dataclass(frozen=True, kw_only=True)
+class ProgressEvent:
+    """One event of a run.
+
+    Attributes:
+        kind: "planned" once, then "finished" or "reused" for each task, "judged" for each case; "refused" before
+            "finished" for a task whose stored answer is damaged; "stopped" when the cluster that solves is lost.
+        label: the task or case in words.
+        done: tasks behind.
+        total: tasks in all.
+        status: how the task or case ended; None for "planned", "refused" and "stopped".
+        reason: of a status other than PASS, or why a stored answer was refused or the run stopped.
+    """
+
+    kind: Literal["planned", "finished", "reused", "judged", "refused", "stopped"]
+    label: str
+    done: int
+    total: int
+    status: Status | None = None
+    reason: str = ""
+
+
+Progress = Callable[[ProgressEvent], None]
+
+
+def silent(event: ProgressEvent) -> None:
+    """Ignore the event."""
+
 
 # Default time limit of one solution by a method of an installed package [s]. Half of it stops three-dimensional meshes,
 # twice of it only waits longer for methods that hang.
@@ -48,7 +85,6 @@ class RunOptions:
         timing: whether timed tasks run; without them there are no studies of cost.
         only_costs: whether only the tasks of studies of cost run; no claim is then judged.
         progress: called with every event.
-        solved: called once all tasks have run, before claims are judged.
     """
 
     out: Path
@@ -61,7 +97,6 @@ class RunOptions:
     timing: bool = True
     only_costs: bool = False
     progress: Progress = silent
-    solved: Callable[[], object] = lambda: None
 
 
 @dataclass
@@ -123,7 +158,6 @@ def _run(cases: Sequence[Case], options: RunOptions) -> Run:
             run.finish(job, answer, reused=True)
         try:
             _carry_out(run, [job for job in jobs if job.task.identity not in run.answers])
-            options.solved()
         except KeyboardInterrupt:
             complete = False
         except ClusterLost as error:
@@ -131,7 +165,7 @@ def _run(cases: Sequence[Case], options: RunOptions) -> Run:
             run.tell("stopped", "run", reason=f"{error}; finished solutions are kept, go on with --resume")
     table = Table(run.answers.values())
     made = stamp(started, time.perf_counter() - clock)
-    judged = judge(cases, table, made, claims=not options.only_costs)
+    judged = judge(cases, table, made)
     judged = replace(judged, suite=options.suite, methods=options.methods, complete=complete)
     _tell_judged(run, judged, table)
     write_run(judged, options.out)
@@ -142,30 +176,31 @@ def plan(cases: Iterable[Case], *, timing: bool = True, only_costs: bool = False
     """Return every task of ``cases`` once; timed tasks last."""
     tasks: dict[Identity, Task] = {}
     for case in cases:
-        for task in case.cost_tasks() if only_costs else case.tasks():
+        costs = (task for study in case.costs for task in study.tasks(case))
+        for task in costs if only_costs else case.tasks():
             tasks.setdefault(task.identity, task)
     wanted = [task for task in tasks.values() if timing or not task.timed]
     return sorted(wanted, key=lambda task: task.timed)
 
 
-def judge(cases: Iterable[Case], answers: Table, made: Stamp, *, claims: bool = True) -> Judged:
-    """Return the verdicts and studies of cases from the answers present.
+def judge(cases: Iterable[Case], answers: Table, made: Stamp) -> Judged:
+    """Return the verdicts and records of cases from the answers present.
 
     Args:
         cases: as they were run.
         answers: of their tasks; a claim or study without all its answers is left out.
         made: where and when.
-        claims: whether claims are judged.
     """
     cases = tuple(cases)
-    studied = [(case, claim) for case in cases if claims for claim in case.claims if isinstance(claim, Order)]
+    found = [record for case in cases for claim in case.claims for record in claim.records(case, answers)]
     return Judged(
         stamp=made,
         cases=tuple(words_of(case) for case in cases),
-        verdicts=tuple(verdict for case in cases if claims for verdict in case.verdicts(answers)),
-        convergence=tuple(study for case, claim in studied for study in claim.studies(case, answers)),
-        costs=tuple(record for case in cases for study in case.work for record in study.records(case, answers)),
-        effects=tuple(record for case in cases for study in case.ablations for record in study.records(case, answers)),
+        verdicts=tuple(verdict for case in cases for verdict in case.verdicts(answers)),
+        convergence=tuple(one for one in found if isinstance(one, Convergence)),
+        costs=tuple(one for one in found if isinstance(one, CostOfAccuracy)),
+        stress_tests=tuple(one for one in found if isinstance(one, StressTest)),
+        effects=tuple(one for one in found if isinstance(one, Effect)),
     )
 
 

@@ -12,10 +12,9 @@ from cases.case import Task
 from cases.declare.methods import registered, shared_inputs
 from cases.recording import fields_at, recorded
 from cases.run.apart import ProcessDied, TimeLimitReached, apart
-from cases.run.empty_caches import forget
 from cases.run.from_refinement import with_estimated_errors
 from cases.run.keys import code, question
-from cases.run.timing import timed_warm
+from cases.run.timing import forget, timed_warm
 from cases.verdicts import Status
 from contact import ContactPath, Method, NotConvergedError, Solution, UnsupportedSceneError
 from contact.records.errors import printable
@@ -91,6 +90,8 @@ def answered(job: Job) -> Answer:
     try:
         # With one thread, times can be compared and sums repeat bit by bit.
         with threadpool_limits(limits=1):
+            if job.task.measure is not None:
+                return replace(job.answer(), **job.task.measure(job.method, job.task.problem))
             support = job.method.supports(job.task.problem)
             if not support:
                 return job.answer(Status.SKIP, getattr(support, "reason", "not supported"))

@@ -1,6 +1,7 @@
 """Times: how they are sampled and summed up."""
 
 import gc
+import sys
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -77,3 +78,16 @@ def _seconds(call: Callable[[], object], loops: int) -> float:
     finally:
         if collecting:
             gc.enable()
+
+
+PACKAGES = ("bem", "mdr", "fem_reference")
+
+
+def forget() -> None:
+    """Empty every cache that a module of a method keeps: flat-punch data, tables, meshes, quadrature."""
+    for name, module in tuple(sys.modules.items()):
+        if name.partition(".")[0] in PACKAGES:
+            for value in tuple(vars(module).values()):
+                clear = getattr(value, "cache_clear", None)
+                if callable(clear):
+                    clear()

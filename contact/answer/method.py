@@ -8,6 +8,7 @@ from typing import ClassVar, Protocol, Self, TypeAlias, runtime_checkable
 from contact.answer.solution import Solution
 from contact.scene.layer import ElasticLayer, Layer
 from contact.scene.scene import Scene
+from contact.scene.shapes import Shape
 
 
 @dataclass(frozen=True)
@@ -40,6 +41,15 @@ def other_layer(method: str, layer: ElasticLayer) -> Unsupported | None:
     if isinstance(layer, Layer):
         return None
     return Unsupported(f"{method} models one uniform layer or a half-space, not a {type(layer).__name__}; ask mdr")
+
+
+def not_round(method: str, scene: Scene, where: str = "") -> Unsupported | None:
+    """The refusal of a shape by a method that models it only there; None for bodies of revolution."""
+    if not isinstance(scene.indenter, Shape):
+        return None
+    name = type(scene.indenter).__name__
+    models = f"models a {name} only {where}" if where else f"models bodies of revolution, not a {name}"
+    return Unsupported(f"{method} {models}; {scene.indenter.instead}")
 
 
 @runtime_checkable

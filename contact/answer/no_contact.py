@@ -8,6 +8,7 @@ from collections.abc import Callable
 from typing import Any, TypeVar, cast
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from contact.answer.inside import InteriorFields, KnownContact
 from contact.answer.paths import ContactPath
@@ -59,6 +60,10 @@ class _PressedFields:
             return np.zeros_like(radius) if pressed < 0 else np.asarray(of_method(radius, pressed))
 
         return field
+
+    def along(self, angle: ArrayLike) -> _PressedFields:
+        """The fields of a shape in directions [rad]."""
+        return _PressedFields(self._fields.along(angle), self._number)
 
     def inside(self, step: int, known: KnownContact) -> InteriorFields:
         """The body under one step that presses.

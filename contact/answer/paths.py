@@ -5,7 +5,7 @@ import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Protocol
+from typing import Annotated, Any, ClassVar, Protocol, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -28,6 +28,7 @@ from contact.answer.solution import Solution
 from contact.records.errors import InvalidInput
 from contact.records.validation import FloatArray
 from contact.scene.effects import Adhesion
+from contact.scene.shapes import Shape
 
 # Quantities whose magnitude is that of another one.
 _SCALED_BY = {"surface_displacement": "indentation_depth", "stick_radius": "contact_radius"}
@@ -147,13 +148,38 @@ class ContactPath(Solution):
     def _adheres(self) -> bool:
         return self.scene.effect(Adhesion) is not None
 
-    def pressure(self, radius: ArrayLike, step: int = 0) -> FloatArray:
-        """Contact pressure p(r) [Pa] of one step at radii [m], zero outside the contact."""
-        return sampled(self, self.fields, "pressure", radius, step)
+    def pressure(self, radius: ArrayLike, step: int = 0, angle: ArrayLike = 0.0) -> FloatArray:
+        """Contact pressure p(r) [Pa] of one step at radii [m], zero outside the contact.
 
-    def surface_displacement(self, radius: ArrayLike, step: int = 0) -> FloatArray:
-        """Surface displacement w(r) [m] of one step at radii [m], inside and outside the contact."""
-        return sampled(self, self.fields, "surface_displacement", radius, step)
+        Under a `Shape` it depends on the direction too: an angle [rad] for all radii or one for each.
+        """
+        return sampled(self, self._along(angle), "pressure", radius, step)
+
+    def surface_displacement(self, radius: ArrayLike, step: int = 0, angle: ArrayLike = 0.0) -> FloatArray:
+        """Surface displacement w(r) [m] of one step at radii [m], inside and outside the contact; as `pressure`."""
+        return sampled(self, self._along(angle), "surface_displacement", radius, step)
+
+    def outline(self, angle: ArrayLike, step: int = 0) -> FloatArray:
+        """Distance a(phi) [m] of the edge from the axis at directions [rad]; the contact radius of a circle.
+
+        Raises:
+            InvalidInput: If the answer has no such step, or came from a file, which keeps no outline of a `Shape`.
+        """
+        self.refuse_step(step)
+        phi = np.asarray(angle, dtype=np.float64)
+        if not isinstance(self.scene.indenter, Shape):
+            return np.full(phi.shape, self.contact_radius[step])
+        of_fields = getattr(self.fields, "outline", None)
+        if of_fields is None:
+            raise InvalidInput("the outline of a shape is not kept in files; solve the scene again")
+        return np.asarray(of_fields(np.ravel(phi), step % len(self))).reshape(phi.shape)
+
+    def _along(self, angle: ArrayLike) -> Fields | None:
+        """The fields in a direction, where they depend on it."""
+        fields: Any = self.fields
+        if isinstance(self.scene.indenter, Shape) and hasattr(fields, "along"):
+            fields = fields.along(angle)
+        return cast("Fields | None", fields)
 
     def inside(self, step: int = 0) -> Inside:
         """The body under one step: `.at(radius, depth)` and `.largest("von_mises")`.

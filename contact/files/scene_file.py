@@ -17,7 +17,6 @@ from contact.records.tables import read_bytes
 from contact.records.validation import Derived, Reading
 from contact.scene.effects import EFFECTS, Viscoelasticity
 from contact.scene.layer import Layer
-from contact.scene.profiles import PYRAMID_NOTE
 from contact.scene.scene import AnyScene, Scene
 
 
@@ -92,11 +91,6 @@ def _with_modulus(mapping: Mapping[str, Any], reading: Reading) -> Mapping[str, 
     ratio = layer.get("poissons_ratio")
     nu = ratio if isinstance(ratio, int | float) and 0 <= ratio <= 0.5 else 0.5
     return {**mapping, "layer": {**layer, "youngs_modulus": Derived(2 * (1 + nu) * shear)}}
-
-
-def scene_notes(path: str | Path) -> list[str]:
-    """Notes on the conversion of a scene file, such as of a pyramid to a cone."""
-    return [PYRAMID_NOTE] if _tables(Path(path)).get("indenter", {}).get("kind") == "pyramid" else []
 
 
 def uses_units(path: str | Path) -> bool:

@@ -35,10 +35,6 @@ if TYPE_CHECKING:
 
 # Half angles beyond these are no indenter: in radians, a needle and a plane.
 _NARROWEST, _WIDEST = 1e-3, math.pi / 2 - 1e-6
-PYRAMID_NOTE = (
-    "the pyramid is solved as the cone of equal cross-sections; on a half-space the force of the square pyramid is "
-    "4 % larger (0.7453 in place of 0.7183 E* tan(alpha) d^2, Bilodeau 1992)"
-)
 # A cubic spline needs four points; with fewer than twice as many there is nothing to average.
 _FEWEST_TO_SMOOTH = 8
 
@@ -94,7 +90,7 @@ class Profile(Record, ABC):
             """Radius [m] of the flat end; zero for a profile that starts in a point."""
 
 
-_Slope = Annotated[float, *positive("the slope is the tangent of the angle between flank and surface")]
+Slope = Annotated[float, *positive("the slope is the tangent of the angle between flank and surface")]
 
 
 class Sloped(Profile):
@@ -108,17 +104,12 @@ class Sloped(Profile):
     @model_validator(mode="before")
     @classmethod
     def _half_angle(cls, given: Any) -> Any:
-        """A table with slope = 1/tan(half angle).
-
-        A square pyramid with the half angle alpha of its faces has at each height the cross-section 4 z^2 tan(alpha)^2;
-        the cone of equal cross-sections, pi z^2/slope^2, has the slope sqrt(pi)/2/tan(alpha).
-        """
-        if not isinstance(given, Mapping) or not ("half_angle" in given or given.get("kind") == "pyramid"):
+        """A table with slope = 1/tan(half angle)."""
+        if not isinstance(given, Mapping) or "half_angle" not in given:
             return given
         if "slope" in given:
             raise refused(f"slope = {shown(given['slope'])}: follows from half_angle; drop one of the two")
-        if (written := given.get("half_angle")) is None:
-            raise refused('half_angle is missing; a pyramid needs it, as in half_angle = "35 deg"')
+        written = given["half_angle"]
         try:
             angle = in_si(written, "rad")
         except InvalidInput as error:
@@ -129,8 +120,7 @@ class Sloped(Profile):
         if not _NARROWEST <= angle <= _WIDEST:
             raise refused(f"half_angle = {shown(written)}: must lie between 0 and 90 degrees")
         rest = {name: value for name, value in given.items() if name not in ("half_angle", "kind")}
-        factor = math.sqrt(math.pi) / 2 if given.get("kind") == "pyramid" else 1.0
-        return rest | {"slope": factor / math.tan(angle)}
+        return rest | {"slope": 1.0 / math.tan(angle)}
 
 
 class Pointed(Profile):
@@ -224,9 +214,7 @@ class Cone(Sloped, Pointed):
         slope: tan(theta) [-], theta the angle between the cone's flank and the surface.
     """
 
-    SHORTHANDS: ClassVar[Mapping[str, Any]] = {**Sloped.SHORTHANDS, "kind": {"enum": ["cone", "pyramid"]}}
-
-    slope: _Slope
+    slope: Slope
 
     def height(self, radius: ArrayLike) -> FloatArray:
         return self.slope * np.asarray(radius, dtype=np.float64)
@@ -245,7 +233,7 @@ class Spheroconical(Sloped, Pointed):
     """
 
     radius: PositiveLength
-    slope: _Slope
+    slope: Slope
 
     def height(self, radius: ArrayLike) -> FloatArray:
         r, b = np.asarray(radius, dtype=np.float64), self.tangent_radius
@@ -289,7 +277,7 @@ class TruncatedCone(Sloped, Truncated):
         slope: tan(theta) [-].
     """
 
-    slope: _Slope
+    slope: Slope
 
     def height(self, radius: ArrayLike) -> FloatArray:
         return self.slope * np.maximum(np.asarray(radius, dtype=np.float64) - self.flat_radius, 0.0)

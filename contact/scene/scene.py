@@ -15,7 +15,8 @@ from contact.scene.effects import EFFECTS, Adhesion, Effect, Friction, Viscoelas
 from contact.scene.graded_layer import GradedLayer
 from contact.scene.layer import ElasticLayer, Layer, LayerStack
 from contact.scene.loading import LOADINGS, ContactRadii, Detachment, IndentationDepths, Loading, NormalForces
-from contact.scene.profiles import PROFILES, Cone, FlatPunch, Profile
+from contact.scene.profiles import PROFILES, FlatPunch, Profile
+from contact.scene.shapes import SHAPES, Shape
 
 # Two stated moduli may differ by this, relative: E = 2 (1 + nu) G is rounded to 1e-15, and typed numbers that agree
 # to fewer than nine digits are two different materials.
@@ -72,7 +73,7 @@ class Scene(Record, Generic[LoadingT_co, LayerT_co]):
             OneOf(LayerStack, GradedLayer, Layer, plain=Layer),
             AfterValidator(lambda layer: layer.simplest()),
         ]
-        indenter: Annotated[Profile, OneOf(*PROFILES, pyramid=Cone)]
+        indenter: Annotated[Profile, OneOf(*PROFILES, *SHAPES)]
         loading: Annotated[Loading, OneOf(*LOADINGS)]
         effects: Annotated[tuple[Annotated[Effect, OneOf(*EFFECTS)], ...], BeforeValidator(_listed)] = ()
     beyond_small_strains: Annotated[bool, BeforeValidator(_truth)] = False
@@ -119,6 +120,8 @@ def _check_effects(scene: AnyScene) -> None:
 
 def _check_radii(scene: AnyScene) -> None:
     if isinstance(scene.loading, ContactRadii):
+        if isinstance(scene.indenter, Shape):
+            raise ValueError("loading = ContactRadii: this contact is no circle; give depths or forces")
         if isinstance(scene.indenter, FlatPunch):
             raise ValueError("loading = ContactRadii: a flat punch's contact radius is its own; give depths or forces")
         _check_radius(scene, float(scene.loading.values[0]), "loading.values")

@@ -1,6 +1,6 @@
 """The force at one depth over the thickness of the gel."""
 
-from cases.measurements.sweep import sweep
+from cases.sweep import sweep
 from contact import IndentationDepths, load_scene
 from mdr import Mdr
 

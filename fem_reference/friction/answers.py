@@ -124,30 +124,27 @@ def rubbed_path(
         InvalidInput: the contact would reach the end of the profile.
     """
     values: FloatArray = scene.loading.values  # type: ignore[attr-defined]  # `Fem.supports` lets equilibria pass only
-    maker = StripMaker(scene, settings, log)
-    modulus, open_steps = contact_modulus(scene.layer), set(range(len(values)))
+    maker, modulus = StripMaker(scene, settings, log), contact_modulus(scene.layer)
     name = {ContactRadii: "radius", IndentationDepths: "depth", NormalForces: "force"}[type(scene.loading)]
-    scaled = values / (modulus if name == "force" else 1.0)
-    points: dict[int, tuple[dict[str, float], dict[str, float]]] = {}
-    blends: dict[int, Blend] = {}
-    meshes: list[str] = []
-    while open_steps:
-        contacts = maker.fitted(float(max(values[step] for step in open_steps)))
-        with log.stage("grow"):
-            growth = GrowthRecord.of(*contacts)
-        for step in _served(growth, name, scaled, open_steps):
-            numbers, errors = growth.numbers(name, scaled[step]), growth.errors(name, scaled[step])
-            fine, coarse = (Blend.at(strip, numbers["depth"], modulus) for strip in (growth.fine, growth.coarse))
-            checks = {**_traction_errors(fine, coarse), "base_force_defect": base_force_defect(fine)}
-            points[step], blends[step] = (numbers, {QUANTITIES[n]: e for n, e in errors.items()} | checks), fine
-        open_steps -= set(points)
-        meshes.append(contacts[0].surface.fingerprint)
-    found = {n: np.array([points[step][0][n] for step in range(len(values))]) for n in QUANTITIES}
+    numbers: list[dict[str, float]] = [{}] * len(values)
+    errors, blends, meshes, growth = numbers.copy(), {}, [], None
+    for step in np.argsort(-values):
+        value = float(values[step]) / (modulus if name == "force" else 1.0)
+        if growth is None or growth.fine.radius_of(name, value) < SERVED * growth.fine.radius[-1]:
+            contacts = maker.fitted(float(values[step]))
+            meshes.append(contacts[0].surface.fingerprint)
+            with log.stage("grow"):
+                growth = GrowthRecord.of(*contacts)
+        numbers[step], stated = growth.numbers(name, value), growth.errors(name, value)
+        fine, coarse = (Blend.at(strip, numbers[step]["depth"], modulus) for strip in (growth.fine, growth.coarse))
+        checks = {**_traction_errors(fine, coarse), "base_force_defect": base_force_defect(fine)}
+        errors[step], blends[step] = {QUANTITIES[n]: e for n, e in stated.items()} | checks, fine
+    found = {n: np.array([number[n] for number in numbers]) for n in QUANTITIES}
     return FrictionPath(
         scene=scene,
         method="fem",
         settings={**written, "mesh": ", ".join(meshes)},
-        error_estimate={n: np.array([points[step][1][n] for step in range(len(values))]) for n in points[0][1]},
+        error_estimate={n: np.array([error[n] for error in errors]) for n in errors[0]},
         cost=log.cost(unknowns=max(blend.contact.surface.unknowns for blend in blends.values())),
         stages=log.records,
         contact_radius=found["radius"],
@@ -158,13 +155,6 @@ def rubbed_path(
         dissipated_energy=modulus * found["heat"],
         fields=RubbedFields(tuple(blends[step] for step in range(len(values)))),
     )
-
-
-def _served(growth: GrowthRecord, name: str, values: FloatArray, open_steps: set[int]) -> list[int]:
-    """Steps that these strips serve: the largest, and those of more than `SERVED` of its radius."""
-    fine, largest = growth.fine, max(open_steps, key=lambda step: float(values[step]))
-    radii = np.interp(values, getattr(fine, name), fine.radius)
-    return [step for step in open_steps if step == largest or radii[step] >= SERVED * fine.radius[-1]]
 
 
 def _traction_errors(fine: Blend, coarse: Blend) -> dict[str, float]:

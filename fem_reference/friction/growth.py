@@ -14,13 +14,13 @@ from functools import cached_property
 import numpy as np
 from scipy.optimize import brentq
 
-from contact import Friction, IndentationDepths, InvalidInput, NormalForces, NotConvergedError, Profile, Scene, StageLog
+from contact import ContactRadii, Friction, InvalidInput, NormalForces, NotConvergedError, Profile, Scene, StageLog
 from contact.records.validation import FloatArray
-from contact.scene.extent import first_radius
 from contact.stated import SAFETY
+from fem_reference.equilibria import searched_radius
 from fem_reference.friction.step import RubbedContact, RubbedState, grown, stick_radius
 from fem_reference.materials import contact_modulus
-from fem_reference.profiles import height, shape
+from fem_reference.profiles import shape
 from fem_reference.settings import Discretisation
 from fem_reference.stated import LEAST_SHARE
 from fem_reference.surface import RUBBED_STRIDE, STRIP_CELLS, condense, strip_section
@@ -31,8 +31,6 @@ FILLED = 0.9
 FEWEST_CELLS, MOST_CELLS = 20, 480
 # Share of a profile whose heights are used: at its very end a sphere's slope has no bound.
 INSIDE = 0.999
-# Strips that are tried, each half as long again, before no contact counts as found.
-MOST_STRIPS = 12
 # Growth of the cells away from a strip of STRIP_CELLS cells, and growth of the settings that make so many.
 AWAY, USUAL_GROWTH = 0.5, 0.5
 # A touching node lies this share of a cell inside the contact's edge where the edge slides.
@@ -93,34 +91,15 @@ class StripMaker:
         Raises:
             InvalidInput: the contact would reach the end of the profile.
         """
-        cells, reach = self.cells, self._contact_radius(largest)
-        if reach > self.scene.indenter.max_radius:
-            raise self._beyond
-        return self.contact(reach / FILLED, cells), self.contact(reach / FILLED, cells // 2)
-
-    def _contact_radius(self, largest: float) -> float:
-        """Radius a [m], to a cell: a prescribed one, or that of a contact grown on strips until it carries the load."""
-        name = {IndentationDepths: "depth", NormalForces: "force"}.get(type(self.scene.loading))
-        if name is None:
-            return largest
-        profile, modulus = self.scene.indenter, contact_modulus(self.scene.layer)
-        by_depth, target = name == "depth", largest if name == "depth" else largest / modulus
-        radius = 1.2 * first_radius(profile, lambda r: height(profile, r) * (1.0 if by_depth else 4.0 * r) >= target)
-        for _ in range(MOST_STRIPS):
-            contact = self.contact(radius, self.cells // 2)
-            unit = radius if by_depth else modulus * radius**2
-            loads: FloatArray = np.array([getattr(state, name) for state in grown(contact)]) * unit
-            if loads[-1] >= largest:
-                return radius * float(np.interp(largest, loads, contact.surface.radii[1 : len(loads) + 1]))
-            if radius > 2.0 * profile.max_radius:
-                break
-            radius *= 1.5
-        raise self._beyond
-
-    @property
-    def _beyond(self) -> InvalidInput:
-        end = self.scene.indenter.max_radius
-        return InvalidInput(f"contact reaches the end of the profile at {end:g} m; press less")
+        reach, scene = largest, self.scene
+        end = scene.indenter.max_radius
+        if not isinstance(scene.loading, ContactRadii):
+            # Friction changes the radius at a load by a few per cent, and makes it smaller.
+            unit = contact_modulus(scene.layer) if isinstance(scene.loading, NormalForces) else 1.0
+            reach, end = searched_radius(scene.replace(effects=()), self.log, largest / unit), INSIDE * end
+        if reach > end:
+            raise InvalidInput(f"contact reaches the end of the profile at {scene.indenter.max_radius:g} m; press less")
+        return self.contact(reach / FILLED, self.cells), self.contact(reach / FILLED, self.cells // 2)
 
 
 def _heights(profile: Profile, radius: FloatArray) -> FloatArray:
@@ -160,6 +139,10 @@ class Growing:
         radii, touching = self.contact.surface.radii, self.contact.surface.radii[1 : len(self.states) + 1]
         share = EDGE_SHARE - np.where(self.stick == 1.0, self.less_by_stick, 0.0)
         return np.asarray(self.contact.radius * (touching + share * radii[1]))
+
+    def radius_of(self, name: str, value: float) -> float:
+        """Contact radius [m] at a radius, depth or force, to a cell."""
+        return float(np.interp(value, getattr(self, name), self.radius))
 
     @property
     def less_by_stick(self) -> float:

@@ -59,7 +59,7 @@ class CurveFit:
         time: [s], shape (n,), of histories; else empty.
         response: What was fitted, "force" or "depth".
         input_error: Standard uncertainty of each parameter by uncertain numbers of the scene, where they were asked
-            for (`cases.measurements.uncertain_fit`).
+            for (`cases.uncertain_fit`).
         formulas: The same curve fitted by formulas in use.
     """
 

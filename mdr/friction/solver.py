@@ -6,6 +6,7 @@ Errors: what a coarser discretisation changes (`contact.stated`), and rounding t
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -22,6 +23,7 @@ from contact import (
     FlatPunch,
     IndentationDepths,
     InvalidInput,
+    NormalForces,
     NotConvergedError,
     Scene,
     StageLog,
@@ -43,6 +45,7 @@ _FURTHER = 1.3
 _OF_GROWTH, _OF_PUNCH, _PER_CONDITION = 50.0, 20.0, 10.0
 # Largest relative error of depth and force that is answered; beyond, the growth is refused.
 _LARGEST_ERROR = 1e-3
+_PRESCRIBED = {ContactRadii: "radius", IndentationDepths: "depth", NormalForces: "force"}
 
 
 def solve_stick(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[str, Setting]) -> ContactPath:
@@ -99,20 +102,39 @@ def _values(scene: Scene) -> FloatArray:
 
 
 @dataclass(frozen=True)
-class _Punch:
-    """An adhered flat punch: its states and its surface fields at every step.
+class _Stuck(ABC):
+    """States of a stuck contact, and its surface fields at every step.
+
+    Attributes:
+        state: Equilibria.
+        modulus: E* [Pa].
+    """
+
+    state: State
+    modulus: float
+
+    def pressure(self, radius: FloatArray, step: int) -> FloatArray:
+        """p(r) [Pa], zero outside."""
+        return np.asarray(self._tractions(radius, step)[0])
+
+    def tangential_traction(self, radius: FloatArray, step: int) -> FloatArray:
+        """q(r) [Pa], positive where the layer is pushed outward, zero outside."""
+        return np.asarray(self._tractions(radius, step)[1])
+
+    @abstractmethod
+    def _tractions(self, radius: FloatArray, step: int) -> FloatArray:
+        """p and q [Pa], shape (2, n)."""
+
+
+@dataclass(frozen=True)
+class _Punch(_Stuck):
+    """An adhered flat punch.
 
     Attributes:
         punch: Under a depth of one, lengths in units of the kernel.
-        radius: a [m].
-        modulus: E* [Pa].
-        state: Equilibria.
     """
 
     punch: Adhered
-    radius: float
-    modulus: float
-    state: State
 
     @classmethod
     def of(cls, scene: Scene, extra: int) -> _Punch:
@@ -124,7 +146,7 @@ class _Punch:
         by_depth, same = isinstance(scene.loading, IndentationDepths), np.ones_like(values)
         depth = values if by_depth else values / stiffness
         force = stiffness * values if by_depth else values
-        return cls(punch, a, modulus, State(a * same, depth, force, stiffness * same))
+        return cls(State(a * same, depth, force, stiffness * same), modulus, punch)
 
     @property
     def floor(self) -> float:
@@ -136,43 +158,29 @@ class _Punch:
         """Of the system."""
         return self.punch.count
 
-    def pressure(self, radius: FloatArray, step: int) -> FloatArray:
-        """p(r) [Pa], zero outside."""
-        return np.asarray(self._tractions(radius, step)[0])
-
-    def tangential_traction(self, radius: FloatArray, step: int) -> FloatArray:
-        """q(r) [Pa], positive where the layer is pushed outward, zero outside."""
-        return np.asarray(self._tractions(radius, step)[1])
-
     def _tractions(self, radius: FloatArray, step: int) -> FloatArray:
-        s, found = radius / self.radius, np.zeros((2, radius.size))
-        size = self.modulus * self.state.depth[step] * self.punch.a / self.radius
+        a, found = self.state.radius[step], np.zeros((2, radius.size))
+        s, size = radius / a, self.modulus * self.state.depth[step] * self.punch.a / a
         found[:, s < 1] = size * self.punch.tractions(s[s < 1])
         return found
 
     def surface_displacement(self, radius: FloatArray, step: int) -> FloatArray:
         """w(r) [m]."""
-        found, beside = np.ones_like(radius), radius > self.radius
-        if beside.any():
-            found[beside] = self.punch.displacement(radius[beside] / self.radius)
+        found, s = np.ones_like(radius), radius / self.state.radius[step]
+        if (s > 1).any():
+            found[s > 1] = self.punch.displacement(s[s > 1])
         return np.asarray(self.state.depth[step] * found)
 
 
 @dataclass(frozen=True)
-class _Grown:
-    """Contact that has grown under full stick: its states and its surface fields at every step.
+class _Grown(_Stuck):
+    """Contact that has grown under full stick.
 
     Attributes:
         growth: Lengths in units of the kernel.
-        tip: The profile.
-        modulus: E* [Pa].
-        state: Equilibria.
     """
 
     growth: Growth
-    tip: Tip
-    modulus: float
-    state: State
 
     @classmethod
     def of(cls, scene: Scene, extra: int) -> _Grown:
@@ -188,13 +196,8 @@ class _Grown:
         modulus, unit, values = contact_modulus(scene.layer), growth.unit, _values(scene)
         depth, force, stiffness = growth.states(radii)
         state = State(radii * unit, depth * unit, force * modulus * unit**2, stiffness * modulus * unit)
-        if isinstance(scene.loading, ContactRadii):
-            state = state._replace(radius=values)
-        elif isinstance(scene.loading, IndentationDepths):
-            state = state._replace(depth=values)
-        else:
-            state = state._replace(force=values)
-        return cls(growth, tip_of(scene.indenter), modulus, state)
+        state = state._replace(**{_PRESCRIBED[type(scene.loading)]: values})
+        return cls(state, modulus, growth)
 
     @property
     def floor(self) -> float:
@@ -209,14 +212,6 @@ class _Grown:
     def _radius(self, step: int) -> float:
         return float(self.state.radius[step]) / self.growth.unit
 
-    def pressure(self, radius: FloatArray, step: int) -> FloatArray:
-        """p(r) [Pa], zero outside."""
-        return np.asarray(self._tractions(radius, step)[0])
-
-    def tangential_traction(self, radius: FloatArray, step: int) -> FloatArray:
-        """q(r) [Pa], positive where the layer is pushed outward, zero outside."""
-        return np.asarray(self._tractions(radius, step)[1])
-
     def _tractions(self, radius: FloatArray, step: int) -> FloatArray:
         r, a, found = radius / self.growth.unit, self._radius(step), np.zeros((2, radius.size))
         found[:, r < a] = self.modulus * self.growth.tractions(r[r < a], a)
@@ -226,7 +221,7 @@ class _Grown:
         """w(r) [m]: the indenter's shape inside, Eq. (1)."""
         r, a = radius / self.growth.unit, self._radius(step)
         inside = r <= a
-        found = self.state.depth[step] - self.tip.height(np.where(inside, radius, 0.0))
+        found = self.state.depth[step] - self.growth.tip.height(np.where(inside, radius, 0.0))
         if not inside.all():
             found[~inside] = self.growth.unit * self.growth.displacement(r[~inside], a)
         return np.asarray(found)

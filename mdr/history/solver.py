@@ -29,13 +29,13 @@ from contact import (
 from contact.answer.solution import Setting
 from contact.records.validation import FloatArray
 from contact.stated import stated_error
-from mdr.dispatch import DEFAULT_ACCURACY
 from mdr.equilibria import is_simple, refuse_inadmissible, springs_on
 from mdr.history.force_control import March, Steps, never_larger, resting_depth, steps_of
 from mdr.history.fronts import fronts, layout, panel_ends, refuse_open_inside
 from mdr.history.inside import HistoryFields
 from mdr.history.spring_bed import Path, followed
 from mdr.history.spring_law import SpringLaw
+from mdr.method import DEFAULT_ACCURACY
 from mdr.radius_search import Quantity, RadiusSearch, refuse_too_wide
 from mdr.spring_bed import Springs
 

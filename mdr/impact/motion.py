@@ -29,8 +29,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contact.records.validation import FloatArray, IntArray
+from mdr.impact.beds import Track
 from mdr.impact.rules import Rule, interpolated
-from mdr.impact.track import Track
 
 # Sweeps of Newton's method; five are usual.
 _SWEEPS = 60

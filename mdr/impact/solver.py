@@ -19,10 +19,11 @@ from contact.answer.solution import Setting
 from mdr.equilibria import is_simple, refuse_inadmissible, springs_on
 from mdr.impact.history import history
 from mdr.impact.results import OUTCOMES, Blow, ImpactResults, blow_of, in_si, solved, time_power
+from mdr.method import DEFAULT_ACCURACY
 from mdr.radius_search import RadiusSearch
 
 # Accuracies that may be asked for: a coarser one is no impact any more, a finer one is below rounding.
-_LEAST_ACCURACY, _BEST_ACCURACY, _DEFAULT_ACCURACY = 1e-4, 1e-13, 1e-9
+_LEAST_ACCURACY, _BEST_ACCURACY = 1e-4, 1e-13
 # Impacts solved together: enough to hide the interpreter, few enough for the cache.
 CHUNK = 64
 # Contacts of a motion at which pressures are looked at, up to its largest.
@@ -44,8 +45,8 @@ def solve_impact(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[st
         InvalidInput: If it is pressed in beyond its rim.
         UnsupportedSceneError: If it would touch outside its largest circle of contact, or pull inside.
     """
-    log, known = StageLog(), {"accuracy": _DEFAULT_ACCURACY, **settings}
-    accuracy = _checked(float(known["accuracy"] or _DEFAULT_ACCURACY))
+    log, known = StageLog(), {"accuracy": DEFAULT_ACCURACY, **settings}
+    accuracy = _checked(float(known["accuracy"] or DEFAULT_ACCURACY))
     with log.stage("equivalent_system"):
         blow, sizes = blow_of(scene, flat_punch), flat_punch.sizes
     with log.stage("impact"):
@@ -58,7 +59,7 @@ def impact_batch(
     scenes: Sequence[Scene],
     flat_punch: FlatPunchSource,
     *,
-    accuracy: float = _DEFAULT_ACCURACY,
+    accuracy: float = DEFAULT_ACCURACY,
     progress: Progress | None = None,
 ) -> ImpactResults:
     """Many impacts, those with one kind of tip and the same number of relaxation times together.

@@ -16,11 +16,11 @@ from cases.gate.accept import (
     propose,
     refusals,
     refusals_beforehand,
+    write_conditions,
 )
 from cases.gate.baseline import read_baselines, relative_tolerance
 from cases.gate.gate import gate
 from cases.gate.spread import measured_spreads
-from cases.gate.write_permission import write_conditions
 from cases.run.lock import locked
 from cases.run.stamp import repository
 from cases.runs import Run, read_run, write_run
@@ -100,31 +100,29 @@ def accept_cases(names: list[str], request: AcceptRequest) -> None:
     solved_by = {answer.method for answer in run.answers}
     library = {name: with_registered(case, solved_by) for name, case in load_cases().items()}
     ran = [case.name for case in run.judged.cases]
-    # Stress tests are accepted with their study; the code verification has no accepted numbers.
-    studies = [name for name in ran if name not in library and any(t.case == name for t in run.judged.stress_tests)]
+    # The code verification has no accepted numbers.
+    watched = {answer.case for answer in run.answers if not answer.variant}
+    watched |= {test.case for test in run.judged.stress_tests}
     refused: list[str] = []
-    for name in names or [name for name in ran if name in library or name in studies]:
+    for name in names or [name for name in ran if name in library and name in watched]:
         if name not in ran:
             raise InvalidInput(f"the run in {request.run} does not have {name}; run it first")
         try:
-            _accept(name, select(library, names=[name])[0] if name not in studies else None, run, request)
+            _accept(select(library, names=[name])[0], run, request)
         except InvalidInput as error:
             refused.append(str(error))
     if refused:
         raise InvalidInput("\n".join(refused))
 
 
-def _accept(name: str, case: Case | None, run: Run, request: AcceptRequest) -> None:
-    """Accept a case, or a study of stress tests, which has no case."""
-    now, terminal = write_conditions(repository(), request.baselines), console()
+def _accept(case: Case, run: Run, request: AcceptRequest) -> None:
+    """Accept a case; one without scenes, such as the stress tests, need not be part of a suite's runs."""
+    name, now, terminal = case.name, write_conditions(repository(), request.baselines), console()
     if reasons_against := refusals_beforehand(name, run, now):
         raise InvalidInput(f"{name} is not accepted: {'; '.join(reasons_against)}")
-    watched, spreads = run, dict[tuple[str, str, str], float]()
-    suites: tuple[str, ...] = ()
-    if case is not None:
-        terminal.print(f"{name}: repeating every solution with inputs one unit in the last place away ...")
-        watched, suites = _watched(case, run), case.suites
-        spreads = dict(measured_spreads(case, watched.answers, jobs=request.jobs))
+    terminal.print(f"{name}: repeating every solution with inputs one unit in the last place away ...")
+    watched, suites = _watched(case, run), case.suites if case.scenes else ()
+    spreads = measured_spreads(case, watched.answers, jobs=request.jobs)
     before = accepted_before(request.baselines, name)
     proposal = propose(watched, name, suites=suites, before=before, spreads=spreads, reason=request.reason)
     show_table(change_table(proposal), on=terminal)

@@ -7,9 +7,9 @@ from typing import Any, Literal
 import numpy as np
 
 from cases.declare.uncertain_inputs import read_inputs
-from cases.measurements.uncertain_fit import fit_uncertain
+from cases.uncertain_fit import fit_uncertain
 from contact import Adhesion, InvalidInput, Scene, load_scene
-from contact.files.scene_file import scene_notes, uses_units
+from contact.files.scene_file import uses_units
 from contact.records.units import read_quantity
 from contact.scene.effects import Viscoelasticity
 from mdr.curves import Limit, fit_curve, fit_history, fit_map
@@ -83,7 +83,7 @@ def fit_file(
         show_table(table, on=console())
     facts = [("R^2 in contact", f"{found.r_squared:.6f}")]
     facts += [("numerical error", f"{small(found.numerical_error)} of E, in its interval")]
-    facts += [("note", line) for line in (*found.notes, *curve.notes, *scene_notes(scene_file))]
+    facts += [("note", line) for line in (*found.notes, *curve.notes)]
     show_facts(facts, on=console())
     write_outputs(
         outputs,

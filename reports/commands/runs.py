@@ -8,19 +8,17 @@ from pathlib import Path
 from rich.padding import Padding
 from rich.text import Text
 
-from cases.case import USUAL_SUITES, Case
+from cases.case import Case
 from cases.declare.methods import check_known, registered
 from cases.declare.registry import load_cases, select
 from cases.declare.settings import Settings, ladder, read_settings, with_settings
 from cases.files import write_whole
 from cases.foreign import against, beside, with_registered
-from cases.measurements.ladders.ladder_study import CLIMBERS, chosen, ladder_case
-from cases.measurements.ladders.ladder_table import LADDERS
-from cases.measurements.suites import SuiteStudies, run_of
 from cases.run.executors import by_name
 from cases.run.lock import locked
 from cases.run.runner import RunOptions, plan, run_cases
 from cases.runs import Run, read_run
+from cases.stress import summary
 from cases.verdicts import ExitCode, Status, exit_code
 from contact import InvalidInput
 from contact.records.extras import missing_extra
@@ -63,9 +61,9 @@ def run(asked: Asked, options: RunOptions, *, executor: str, quiet: bool, strict
     cases = [with_settings(case, settings) for case in _cases(asked, options.suite)]
     chosen = tuple(dict.fromkeys((*methods, *asked.others)))
     options = dataclasses.replace(options, methods=chosen, executor=by_name(executor))
-    studied = options.suite in USUAL_SUITES and not asked.names and not methods
     with locked(options.out):
-        found = _carried_out(cases, options, studied, quiet=quiet)
+        with RunDisplay(console(), quiet=quiet) as display:
+            found = run_cases(cases, dataclasses.replace(options, progress=display))
         write_pages(found, options.out)
     show_verdict(found, page_of(options.out), quiet=quiet)
     if not found.judged.complete:
@@ -86,16 +84,8 @@ def _cases(asked: Asked, suite: str) -> Sequence[Case]:
         return [beside(case, methods, REFEREE) for case in cases]
     # Of a suite those cases run that have one of the methods.
     solved = [case for case in cases if not methods or any(use.label in methods for use in case.methods)]
-    return [case.only_methods(methods) for case in ((not asked.names and solved) or cases)]
-
-
-def _carried_out(cases: Sequence[Case], options: RunOptions, studied: bool, *, quiet: bool) -> Run:
-    """Run cases and, if this is a whole suite, its studies."""
-    with SuiteStudies(options.suite, options.executor, options.jobs) as studies:
-        solved = studies.begin if studied else options.solved
-        with RunDisplay(console(), quiet=quiet) as display:
-            result = run_cases(cases, dataclasses.replace(options, progress=display, solved=solved))
-        return studies.join(result, options.out) if studied and result.judged.complete else result
+    chosen = [case.only_methods(methods) for case in ((not asked.names and solved) or cases)]
+    return [case for case in chosen if asked.names or next(case.tasks(), None) is not None]
 
 
 def show_verdict(run: Run, page: Path, *, quiet: bool) -> None:
@@ -167,7 +157,7 @@ def cost(names: list[str], options: RunOptions, *, methods: list[str], settings:
         check_known(method)
     chosen = select(load_cases(), names=names, suite=options.suite)
     asked = read_settings(settings, methods)
-    timed = [case for case in (_of_methods(case, methods, asked) for case in chosen) if case.work]
+    timed = [case for case in (_of_methods(case, methods, asked) for case in chosen) if case.costs]
     if methods and not timed:
         raise InvalidInput(f"{', '.join(case.name for case in chosen)}: nothing times {' or '.join(methods)} there")
     options = dataclasses.replace(options, methods=tuple(methods))
@@ -188,22 +178,31 @@ def _of_methods(case: Case, methods: list[str], settings: Settings) -> Case:
     if not methods:
         return case
     rungs = [rung for name in registered() if name in methods for rung in ladder(name, settings.get(name, {}))]
-    studies = (study.of_methods(methods, rungs) for study in case.work)
-    return dataclasses.replace(case, work=tuple(study for study in studies if study.ladder))
+    studies = (study.of_methods(methods, rungs) for study in case.costs)
+    return dataclasses.replace(case, claims=tuple(study for study in studies if study.ladder), restricted=True)
 
 
 def stress(names: list[str], methods: list[str], options: RunOptions, *, quiet: bool) -> int:
-    """Carry out stress tests (all if none is named) by these methods, MDR if none is named; 1 if one failed."""
-    plans, climbers = chosen(LADDERS, names), {name: CLIMBERS.get(name, {}) for name in methods or ["mdr"]}
+    """Carry out stress tests (all if none is named) by these methods, MDR if none is named; 1 if one failed.
+
+    Raises:
+        InvalidInput: if no test has such a name.
+    """
+    case = load_cases()["stability"].only_methods(methods or ["mdr"])
+    chosen = tuple(test for test in case.claims if not names or any(name in test.name for name in names))
+    if not chosen:
+        raise InvalidInput(f"no stress test {names[0]!r}; there are {', '.join(test.name for test in case.claims)}")
     terminal = console()
-
-    def say(line: str) -> None:
-        if not quiet:
-            terminal.print(line, soft_wrap=True)
-
     with locked(options.out):
-        result = run_of([ladder_case(plans, climbers, progress=say)], options.out)
+        with RunDisplay(terminal, quiet=quiet) as display:
+            result = run_cases(
+                [dataclasses.replace(case, claims=chosen)], dataclasses.replace(options, progress=display)
+            )
         write_pages(result, options.out)
+    for test in result.judged.stress_tests:
+        stopped = (step for step in test.steps if step.status is not Status.PASS)
+        refusals = (f"  {test.parameter} = {step.value:g}: {step.status}: {step.reason}" for step in stopped)
+        terminal.print("\n".join((summary(test), *refusals)), soft_wrap=True)
     terminal.print(f"report: {page_of(options.out)}")
     return exit_code(result.statuses)
 

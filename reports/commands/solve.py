@@ -22,7 +22,7 @@ from contact import (
 )
 from contact.answer.accuracy import shortfalls, told_where_less
 from contact.answer.small_strains import depth_note, depth_share, depths_of
-from contact.files.scene_file import scene_notes, uses_units
+from contact.files.scene_file import uses_units
 from reports.answer import (
     critical_facts,
     difference_table,
@@ -123,7 +123,7 @@ def _answer(scene: Scene, scene_file: Path, request: Request) -> Solution:
     """Solve, with methods from cheap to fine where an accuracy is asked for and no method."""
     facts: list[tuple[str, str]] = []
     if request.accuracy is not None and not request.method:
-        from cases.measurements.accuracy import solve as solve_to_accuracy  # noqa: PLC0415 - where it is asked for
+        from cases.accuracy import solve as solve_to_accuracy  # noqa: PLC0415 - where it is asked for
 
         found = solve_to_accuracy(scene, accuracy=request.accuracy, pressure_accuracy=request.pressure_accuracy)
         solution: Solution = found.answer
@@ -152,9 +152,9 @@ def _show_answer(solution: Solution) -> None:
 
 def _notes(scene_file: Path, solution: Solution) -> list[tuple[str, str]]:
     """How the file was read, what smoothing a tip changes, and where the theory is valid."""
-    from cases.measurements.advice import validity_lines  # noqa: PLC0415 - MDR only where it is asked for
+    from cases.advice import validity_lines  # noqa: PLC0415 - MDR only where it is asked for
 
-    lines = scene_notes(scene_file)
+    lines: list[str] = []
     indenter = solution.scene.indenter
     if isinstance(indenter, Tabulated) and indenter.smoothing and isinstance(solution, ContactPath):
         moved = float(solution.contact_stiffness.max()) * indenter.smoothing
@@ -193,7 +193,7 @@ def _uncertain(scene: Scene, scene_file: Path, request: Request) -> Solution:
 
 def _advise(scene: Scene, request: Request) -> None:
     """Print which effects, and whether the finite thickness, change the answer by more than the accuracy."""
-    from cases.measurements.advice import advise  # noqa: PLC0415 - only where it is asked for
+    from cases.advice import advise  # noqa: PLC0415 - only where it is asked for
 
     method = build_guarded(request.method or "mdr", {})
     for line in advise(method, scene, request.accuracy or ADVISED_AT).lines:
@@ -206,7 +206,7 @@ def _sweep(scene: Scene, scene_file: Path, request: Request, progress: Callable[
     Raises:
         InvalidInput: if every value is refused.
     """
-    from cases.measurements.sweep import read_range, sweep  # noqa: PLC0415 - only where it is asked for
+    from cases.sweep import read_range, sweep  # noqa: PLC0415 - only where it is asked for
 
     swept = read_range(request.over, scene, with_units=uses_units(scene_file))
     found = sweep(scene, swept, request.solver(), progress)

@@ -26,7 +26,7 @@ def loaded_after(code):
 def test_an_elastic_mdr_answer_loads_lapack_alone_and_no_other_method():
     loaded = loaded_after("from mdr import Mdr; Mdr().solve(scene)")
     assert {name for name in loaded if name.partition(".")[0] == "scipy"} == {LAPACK, "scipy.special._special_ufuncs"}
-    assert not loaded & {*FAR, "bem.method", "bem.grid.operators", "mdr.impact", "mdr.adhesive_branch"}
+    assert not loaded & {*FAR, "bem.method", "bem.grid.operators", "mdr.impact", "mdr.adhesive"}
 
 
 @pytest.mark.parametrize("indenter", ["Cone(slope=0.1)", "TruncatedCone(flat_radius=5e-4, slope=0.1)"])

@@ -55,7 +55,7 @@ def solved(method, scene, settings="{}"):
 
 
 IN_TIME = ("mdr.history", "mdr.impact", "fem_reference.memory", "fem_reference.motions")
-ADHESION = ("mdr.adhesive", "mdr.detachment", "fem_reference.adhesion", "fem_reference.detachment")
+ADHESION = ("mdr.adhesive", "mdr.detachment", "fem_reference.adhesion", "fem_reference.adhesion")
 FRICTION = ("mdr.friction", "fem_reference.friction")
 EFFECT_ROOMS = (*IN_TIME, *ADHESION, *FRICTION)
 

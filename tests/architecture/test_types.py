@@ -31,6 +31,7 @@ def test_the_typed_inputs_are_accepted_at_run_time():
     assert names["MEASURED"].radii.tolist() == [0.0, 1.0, 2.0]
 
 
+@pytest.mark.slow
 def test_an_answer_to_a_scene_from_a_file_passes_a_users_strict_type_check(tmp_path):
     script = tmp_path / "user.py"
     script.write_text(

@@ -73,12 +73,6 @@ def test_complex_wavenumbers_continue_the_real_ones():
     assert across == pytest.approx(along, rel=1e-6, abs=0.0)
 
 
-def test_long_waves_press_uniaxially():
-    strain = (1 - 1 / 4) / np.log(4.0)
-    expected = strain * (1 - 2 * 0.3) / (2 * (1 - 0.3) ** 2)
-    assert GradedKernel(EXPONENTIAL).chi(np.array([1e-7]))[0] / 1e-7 == pytest.approx(expected, rel=1e-5, abs=0.0)
-
-
 def test_tables_are_integrated_between_their_points():
     """Steps across them lost 2.6e-10 of chi = 1e-4 here, and were six times as many."""
     nu = TabulatedDepth(depths=[0.0, 0.5, 1.0], values=[0.3, 0.45, 0.5])
@@ -89,11 +83,3 @@ def test_tables_are_integrated_between_their_points():
         patch.setattr("bem.kernels.graded.TOLERANCE", 3e-14)
         patch.setattr("bem.kernels.graded.ABSOLUTE", 1e-15)
         np.testing.assert_allclose(found, surface_kernel(layer).chi(k), rtol=2e-11, atol=0)
-
-
-@pytest.mark.parametrize("thickness", [0.37e-3, 4711.3, 206.1, 61.3 / 0.3, 17.7])
-def test_a_layer_in_other_units_has_the_same_kernel(thickness):
-    """It was made anew for every radius of a punch on cells, and in some units a table ended above the base."""
-    table = TabulatedDepth(depths=[0.0, 0.3, 0.6, 1.0], values=[1.0, 3.0, 2.0, 5.0])
-    layer = GradedLayer(thickness=1.0, youngs_modulus=table, poissons_ratio=0.3, support=BASE)
-    assert surface_kernel(layer) == surface_kernel(layer.in_own_units().stretched(thickness))

@@ -9,7 +9,7 @@ from bem.kernels.of_layer import surface_kernel
 from bem.kernels.stack import Sheet, StackKernel
 from contact import ElasticBase, Layer, LayerStack, Sublayer
 from tests.bem.stack_in_extended_precision import chi as exact_chi
-from tests.layer_kernel import compliance_kernel, one_minus_kernel
+from tests.layer_kernel import compliance_kernel
 
 
 def random_stack(draw):
@@ -57,25 +57,6 @@ def test_a_thousand_random_stacks_against_extended_precision():
     assert worst_error(1000, 7) < 1e-12
 
 
-@pytest.mark.parametrize("support", ["bonded", "unbonded"])
-@pytest.mark.parametrize("nu", [0.0, 0.3, 0.4999, 0.5])
-def test_one_layer_is_the_kernel_of_a_single_layer(support, nu):
-    q = np.geomspace(1e-6, 1e3, 200)
-    one = kernel([(1.0, 1.0, nu, support == "unbonded")])
-    np.testing.assert_allclose(one.chi(q), compliance_kernel(q, support, nu), rtol=4e-15)
-    exact = one_minus_kernel(q, support, nu)
-    np.testing.assert_allclose(one.one_minus_chi(q), exact, rtol=1e-13, atol=1e-15)
-
-
-@pytest.mark.parametrize("nu", [0.0, 0.3, 0.5])
-def test_equal_layers_and_a_half_space_of_the_same_material_are_one_body(nu):
-    q = np.geomspace(1e-5, 1e2, 100)
-    cut = kernel([(0.2, 2.0, nu, False), (0.3, 2.0, nu, False), (0.5, 2.0, nu, False)])
-    np.testing.assert_allclose(cut.chi(0.2 * q), compliance_kernel(q, "bonded", nu), rtol=1e-13)
-    filled = kernel([(0.2, 2.0, nu, False)], (2.0, nu))
-    np.testing.assert_allclose(filled.chi(q), 1.0, rtol=1e-14)
-
-
 def long_waves(stack):
     """chi/k at k = 0 on a rigid base: uniaxial strain, and what groups of layers yield that slide sideways.
 
@@ -99,21 +80,6 @@ def test_the_limit_of_long_waves_is_the_closed_form(seed):
     k = 1e-7 / stack.longest
     found = float(stack.chi(np.array([k]))[0]) / k
     assert found == pytest.approx(long_waves(stack), rel=1e-9, abs=1e-9)
-
-
-def test_an_elastic_base_answers_long_waves_alone():
-    film = kernel([(1.0, 5.0, 0.3, False)], (2.0, 0.1))
-    expected = 5.0 / (1 - 0.3**2) / (2.0 / (1 - 0.1**2))
-    np.testing.assert_allclose(film.chi(np.array([1e-12])), expected, rtol=1e-9)
-
-
-def test_the_second_layer_fades_with_the_first_layers_thickness():
-    stack = kernel([(1.0, 1.0, 0.3, False), (1.0, 30.0, 0.2, False)])
-    q = np.linspace(3.0, 15.0, 13)
-    m, kappa1, kappa2 = (1.0 / 2.6) / (30.0 / 2.4), 3 - 4 * 0.3, 3 - 4 * 0.2
-    lam, kappa = 1 - 4 * (1 - 0.3) / (1 + m * kappa2), (m - 1) / (m + kappa1)
-    expected = -np.exp(-2 * q) * (lam + kappa * (1 + 2 * q) ** 2)
-    np.testing.assert_allclose(stack.one_minus_chi(q), expected, rtol=6e-2)
 
 
 def test_complex_wavenumbers_continue_the_real_ones():

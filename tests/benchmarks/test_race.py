@@ -7,7 +7,7 @@ import pytest
 
 from benchmarks import race as race_module
 from benchmarks.race import ROWS, Race, judge, main, raced, slowdown, worktree
-from cases.gate.write_permission import git
+from cases.gate.accept import git
 from cases.verdicts import Status
 from contact import InvalidInput
 

@@ -5,7 +5,7 @@ import dataclasses
 from cases.case import Case, CaseScene, Sampling
 from cases.claims import Agree, Equal, Law
 from cases.convergence import Order
-from cases.cost import WorkStudy
+from cases.cost import Cost
 from cases.declare.methods import MethodUse
 from cases.verdicts import Origin, Why
 from contact import ContactRadii, Layer, Paraboloid, Scene
@@ -74,15 +74,14 @@ def fake_case(*, fast=FAST, slow=SLOW, name="fake_hertz", ladder=None, work=Fals
         suites=("ci",),
         scenes=(case_scene(0.3), case_scene(0.5)),
         methods=(fast, slow),
-        claims=claims,
-        work=(cost_study(),) if work else (),
+        claims=(*claims, cost_study()) if work else claims,
     )
 
 
 def cost_study():
     ladder = tuple(MethodUse(label=f"cell {cell}", method="fake", settings={"cell": cell}) for cell in (1e-2, 1e-4))
     reference = MethodUse(label="reference", method="fake", settings={"stated": 1e-12})
-    return WorkStudy(scene="half-space nu=0.3", quantity="normal_force", ladder=ladder, reference=reference)
+    return Cost(name="cost", scene="half-space nu=0.3", quantity="normal_force", ladder=ladder, reference=reference)
 
 
 def spoiled(method_use, **settings):

@@ -6,13 +6,7 @@ import math
 import pytest
 
 from cases.answers import Table
-from cases.convergence import (
-    Order,
-    behaviour,
-    digits_per_refinement,
-    grid_convergence_index,
-    observed_order,
-)
+from cases.convergence import Order, behaviour, digits_per_refinement, grid_convergence_index, observed_order
 from cases.declare.methods import MethodUse
 from cases.run.solve_task import job_of, solve
 from cases.verdicts import Status
@@ -126,7 +120,7 @@ def order(**changes):
 def judged(claim, case):
     case = dataclasses.replace(case, claims=(claim,))
     answers = Table(solve(job_of(task)) for task in case.tasks())
-    return list(claim.judge(case, answers)), list(claim.studies(case, answers))
+    return list(claim.judge(case, answers)), list(claim.records(case, answers))
 
 
 @pytest.mark.parametrize("against", ["fast", MethodUse(label="finest", method="fake", settings={"stated": 1e-12})])

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from cases.accuracy import solve
 from cases.declare.methods import build
-from cases.measurements.accuracy import solve
 from contact import (
     ContactRadii,
     ExponentialDepth,
@@ -42,6 +42,7 @@ def test_friction_on_other_layers_is_refused(layer, names):
             method.solve(scene)
 
 
+@pytest.mark.slow
 def test_the_bound_of_friction_refuses_graded_layers():
     path = build("mdr", {}).solve(scene_of(LAYERS[1]))
     with pytest.raises(UnsupportedSceneError, match=r"under friction .* not a GradedLayer"):

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from cases.declare.methods import build
-from cases.measurements.ladders.units import Units, in_units
+from cases.units import Units, in_units
 from contact import (
     Adhesion,
     ContactRadii,
@@ -72,7 +72,12 @@ KINDS = {
     "fem": list(SCENES),
 }
 NOT_LONG = [kind for kind in SCENES if kind != "force history"]
-QUICK = {"fem": ("radii", "impact", "measured, depth history"), "mdr": NOT_LONG, "mdr_table": NOT_LONG}
+QUICK = {
+    "fem": ("radii", "impact"),
+    "bem": ("radii", "depths", "detachment"),
+    "mdr": NOT_LONG,
+    "mdr_table": ("radii", "depth history"),
+}
 COMBINATIONS = [
     pytest.param(method, kind, marks=() if kind in QUICK.get(method, kinds) else pytest.mark.slow)
     for method, kinds in KINDS.items()

@@ -96,7 +96,7 @@ def errors(answer, best):
     return max(found)
 
 
-SLOW = ("force history", "graded worn", "stick stack")
+SLOW = ("force history", "graded", "graded worn", "stick layer", "stick stack")
 
 
 @pytest.mark.parametrize("name", [pytest.param(n, marks=[pytest.mark.slow] * (n in SLOW)) for n in SCENES])

@@ -15,7 +15,7 @@ from threadpoolctl import threadpool_info, threadpool_limits
 from bem.direct_method import IntegralEquationMethod
 from bem.flat_punch import IntegralEquation
 from bem.method import Bem
-from cases.run.empty_caches import forget
+from cases.run.timing import forget
 from contact import ContactRadii, IndentationDepths, Layer, Paraboloid, Scene, TruncatedCone
 from contact.answer.one_thread import one_thread
 from fem_reference import Fem

@@ -69,8 +69,8 @@ MISTAKES = {
         "indenter.radius = 1e-05: no unit, but other numbers of this scene have one ('5 um')",
     ),
     "an unknown support": ('"bonded"', '"glued"', "layer.support = 'glued': Input should be 'bonded' or 'unbonded'"),
-    "an unknown indenter": ('"sphere"', '"ball"', "indenter.kind = 'ball': must be one of cone, flat_punch"),
-    "no kind": ('kind = "sphere"', "", "indenter.kind = None: must be one of cone, flat_punch"),
+    "an unknown indenter": ('"sphere"', '"ball"', "indenter.kind = 'ball': must be one of cone, "),
+    "no kind": ('kind = "sphere"', "", "indenter.kind = None: must be one of cone, "),
     "a field of another indenter": (
         "radius =",
         "radius_of_curvature =",

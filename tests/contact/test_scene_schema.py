@@ -12,6 +12,7 @@ from contact.files.scene_file import scene_schema
 from contact.scene.effects import EFFECTS
 from contact.scene.loading import LOADINGS
 from contact.scene.profiles import PROFILES
+from contact.scene.shapes import SHAPES
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 SCHEMA = scene_schema()
@@ -46,9 +47,9 @@ def resolved(part):
 
 
 def test_every_kind_is_offered_to_an_editor():
-    for name, kinds in (("indenter", PROFILES), ("loading", LOADINGS)):
+    for name, kinds in (("indenter", (*PROFILES, *SHAPES)), ("loading", LOADINGS)):
         offered = [resolved(part)["properties"]["kind"] for part in SCHEMA["properties"][name]["oneOf"]]
-        assert [kind.get("const", kind.get("enum", [""])[0]) for kind in offered] == [cls.kind() for cls in kinds]
+        assert [kind["const"] for kind in offered] == [cls.kind() for cls in kinds]
     assert len(SCHEMA["properties"]["effects"]["items"]["oneOf"]) == len(EFFECTS)
 
 

@@ -8,7 +8,7 @@ import jsonschema
 import numpy as np
 import pytest
 
-from cases.measurements.ladders.units import Units, in_units
+from cases.units import Units, in_units
 from contact import (
     ContactRadii,
     ElasticBase,

@@ -24,12 +24,10 @@ import sys
 sys.path.insert(0, {root!r})
 from cases.declare import methods
 methods.BUILT_IN["fake"] = methods.TableEntry(module="tests.cases.fake_method", attribute="FakeHertz")
-from cases.measurements import suites
 from reports.commands import baselines, runs
 from reports import page
-# Other tests look at pictures and at the studies of the suite, which take most of the time.
+# Other tests look at pictures, which take most of the time.
 page.svg_text = lambda drawing, key: "<svg></svg>"
-suites.QUICK = ()
 from tests.cases.fake_case import SLOW, fake_case, spoiled
 case = fake_case(slow=spoiled(SLOW, plant={plant!r}))
 runs.load_cases = baselines.load_cases = lambda: {{case.name: case}}
@@ -80,6 +78,7 @@ def test_recipe_writes_the_report_and_hands_on_the_exit_code(sound, broken_on_gi
         assert {"report.html", "summary.md", "junit.xml", "run.json", "answers.jsonl"} <= written
 
 
+@pytest.mark.slow
 def test_recipe_gates_where_numbers_are_accepted(tmp_path, sound):
     folder, done = sound
     assert done.returncode == 0

@@ -20,7 +20,11 @@ PAGES = sorted((ROOT / "docs").glob("*.md"))
 WRITTEN = ("book/", "generated/", "start/", "figures/")
 
 
-@pytest.mark.parametrize("path", TUTORIALS, ids=lambda path: path.stem)
+@pytest.mark.parametrize(
+    "path",
+    [pytest.param(path, marks=pytest.mark.slow if path.stem == "6_relaxation" else ()) for path in TUTORIALS],
+    ids=lambda path: path.stem,
+)
 def test_a_tutorial_runs(path, capsys, monkeypatch):
     monkeypatch.setattr(sys, "dont_write_bytecode", True)
     runpy.run_path(str(path), run_name="__main__")

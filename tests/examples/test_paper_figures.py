@@ -9,7 +9,7 @@ import pytest
 from docs.gallery import figure_03
 from docs.gallery._parts import layer, paper_figure, show
 
-NUMBERS = (3, 4, 5, 7, 8, 9, 11, 12)
+NUMBERS = (3, 4, 7, 9, 11, *(pytest.param(number, marks=pytest.mark.slow) for number in (5, 8, 12)))
 made = cache(paper_figure)
 
 

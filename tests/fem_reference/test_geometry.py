@@ -15,7 +15,7 @@ POINTS = ((0.5, 1e-3), (1.0, 1e-5))
 
 
 def layer_mesh(thickness, outer, points, growth=0.5, strip=0.0):
-    return section_mesh(uniform(0.3, thickness), outer, points, growth, strip)
+    return section_mesh(uniform(0.3, thickness), outer, points, growth, strip=strip)
 
 
 @pytest.fixture(scope="module")

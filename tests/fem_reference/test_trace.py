@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from contact import NotConvergedError
-from fem_reference.trace import TraceSpace
+from fem_reference.surface import TraceSpace
 
 RADII = np.concatenate([np.linspace(0, 0.4, 5), np.linspace(0.4, 1, 5)[1:]])  # two cells of degree four
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import itertools
 
-import mpmath
 import numpy as np
 import pytest
 
@@ -12,64 +11,12 @@ from contact.scene.effects import Relaxation
 from mdr.history.spring_bed import Path, SpringBed
 from mdr.history.spring_law import SpringLaw
 
-EPS = float(np.finfo(float).eps)
-# g_inf, eta, moduli, rates: liquids, twins of relaxation times, spectra over twelve decades, dashpots.
-SPECTRA = {
-    "one branch without long-term modulus": (0.0, 0.0, [1.0], [1.0]),
-    "liquid": (0.0, 0.0, [0.3, 0.6, 0.1], [1.0, 2.0, 7.0]),
-    "neighbouring numbers": (0.0, 0.0, [0.4, 0.6], [1.0, 1.0 + EPS]),
-    "twelve decades": (1e-9, 0.0, [0.5, 0.2, 0.3], [1.0, 1e6, 1e12]),
-    "hardly any modulus": (0.25, 0.0, [1e-14, 0.75, 1e-9], [1.0, 2.0, 3.0]),
-    "dashpot": (1.0, 0.3, [], []),
-    "dashpot and branches": (0.1, 1e-3, [0.4, 0.5], [1.0, 50.0]),
-}
-
-
-def modes(long_term, viscosity, weights, rates):
-    """Of a spring; a law has its times in decreasing order."""
-    return SpringLaw(long_term, viscosity, weights, 1 / rates).modes
-
 
 def advance(bed, start, end, time):
     """The bed after a linear way of the indenter."""
     bed = bed.copy()
     bed.along(Path.linear(np.array([0.0, time]), np.array([start, end])), 0)
     return bed
-
-
-def exactly(spectrum, surface, strains, time):
-    """u and u - q_j after a time, by an exponential of 80 digits."""
-    long_term, viscosity, weights, rates = spectrum
-    with mpmath.workdps(80):
-        g, d = [mpmath.mpf(w) for w in weights], [mpmath.mpf(r) for r in rates]
-        whole = mpmath.mpf(long_term) + mpmath.fsum(g)
-        q = [mpmath.mpf(surface) - mpmath.mpf(float(e)) for e in strains]
-        if viscosity > 0.0:
-            speed = [-whole / viscosity, *(w / viscosity for w in g)]
-            rows = [speed, *([d[i], *(-d[i] * (i == j) for j in range(len(g)))] for i in range(len(g)))]
-            u, *q = mpmath.expm(mpmath.matrix(rows) * time) * mpmath.matrix([mpmath.mpf(surface), *q])
-        else:
-            rows = [[d[i] * (g[j] / whole - (i == j)) for j in range(len(g))] for i in range(len(g))]
-            q = list(mpmath.expm(mpmath.matrix(rows) * time) * mpmath.matrix(q))
-            u = mpmath.fsum(w * stretch for w, stretch in zip(g, q, strict=True)) / whole
-        return np.array([float(u), *(float(u - stretch) for stretch in q)])
-
-
-@pytest.mark.parametrize("name", SPECTRA)
-def test_free_springs_creep_exactly(name):
-    """At first a defective zero eigenvalue was inverted: liquids pressed on surfaces that were not there."""
-    spectrum = SPECTRA[name]
-    long_term, viscosity, weights, rates = spectrum
-    found = modes(long_term, viscosity, np.array(weights), np.array(rates))
-    draw = np.random.default_rng(3)
-    for time in (1e-6, 0.01, 1.0, 30.0):
-        dashpots, surface = draw.uniform(0.0, 1.0, len(weights)), draw.uniform(0.2, 1.0)
-        if viscosity == 0.0:
-            surface = float(np.dot(weights, dashpots))
-        strains = surface - dashpots
-        faded = found.amplitudes(np.array([surface]), strains[:, None])[:, 0] * np.exp(-found.rates * time)
-        later = np.concatenate([[faded.sum()], found.strains @ faded])
-        np.testing.assert_allclose(later, exactly(spectrum, surface, strains, time), rtol=0.0, atol=1e-14)
 
 
 def random_law(draw):

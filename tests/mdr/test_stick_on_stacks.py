@@ -56,7 +56,7 @@ def scene_of(layer, loading, indenter=PARABOLOID, effects=STICK):
     return Scene(layer=layer, indenter=indenter, loading=loading, effects=effects)
 
 
-@pytest.mark.parametrize(("name", "ratio"), zip(STACKS, (0.3, 4.0, 0.3, 4.0, 0.3), strict=True))
+@pytest.mark.parametrize(("name", "ratio"), [*zip(STACKS, (0.3, 4.0, 0.3, 4.0, 0.3), strict=True)])
 def test_the_surface_below_a_punch_neither_sinks_unevenly_nor_slides(name, ratio, monkeypatch):
     """Then what the surface beside the punch leaves of its depth goes on analytically from the density below it."""
     punch, places = Adhered(stack_kernel(STACKS[name]), ratio, far=1.01), np.array([1.001, 1.003])

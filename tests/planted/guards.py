@@ -46,8 +46,6 @@ class Claims:
             scenes=tuple(dataclasses.replace(case.scene(name), nightly=()) for name in self.scenes),
             methods=tuple(use for use in case.methods if use.label in self.methods),
             claims=tuple(self._narrowed(claim) for claim in chosen),
-            work=(),
-            ablations=(),
         )
 
     def _narrowed(self, claim):

@@ -27,8 +27,8 @@ class Probe:
     def narrowed(self, case, methods, kinds):
         """The case with these scenes and the claims of some kinds that some methods answer."""
         left = case.only(lambda scene, use: scene.name in self.scenes and use.label in {*self.methods} & {*methods})
-        claims = tuple(claim for claim in left.claims if claim.kind in kinds)
-        return dataclasses.replace(left, claims=claims, work=(), ablations=())
+        claims = tuple(claim for claim in left.claims if getattr(claim, "kind", None) in kinds)
+        return dataclasses.replace(left, claims=claims)
 
 
 @dataclass(frozen=True)

@@ -130,7 +130,7 @@ def test_a_coefficient_one_per_cent_wrong_in_the_finite_elements(monkeypatch):
     case = load_cases()["friction_paraboloid"]
     (claim,) = (claim for claim in case.claims if claim.name == "the first order is that of reciprocity")
     left = case.only(lambda scene, use: scene.name in claim.scenes and use.label == "fem")
-    left = dataclasses.replace(left, claims=(claim,), work=())
+    left = dataclasses.replace(left, claims=(claim,))
     tasks = {task.identity: task for task in left.tasks()}
 
     def failing():

@@ -26,7 +26,7 @@ def _no_leftovers():
 
 
 # These take seconds of processor time each.
-LONG = {"graded", "inside"}
+LONG = {"graded", "inside", "stack", "sphere impact", "held", "pull-off", "table"}
 
 
 def named(fault):
@@ -64,6 +64,7 @@ def test_every_fault_can_be_planted(monkeypatch):
     for fault in (*FAULTS, OWN):
         with monkeypatch.context() as patch:
             fault.plant(patch)
+            assert patch._setattr, named(fault)
 
 
 def test_finite_elements_and_mdr_share_code_in_few_quantities_only():

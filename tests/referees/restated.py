@@ -10,7 +10,7 @@ from typing import Final
 import numpy as np
 
 from cases.declare.quantities import relative_change, values_of
-from cases.measurements.ladders.units import Units, in_units
+from cases.units import Units, in_units
 from contact import Method, PronySeries, Scene, Solution
 from contact.scene.effects import Viscoelasticity
 

@@ -17,7 +17,7 @@ from bem.kernels.moduli import relaxation_of
 from contact import DepthHistory, FlatPunch, HistoryPath, InvalidInput, Profile, Scene
 from contact.records.validation import FloatArray
 from contact.scene.effects import Relaxation, Viscoelasticity
-from mdr.dispatch import DEFAULT_ACCURACY
+from mdr.method import DEFAULT_ACCURACY
 from tests.bed import bed_of
 
 # Springs and steps per interval of two runs, whose difference tells the error. The numbers of springs are prime, so

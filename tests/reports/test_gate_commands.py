@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from cases.gate import spread
+from cases.gate.accept import WriteConditions
 from cases.gate.baseline import read_baselines
-from cases.gate.write_permission import WriteConditions
 from cases.run import executors, runner
 from cases.run.runner import RunOptions
 from cases.run.stamp import revision

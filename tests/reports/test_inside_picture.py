@@ -11,6 +11,7 @@ LAYER = Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.5)
 SPHERE, PRESSED = Paraboloid(radius_of_curvature=10.0), ContactRadii([1.0])
 
 
+@pytest.mark.slow
 def test_colours_leave_out_the_tension_at_the_edge_of_an_adhering_contact():
     """It is infinite there, and of the nearest point's -4 times the largest pressure all else was one colour."""
     scene = Scene(layer=LAYER, indenter=SPHERE, loading=PRESSED, effects=(Adhesion(work_of_adhesion=1e-2),))
@@ -21,6 +22,7 @@ def test_colours_leave_out_the_tension_at_the_edge_of_an_adhering_contact():
     assert colours.norm.vmin > 0.5 * values.min()
 
 
+@pytest.mark.slow
 def test_interfaces_of_a_stack_are_drawn_where_they_have_moved():
     parts = tuple(Sublayer(thickness=0.5, youngs_modulus=modulus, poissons_ratio=0.5) for modulus in (1.0, 5.0))
     stack = LayerStack(sublayers=parts, interfaces=("bonded",), support="bonded")

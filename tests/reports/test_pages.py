@@ -202,7 +202,7 @@ def test_panels_without_a_refused_step_fill_their_picture():
     run = only(PASSING, stress_tests=tuple(dataclasses.replace(completed, name=name) for name in "abc"))
     drawn = next(one for one in of_case(run, run.judged.cases[0]) if "stress-tests" in one.name)
     with figure_style(), warnings.catch_warnings(action="error"):
-        svg_text(drawn.draw(), key=drawn.name)
+        assert svg_text(drawn.draw(), key=drawn.name).startswith("<svg")
 
 
 def test_a_single_timed_setting_is_a_number_of_the_table_and_no_picture():

@@ -5,8 +5,7 @@ import dataclasses
 from cases.answers import Table
 from cases.runs import Run
 from reports import tables
-from reports.charts import of_case
-from reports.study_charts import relative_distance
+from reports.charts import of_case, relative_distance
 from reports.style import figure_style
 from tests.reports.example import FAILING, PASSING, example, only
 

@@ -7,11 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from contact import (
-    DepthHistory,
-    ForceHistory,
-    HistoryPath,
-)
+from contact import DepthHistory, ForceHistory, HistoryPath
 from mdr import Mdr
 
 FloatArray = NDArray[np.float64]

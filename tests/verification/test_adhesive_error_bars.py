@@ -18,7 +18,7 @@ from contact import (
     TruncatedCone,
 )
 from mdr import Mdr
-from mdr.adhesive_branch import Adhesive
+from mdr.adhesive import Adhesive
 from tests.referees.second_opinion import adhesive_states, pressure_of
 
 QUANTITIES = ("contact_radius", "indentation_depth", "normal_force", "contact_stiffness")

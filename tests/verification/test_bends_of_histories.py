@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from cases.measurements.ladders.units import Units, in_units
+from cases.units import Units, in_units
 from contact import Cone, DepthHistory, Layer, PowerLaw, PronySeries, Scene
 from mdr import Mdr
 from tests.drawn_scenes import scene_of

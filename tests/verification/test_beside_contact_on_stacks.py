@@ -7,7 +7,7 @@ import pytest
 
 from contact import Cone, ElasticBase, LayerStack, Paraboloid, Sublayer
 from mdr.admissible import _stiffens_downwards
-from mdr.radius_search import RadiusSearch
+from mdr.radius_search import RadiusSearch, SeveralContacts
 from mdr.spring_bed import Springs
 
 
@@ -29,22 +29,26 @@ def random_stack(rng):
     return LayerStack(sublayers=layers, interfaces=faces, support=support)
 
 
-def profiles_rise(count, seed):
-    rng, seen = np.random.default_rng(seed), 0
+def profiles_that_fall(count, seed):
+    """Layers on which the MDR profile of a cone or paraboloid falls somewhere."""
+    rng, seen, fallen = np.random.default_rng(seed), 0, []
     while seen < count:
         layer = random_stack(rng)
         if not _stiffens_downwards(layer):
             continue
         seen += 1
         indenter = (Cone(slope=0.1), Paraboloid(radius_of_curvature=1.0))[int(rng.integers(2))]
-        # A falling profile raises SeveralContacts.
-        RadiusSearch(Springs.of(layer, indenter), may_fall=True).refuse_falls(4.0 * layer.surface.thickness)
+        try:
+            RadiusSearch(Springs.of(layer, indenter), may_fall=True).refuse_falls(4.0 * layer.surface.thickness)
+        except SeveralContacts:
+            fallen.append((layer, indenter))
+    return fallen
 
 
 def test_profiles_rise_where_moduli_rise_downwards():
-    profiles_rise(6, 5)
+    assert profiles_that_fall(6, 5) == []
 
 
 @pytest.mark.slow
 def test_profiles_rise_on_many_stacks():
-    profiles_rise(200, 6)
+    assert profiles_that_fall(200, 6) == []

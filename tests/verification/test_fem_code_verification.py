@@ -3,26 +3,33 @@
 import numpy as np
 import pytest
 
+from cases.answers import Table
 from cases.convergence import behaviour_of_errors
-from cases.library import _finite_elements as finite_elements
-from cases.library._finite_elements import (
+from cases.library.finite_element_verification import (
+    CASE,
     MIXED,
-    finite_element_case,
+    QUANTITIES,
+    convergence,
     inf_sup_claims,
     locking_claims,
-    manufactured_studies,
+    manufactured,
     order_claim,
     patch_claims,
+    patches,
 )
+from cases.run.runner import judge
+from cases.run.solve_task import job_of, solve
 from cases.verdicts import Kind, Status
 from fem_reference import assembly, verification
+from tests.cases.example_run import example_stamp
 
 LARGEST = {2: 3e-6, 3: 2e-7, 4: 2e-9}
 
 
 @pytest.fixture(scope="module")
 def case():
-    return finite_element_case()
+    answers = Table(solve(job_of(task)) for task in CASE.tasks())
+    return judge([CASE], answers, example_stamp())
 
 
 def test_every_claim_of_the_page_passes(case):
@@ -43,15 +50,18 @@ def test_every_pair_has_both_orders_and_mixed_ones_at_both_ratios_of_poisson(cas
 def test_a_hundredth_of_the_body_force_missing_costs_the_order(monkeypatch):
     own = verification.ManufacturedProblem.force
     monkeypatch.setattr(verification.ManufacturedProblem, "force", lambda self, *at: 0.99 * own(self, *at))
-    monkeypatch.setattr(finite_elements, "MIXED", ("P2P1",))
-    assert {order_claim(study).status for study in manufactured_studies()} == {Status.FAIL}
+    found = dict(manufactured("P2P1", 0.3))
+    studies = [convergence("P2P1", 0.3, name, order, found) for name, order in zip(QUANTITIES, (3, 2), strict=True)]
+    assert {order_claim(study).status for study in studies} == {Status.FAIL}
 
 
 def test_a_wrong_hoop_strain_fails_the_patch_claims(monkeypatch):
     right = assembly.strains
     spoiled = np.array([1, 1, 1 + 1e-6, 1])[:, None, None]
     monkeypatch.setattr(assembly, "strains", lambda jacobian: right(jacobian) * spoiled)
-    assert {claim.status for claim in patch_claims()} == {Status.FAIL}
+    for name in ("P2P1", "P3"):
+        ((_, defects),) = patches(name)
+        assert {claim.status for claim in patch_claims(name, defects)} == {Status.FAIL}
 
 
 def test_a_falling_inf_sup_constant_of_a_stable_pair_fails():
@@ -62,8 +72,8 @@ def test_a_falling_inf_sup_constant_of_a_stable_pair_fails():
 
 
 def test_locking_of_a_mixed_pair_fails_and_so_does_a_displacement_that_seems_not_to_lock():
-    locked, even = ((0.2, 1e-5), (0.0, 1e-3)), ((0.2, 1e-5), (0.0, 1e-5))
-    assert [claim.status for claim in locking_claims({"P3P2": locked, "P3": even})] == [Status.FAIL, Status.FAIL]
+    for name, errors in (("P3P2", (1e-5, 1e-3)), ("P3", (1e-5, 1e-5))):
+        assert [claim.status for claim in locking_claims(name, errors)] == [Status.FAIL]
 
 
 def test_errors_that_stall_at_the_floor_have_no_order():

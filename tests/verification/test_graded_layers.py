@@ -97,6 +97,7 @@ def test_the_pressure_is_even_about_the_axis(radius):
     np.testing.assert_allclose(path.pressure(near, 0), even, rtol=2e-6, atol=0)
 
 
+@pytest.mark.slow
 def test_the_pressure_beside_the_axis_continues_that_further_out():
     """Taken from slopes at four points near by it was 2.1e-9 off."""
     path = solve(EXPONENTIAL.replace(poissons_ratio=0.5), PARABOLOID, ContactRadii([5.0]))
@@ -106,6 +107,7 @@ def test_the_pressure_beside_the_axis_continues_that_further_out():
     np.testing.assert_allclose(path.pressure(0.3 * near, 0), expected, rtol=1e-9, atol=0)
 
 
+@pytest.mark.slow
 def test_pressures_have_the_digits_of_the_direct_equation():
     """On 12 nodes a panel the slope of the density was 1.5e-8 of the pressure off at 0.87 a."""
     layer = GradedLayer(thickness=1.0, youngs_modulus=ExponentialDepth(surface=1.0, base=100.0), poissons_ratio=0.3)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from cases.measurements.ladders.units import Units, in_units
+from cases.units import Units, in_units
 from contact import (
     ContactError,
     DepthHistory,

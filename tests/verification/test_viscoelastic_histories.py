@@ -73,11 +73,12 @@ def test_ramps_of_tips_that_are_not_smooth(exponent):
     assert answer.error_estimate["normal_force"][-1] < 1e-11
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("indenter", "model", "tolerance"),
     [
         (Cone(slope=0.1), STANDARD, 1e-6),
-        pytest.param(Paraboloid(radius_of_curvature=CURVATURE), KELVIN_VOIGT, 1e-3, marks=pytest.mark.slow),
+        (Paraboloid(radius_of_curvature=CURVATURE), KELVIN_VOIGT, 1e-3),
     ],
 )
 def test_a_release_states_its_error(indenter, model, tolerance):
@@ -115,7 +116,8 @@ def test_flat_punch_oscillates_with_the_complex_modulus(frequency):
     np.testing.assert_allclose(answer.normal_force[last], expected, atol=2e-4 * stiffness * 1e-6 * TOTAL)
 
 
-@pytest.mark.parametrize("thickness", [pytest.param(np.inf, marks=pytest.mark.slow), 1e-3])
+@pytest.mark.slow
+@pytest.mark.parametrize("thickness", [np.inf, 1e-3])
 def test_an_impact_played_back_as_a_history(thickness):
     """Depth in, force out; force in, depth out: on loading and on unloading with a receding front."""
     impact = Mdr(accuracy=1e-11).solve(figure_12(thickness))

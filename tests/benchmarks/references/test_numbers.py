@@ -15,11 +15,12 @@ ENTRIES = {f"{entry.kind}: {entry.name}": entry for entry in entries()}
 QUICK = ("stiffness: bonded nu=0.5 a/h=1", "truncated_cone: unbonded a/h=1", "first_order: bonded nu=0.3")
 
 
-def compare(entry, more):
+def digits_agree(entry, more):
+    """Whether a number computed on more nodes is the written one to its digits."""
     with mp.workdps(DIGITS):
         again, written = computed(entry, more), WRITTEN[entry.kind][entry.name]
         worst = max(abs(new / old - 1) for new, old in zip(again, written, strict=True))
-    assert worst < mpf(10) ** -entry.digits
+    return worst < mpf(10) ** -entry.digits
 
 
 def test_every_number_is_written_once_and_none_is_left_over():
@@ -28,13 +29,13 @@ def test_every_number_is_written_once_and_none_is_left_over():
 
 @pytest.mark.parametrize("name", QUICK)
 def test_some_numbers_are_computed_again_on_more_nodes(name):
-    compare(ENTRIES[name], 2)
+    assert digits_agree(ENTRIES[name], 2)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ENTRIES)
 def test_all_numbers_are_computed_again_on_more_nodes(name):
-    compare(ENTRIES[name], 4)
+    assert digits_agree(ENTRIES[name], 4)
 
 
 def test_gauss_integrates_polynomials_of_twice_the_degree():
@@ -78,5 +79,4 @@ def test_a_wrong_kernel_is_seen(monkeypatch):
 
     right = layer_equation.chi
     monkeypatch.setattr(layer_equation, "chi", lambda q, nu: right(q, None if nu is None else nu / 2))
-    with pytest.raises(AssertionError):
-        compare(ENTRIES["stiffness: bonded nu=0.3 a/h=1"], 0)
+    assert not digits_agree(ENTRIES["stiffness: bonded nu=0.3 a/h=1"], 0)

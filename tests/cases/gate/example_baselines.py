@@ -3,10 +3,9 @@
 import dataclasses
 
 from cases.answers import Table
-from cases.gate.accept import accept, accepted_before, propose
+from cases.gate.accept import WriteConditions, accept, accepted_before, propose
 from cases.gate.baseline import read_baselines
 from cases.gate.gate import gate
-from cases.gate.write_permission import WriteConditions
 from cases.verdicts import Kind
 from tests.cases.example_run import CASE, passing_run
 

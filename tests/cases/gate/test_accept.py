@@ -5,9 +5,8 @@ import math
 
 import pytest
 
-from cases.gate.accept import accept, refusals
+from cases.gate.accept import accept, refusals, write_conditions
 from cases.gate.baseline import read_baselines, relative_tolerance
-from cases.gate.write_permission import write_conditions
 from cases.verdicts import Kind, Status
 from contact import InvalidInput
 from tests.cases.example_run import CASE, SCENE, example_stamp, failed, fast
@@ -201,7 +200,7 @@ def test_outside_a_repository_nothing_can_be_accepted(tmp_path):
 
 
 def repository(folder):
-    from cases.gate.write_permission import git
+    from cases.gate.accept import git
 
     (folder / "tracked.py").write_text("x = 1\n", encoding="utf-8")
     git(folder, "init", "--quiet")

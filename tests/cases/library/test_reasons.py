@@ -4,6 +4,7 @@ import dataclasses
 
 import pytest
 
+from cases.claims import Claim
 from cases.declare.registry import load_cases
 from cases.library import _common
 from contact import InvalidInput
@@ -13,16 +14,20 @@ SHARED_TABLES = ("convergence", "stacks")
 OWN = [name for name in _common.REASONS if name not in ("shared", *SHARED_TABLES)]
 
 
+def reasons_of(case):
+    return {dataclasses.astuple(claim.why) for claim in case.claims if isinstance(claim, Claim)}
+
+
 @pytest.mark.parametrize("case", OWN)
 def test_every_reason_of_a_case_is_given_by_one_of_its_claims(case):
-    given = {dataclasses.astuple(claim.why) for claim in load_cases()[case].claims}
+    given = reasons_of(load_cases()[case])
     unused = [name for name, reason in _common.reasons(case).items() if dataclasses.astuple(reason) not in given]
     assert unused == []
 
 
 @pytest.mark.parametrize("table", SHARED_TABLES)
 def test_every_reason_of_a_shared_table_is_given_by_a_claim_of_some_case(table):
-    given = {dataclasses.astuple(claim.why) for case in load_cases().values() for claim in case.claims}
+    given = set().union(*map(reasons_of, load_cases().values()))
     unused = [name for name, why in _common.reasons(table).items() if dataclasses.astuple(why) not in given]
     assert unused == []
 

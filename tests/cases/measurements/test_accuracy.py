@@ -5,8 +5,8 @@ import dataclasses
 import numpy as np
 import pytest
 
+from cases import accuracy as module
 from cases import solve
-from cases.measurements import accuracy as module
 from contact import (
     Adhesion,
     ContactRadii,

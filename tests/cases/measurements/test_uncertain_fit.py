@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from cases.measurements.uncertain_fit import fit_uncertain
+from cases.uncertain_fit import fit_uncertain
 from contact import IndentationDepths, InvalidInput, Layer, Paraboloid, Scene
 from mdr.curves import ForceCurve
 from reports.command_line import run

@@ -3,11 +3,17 @@
 import numpy as np
 import pytest
 
-from cases.referees.calculix.deck import deck
-from cases.referees.calculix.extrapolation import at_zero, extrapolated, observed_order
-from cases.referees.calculix.mesh import section
-from cases.referees.calculix.method import CalculiX, _place
-from cases.referees.calculix.program import _read, program
+from cases.referees.calculix import (
+    CalculiX,
+    _place,
+    _read,
+    at_zero,
+    deck,
+    extrapolated,
+    observed_order,
+    program,
+    section,
+)
 from contact import (
     ContactRadii,
     FlatPunch,
@@ -88,7 +94,7 @@ def test_a_base_that_does_not_carry_the_load_is_refused():
 def test_an_inverted_element_is_an_error_of_its_name():
     mesh = section(1.0, 1.0, 2)
     broken = deck(mesh, LAYER.replace(poissons_ratio=0.3), 1.0, mesh.radius**2).replace("*ELASTIC", "*NONSENSE")
-    from cases.referees.calculix.program import reactions
+    from cases.referees.calculix import reactions
 
     with pytest.raises(NotConvergedError, match="calculix ended with code"):
         reactions(broken)

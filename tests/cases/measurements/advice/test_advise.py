@@ -7,7 +7,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from cases.measurements.advice import advise
+from cases.advice import advise
 from contact import (
     Adhesion,
     Cone,

@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
+from cases.advice import ELASTIC_BASE, GRADING, THICKNESS, advise, layer_parts, simpler
 from cases.declare.methods import build
-from cases.measurements.advice.advise import advise
-from cases.measurements.advice.simpler_layers import ELASTIC_BASE, GRADING, THICKNESS, layer_parts, simpler
 from contact import (
     ElasticBase,
     ExponentialDepth,

@@ -6,7 +6,7 @@ from cases.answers import Table
 from cases.case import Case, CaseScene
 from cases.claims import Equal
 from cases.declare.methods import MethodUse
-from cases.measurements.advice.effects import NOTHING_PULLS, AblationStudy
+from cases.effects import NOTHING_PULLS, Ablation
 from cases.run.solve_task import job_of, solve
 from contact import Adhesion, Detachment, FlatPunch, Impact, KelvinVoigt, Layer, Paraboloid, Scene
 from tests.cases.fake_case import WHY
@@ -27,7 +27,7 @@ DETACHMENT = Scene(
 
 
 def entries(scene):
-    study = AblationStudy(scene="scene", methods=("mdr",), nightly=("fem",))
+    study = Ablation(scene="scene", methods=("mdr",), slow=("fem",))
     claim = Equal(name="c", quantity="peak_force", to=lambda _: [1.0], tolerance=1.0, why=WHY)
     case = Case(
         name="ablated",
@@ -38,8 +38,7 @@ def entries(scene):
         suites=("ci",),
         scenes=(CaseScene(name="scene", parameters={}, scene=scene),),
         methods=(MethodUse(label="mdr"),),
-        claims=(claim,),
-        ablations=(study,),
+        claims=(claim, study),
     )
     answers = Table(solve(job_of(task)) for task in study.tasks(case))
     return {entry.part: entry for entry in study.records(case, answers)}
@@ -68,4 +67,4 @@ def test_the_finite_thickness_under_a_wide_punch_cannot_be_dropped():
 
 @pytest.mark.parametrize(("suite", "methods"), [("ci", ("mdr",)), ("nightly", ("mdr", "fem"))])
 def test_costly_methods_are_left_to_the_nightly_suite(suite, methods):
-    assert AblationStudy(scene="scene", nightly=("fem",)).in_suite(suite).methods == methods
+    assert Ablation(scene="scene", slow=("fem",)).in_suite(suite).methods == methods

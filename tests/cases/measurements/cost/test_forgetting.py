@@ -1,7 +1,7 @@
 """A first solution is a first solution, whatever the process has solved before."""
 
 from bem import equation
-from cases.run.empty_caches import forget
+from cases.run.timing import forget
 from contact import ContactRadii, Layer, Paraboloid, Scene
 from mdr import Mdr
 

@@ -7,13 +7,6 @@ from cases.run.timing import summed_up, timed_warm
 from contact import InvalidInput
 
 
-def test_all_samples_are_kept_and_summed_up():
-    timing = summed_up([0.3, 0.1, 0.2, 0.4, 0.5])
-    assert timing.samples == (0.3, 0.1, 0.2, 0.4, 0.5)
-    assert (timing.lower_quartile, timing.median, timing.upper_quartile) == (0.2, 0.3, 0.4)
-    assert timing.spread == pytest.approx(1 / 3, rel=1e-12, abs=0.0)
-
-
 @pytest.mark.parametrize("bad", [[], [0.0], [math.nan], [-1.0]])
 def test_impossible_times_are_refused(bad):
     with pytest.raises(InvalidInput, match="times"):

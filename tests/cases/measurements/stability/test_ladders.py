@@ -7,18 +7,16 @@ import dataclasses
 import numpy as np
 import pytest
 
-from cases.measurements.ladders import ladders
-from cases.measurements.ladders.invariants import invariant_residuals
-from cases.measurements.ladders.ladder_study import breakdown, climbs, ladder_case, no_silent_failure, worse_than
-from cases.measurements.ladders.ladder_table import LADDERS, contact_ratio, damped_punch, truncated
-from cases.measurements.ladders.ladders import LadderPlan, climb
-from cases.measurements.ladders.repeats import nudged, repeated
+from cases import stress
+from cases.library.stability import CASE, LADDERS, contact_ratio, damped_punch, truncated
+from cases.stress import Ladder, breakdown, invariant_residuals, no_silent_failure, nudged, repeated, worse_than
 from cases.studies import Step, StressTest
 from cases.verdicts import Status
 from contact import InvalidInput, NotConvergedError, Supported
 from mdr import Mdr
+from tests.cases.climbing import climb
 
-PLAN = LadderPlan(name="test", parameter="b/a", values=(0.5, 0.1, 0.01), scene=truncated)
+PLAN = Ladder(name="test", parameter="b/a", values=(0.5, 0.1, 0.01), scene=truncated)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -94,7 +92,7 @@ def test_a_wrong_number_in_motion_is_found_beside_the_fast_method():
             path = Mdr().solve(scene)
             return dataclasses.replace(path, peak_force=path.peak_force * (1 + 1e-5))
 
-    plan = LadderPlan(name="test", parameter="D", values=(0.5,), scene=damped_punch, quantity="peak_force")
+    plan = Ladder(name="test", parameter="D", values=(0.5,), scene=damped_punch, quantity="peak_force")
     (rung,) = climb(plan, Heavier(None)).steps
     assert rung.status is Status.FAIL
     assert rung.residuals["fast method"] == pytest.approx(1e-5, rel=1e-2, abs=0.0)
@@ -131,26 +129,33 @@ def test_an_earlier_breakdown_and_a_lost_digit_are_worse():
     assert worse_than(ladder(14.0, 12.0), accepted) == ["n, mdr, p = 0.01: not solved, but 9.0 digits were accepted"]
 
 
-def test_a_method_climbs_only_what_it_supports_and_what_it_is_asked_to():
+def test_a_method_takes_only_the_tests_whose_first_scene_it_supports_and_that_it_is_asked_to():
     class Elastic(Faulty):
         def supports(self, scene):
             return Supported() if not scene.effects else False
 
-    method, plan = Elastic(lambda path: path), LadderPlan(name="t", parameter="b/a", values=(0.5,), scene=truncated)
-    impact = dataclasses.replace(plan, name="impact", parameter="D", scene=damped_punch)
-    only, spared = dataclasses.replace(plan, only=("fem",)), dataclasses.replace(plan, spared=("x",))
-    assert [climbs(p, "x", method) for p in (plan, impact, only, spared)] == [True, False, False, False]
-    assert climbs(only, "fem", method)
+    plan, fem = dataclasses.replace(PLAN, values=(0.5,)), dataclasses.replace(PLAN, methods=("fem",))
+    impact = dataclasses.replace(plan, parameter="D", scene=damped_punch)
+    assert [climb(p, Elastic(lambda path: path)) is None for p in (plan, impact, fem)] == [False, True, True]
 
 
-def test_a_study_of_ladders_claims_that_nothing_fails_silently():
-    found = ladder_case([PLAN], {"mdr": {}})
-    assert [(claim.status, claim.scene, claim.error) for claim in found.verdicts] == [(Status.PASS, "test", 0.0)]
-    assert found.stress_tests[0].method == "mdr"
+def test_the_suite_ci_makes_quick_tests_by_the_fast_method_and_nightly_all_by_all():
+    quick, every = (CASE.in_suite(suite) for suite in ("ci", "nightly"))
+    assert {test.name: test.methods for test in quick.claims} == dict.fromkeys(
+        ("vanishing flat end", "stability reverses", "damping ratio"), ("mdr",)
+    )
+    assert every.claims == LADDERS
+    assert {task.use.label for task in every.tasks()} == {"mdr", "mdr_table", "integral_equation", "bem", "fem"}
+
+
+def test_the_edge_cell_of_finite_elements_is_their_setting():
+    (test,) = (test for test in LADDERS if test.name == "edge cell")
+    cells = [task.use.settings["edge_cell"] for task in test.tasks(CASE)]
+    assert cells == list(test.values)
 
 
 def test_a_silent_failure_fails_its_claim():
-    claim = no_silent_failure(climb(PLAN, Faulty(wrong), "faulty"))
+    claim = no_silent_failure(climb(PLAN, Faulty(wrong)))
     assert (claim.status, claim.error) == (Status.FAIL, 2.0)
     assert "more than both state" in claim.message
 
@@ -171,12 +176,12 @@ def test_a_repeat_on_a_scene_out_of_reach_refuses_by_name():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("plan", [plan for plan in LADDERS if not plan.only], ids=lambda plan: plan.name)
+@pytest.mark.parametrize("plan", [plan for plan in LADDERS if not plan.methods], ids=lambda plan: plan.name)
 def test_no_rung_of_the_fast_method_fails_without_a_name(plan):
     climbed = climb(plan, Mdr())
     assert [rung for rung in climbed.steps if rung.status is Status.FAIL] == []
 
 
 def test_a_warning_on_a_rung_is_a_crash(monkeypatch):
-    monkeypatch.setattr(ladders, "invariant_residuals", lambda method, answer: {"x": float(np.log(np.zeros(1))[0])})
+    monkeypatch.setattr(stress, "invariant_residuals", lambda method, answer: {"x": float(np.log(np.zeros(1))[0])})
     assert "crash: RuntimeWarning" in climb(PLAN, Mdr()).steps[0].reason

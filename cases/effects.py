@@ -3,10 +3,11 @@
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
+from cases.advice import NOTHING_PULLS, STATIC, nothing_left, parts_of, without
 from cases.answers import Answer, Table
 from cases.case import Case, Task
+from cases.claims import Study
 from cases.declare.quantities import IMPACT_NUMBERS
-from cases.measurements.advice.ablation import NOTHING_PULLS, STATIC, nothing_left, parts_of, without
 from cases.studies import Effect
 from contact import DetachmentPath
 
@@ -14,22 +15,24 @@ _COMPARED = (*IMPACT_NUMBERS, *DetachmentPath.SCALARS, *STATIC)
 
 
 @dataclass(frozen=True, kw_only=True)
-class AblationStudy:
+class Ablation(Study):
     """Every part of one scene left out in turn.
 
     Attributes:
+        name: "effects" where a case has one such study.
         scene: name of the scene.
         methods: labels of the methods that solve it with and without.
-        nightly: labels of those that do so in the nightly suite only.
+        slow: labels of those that do so in the nightly suite only.
     """
 
+    name: str = "effects"
     scene: str
     methods: tuple[str, ...] = ("mdr",)
-    nightly: tuple[str, ...] = ()
+    slow: tuple[str, ...] = ()
 
-    def in_suite(self, suite: str) -> "AblationStudy":
+    def in_suite(self, suite: str) -> "Ablation":
         """Return the study as a suite carries it out."""
-        return replace(self, methods=(*self.methods, *self.nightly), nightly=()) if suite == "nightly" else self
+        return replace(self, methods=(*self.methods, *self.slow), slow=()) if suite == "nightly" else self
 
     def tasks(self, case: Case) -> Iterator[Task]:
         """Yield the whole scene and the scene without each of its parts, as first solutions."""

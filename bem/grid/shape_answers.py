@@ -1,0 +1,264 @@
+"""Answers of boundary elements to shapes: discs for the mean profile, times ratios on cells of any outline."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from math import pi, sqrt
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bem.grid.discs import refuse_unresolved
+from bem.grid.pressed import PressedState, Pressing, equilibrium
+from bem.grid.shapes import CellContact, pressed_cells
+from bem.kernels.moduli import contact_modulus
+from contact import ContactPath, IndentationDepths, InvalidInput, NotConvergedError, Profile, Scene, Shape, StageLog
+from contact.records.validation import FloatArray
+from contact.scene.shapes import LARGEST_ORDER, Flat, Raised
+from contact.stated import SAFETY, stated_error
+
+# Relative step of depth of the derivative of the ratio; its error goes with the square. Half of it shows cells.
+STEP: Final = 0.1
+# Relative change of the ratio at which the depth under a force is found, and the most steps.
+CLOSE, MOST_STEPS = 1e-9, 12
+# Relative error of a ratio that two grids may share: times the cells across to the power -3/2, as they meet an edge.
+SHARED: Final = 0.5
+# Points along the outline and share of it within which pressures of two grids are compared.
+ANGLES, INSIDE = 64, np.array([0.1, 0.3, 0.5, 0.7, 0.9])
+
+
+@dataclass(frozen=True, eq=False)
+class ShapeState:
+    """A contact of a shape.
+
+    Attributes:
+        cells: On the grid, at the same depth or at a unit depth of a flat punch.
+        cell_size: s [m].
+        depth: delta [m].
+        load: F/E* [m^2].
+        stiffness: k_N/E* [m].
+        square: Fourier coefficients of a(phi)^2 [m^2], of the orders 0, N, 2 N, ..
+        shape: The indenter.
+    """
+
+    cells: CellContact
+    cell_size: float
+    depth: float
+    load: float
+    stiffness: float
+    square: FloatArray
+    shape: Shape
+
+    def outline(self, angle: ArrayLike) -> FloatArray:
+        """a(phi) [m]: of a flat punch its own."""
+        if isinstance(self.shape, Flat):
+            return self.shape.outline(angle)
+        cosines = np.cos(np.multiply.outer(np.asarray(angle), _cosines(self.shape)))
+        return np.asarray(np.sqrt(cosines @ self.square))
+
+    @property
+    def radius(self) -> float:
+        """Mean of the outline [m]."""
+        angle, weight = self.shape.sector()
+        return float(weight @ self.outline(angle))
+
+    def pressure(self, radius: FloatArray, angle: FloatArray) -> FloatArray:
+        """p/E* between the centres of cells, scaled to the load."""
+        scale = self.load / (self.cells.load * self.cell_size**2)
+        return np.where(radius < self.outline(angle), scale * self._at("pressure", radius, angle), 0.0)
+
+    def displacement(self, radius: FloatArray, angle: FloatArray) -> FloatArray:
+        """w [m] between the centres of cells."""
+        edge = float(self.cells.radius[-1, -1]) / sqrt(2.0) * self.cell_size
+        if np.max(radius, initial=0.0) > edge:
+            raise InvalidInput(f"radius: bem gives displacements by shapes up to {edge:g} m from the axis")
+        unit = self.depth if isinstance(self.shape, Flat) else self.cell_size
+        return unit * self._at("displacement", radius, angle)
+
+    def _at(self, name: str, radius: FloatArray, angle: FloatArray) -> FloatArray:
+        r = radius / self.cell_size
+        return self.cells.interpolated(name, r * np.cos(angle), r * np.sin(angle))
+
+
+def _cosines(shape: Shape) -> range:
+    """Orders of the outline: 0 and all that the symmetry of the shape allows."""
+    return range(0, LARGEST_ORDER + 1, shape.symmetry)
+
+
+@dataclass(frozen=True, eq=False)
+class OutlinedFields:
+    """Fields of every step of a path, along one direction or several.
+
+    Attributes:
+        states: Of each step.
+        modulus: E* [Pa].
+        angle: phi [rad].
+    """
+
+    states: tuple[ShapeState, ...]
+    modulus: float
+    angle: ArrayLike = 0.0
+
+    def along(self, angle: ArrayLike) -> OutlinedFields:
+        """The same at other directions [rad]."""
+        return replace(self, angle=angle)
+
+    def outline(self, angle: FloatArray, step: int) -> FloatArray:
+        """a(phi) [m]."""
+        return self.states[step].outline(angle)
+
+    def pressure(self, radius: FloatArray, step: int) -> FloatArray:
+        """p(r, phi) [Pa]."""
+        return self.modulus * self.states[step].pressure(radius, np.broadcast_to(self.angle, radius.shape))
+
+    def surface_displacement(self, radius: FloatArray, step: int) -> FloatArray:
+        """w(r, phi) [m]."""
+        return self.states[step].displacement(radius, np.broadcast_to(self.angle, radius.shape))
+
+
+@dataclass(frozen=True)
+class ShapeSolver:
+    """One scene on a grid and its coarser companion.
+
+    Attributes:
+        scene: The problem.
+        points: Cells across the mean contact.
+        threads: Of the transforms.
+        settings: As the answer reports them.
+        log: Stage log.
+    """
+
+    scene: Scene
+    points: int
+    threads: int
+    settings: dict[str, Any]
+    log: StageLog
+
+    def path(self) -> ContactPath:
+        """Contacts at the prescribed depths or forces."""
+        loading, modulus = self.scene.loading, contact_modulus(self.scene.layer)
+        by_depth = isinstance(loading, IndentationDepths)
+        values = (loading.values / (1.0 if by_depth else modulus)).tolist()  # type: ignore[attr-defined]
+        with self.log.stage("contact"):
+            fine, coarse = (
+                self._states(values, points, by_depth=by_depth) for points in (self.points, self.points // 2)
+            )
+        units = np.array([1.0, 1.0, modulus, modulus])
+        rows, others = (
+            units[:, None] * np.array([(one.radius, one.depth, one.load, one.stiffness) for one in states]).T
+            for states in (fine, coarse)
+        )
+        return ContactPath(
+            scene=self.scene,
+            method="bem",
+            settings=self.settings,
+            error_estimate=self._errors(rows, others, list(zip(fine, coarse, strict=True)), by_depth=by_depth),
+            cost=self.log.cost(unknowns=fine[0].cells.radius.size),
+            stages=self.log.records,
+            fields=OutlinedFields(tuple(fine), modulus),
+            **dict(zip(ContactPath.ARRAYS, rows, strict=True)),
+        )
+
+    def _states(self, values: Sequence[float], points: int, *, by_depth: bool) -> list[ShapeState]:
+        shape = self.scene.indenter
+        if isinstance(shape, Flat):
+            stiffness, cells, s = self._flat(shape, points)
+            stiffness = 2.0 * stiffness - self._flat(shape, points // 2)[0]  # cells miss the edge to first order
+            depths = [value if by_depth else value / stiffness for value in values]
+            return [ShapeState(cells, s, d, stiffness * d, stiffness, np.zeros(0), shape) for d in depths]
+        assert isinstance(shape, Raised)
+        return [self._raised(shape, points, value, by_depth=by_depth) for value in values]
+
+    def _flat(self, shape: Flat, points: int) -> tuple[float, CellContact, float]:
+        """k_N/E* [m] of a flat punch, its cells at unit depth in units of E*/s, and s [m].
+
+        The ratio to the circle of the mean radius on the same cells, both corrected to their areas.
+        """
+        layer, circle = self.scene.layer, shape.mean
+        a, (angle, weight) = circle.radius, shape.sector()
+        side = float(shape.outline(0.0))
+        s = side / round(side * points / (2.0 * a))  # straight sides lie between cells
+        refuse_unresolved(layer, circle, a, points)
+        punches = Pressing(layer, circle, points, threads=self.threads).punches(a)
+        power = 0.5 * (1.0 + punches.growth_slope / punches.growth)  # d(ln k)/d(ln area)
+        loads, cells = [], []
+        for indenter, square in ((shape, float(weight @ shape.outline(angle) ** 2)), (circle, a * a)):
+            cells.append(self._cells(indenter, s, s, a))
+            loads.append(cells[-1].load * (pi * square / (cells[-1].moment(0) * s * s)) ** power)
+        return 2.0 * a * punches.growth * loads[0] / loads[1], cells[0], s
+
+    def _raised(self, shape: Raised, points: int, value: float, *, by_depth: bool) -> ShapeState:
+        pressing = Pressing(self.scene.layer, shape.mean, points, threads=self.threads)
+        mean, _, near = equilibrium(pressing, "indentation_depth" if by_depth else "normal_force", value)
+        refuse_unresolved(pressing.layer, shape.mean, mean.radius, points)
+        s = 2.0 * mean.radius / points
+        shaped, round_ = self._pair(shape, s, mean)
+        if not by_depth:
+            for _ in range(MOST_STEPS):
+                ratio = shaped.load / round_.load
+                mean, _, near = equilibrium(pressing, "normal_force", value / ratio, near)
+                shaped, round_ = self._pair(shape, s, mean)
+                if abs(shaped.load / round_.load / ratio - 1.0) < CLOSE:
+                    break
+            else:
+                raise NotConvergedError("the depth under a force was not found on cells")
+        ratio, load = shaped.load / round_.load, mean.load
+        # The ratio varies so little with the depth that cells twice as wide will do.
+        low, high = (self._pair(shape, 2.0 * s, mean._replace(depth=mean.depth * (1.0 + e))) for e in (-STEP, STEP))
+        change = (high[0].load / high[1].load - low[0].load / low[1].load) / (2.0 * STEP * mean.depth)
+        moved = np.array([shaped.moment(n) - round_.moment(n) for n in _cosines(shape)]) * s * s / pi
+        square = np.append(moved[0], 2.0 * moved[1:])
+        square[0] += mean.radius**2
+        return ShapeState(
+            shaped,
+            s,
+            mean.depth,
+            load * ratio if by_depth else value,
+            mean.stiffness * ratio + load * change,
+            square,
+            shape,
+        )
+
+    def _pair(self, shape: Raised, cell_size: float, mean: PressedState) -> tuple[CellContact, CellContact]:
+        """The shape and its mean on the same cells."""
+        shaped, round_ = (self._cells(one, mean.depth, cell_size, mean.radius) for one in (shape, shape.mean))
+        return shaped, round_
+
+    def _cells(self, indenter: Profile, depth: float, cell_size: float, radius: float) -> CellContact:
+        shape = self.scene.indenter
+        assert isinstance(shape, Shape)
+        whole, flat = shape.symmetry % 2 == 1, isinstance(shape, Flat)
+        return pressed_cells(
+            self.scene.layer, indenter, depth, radius, cell_size, whole=whole, threads=self.threads, flat=flat
+        )
+
+    def _errors(
+        self, rows: FloatArray, others: FloatArray, pairs: list[tuple[ShapeState, ShapeState]], *, by_depth: bool
+    ) -> dict[str, FloatArray]:
+        """Stated errors of what is not prescribed."""
+        floor = SHARED * self.points**-1.5
+        errors = {
+            name: stated_error(one, two, scale=one, floor=floor, sequence=False)
+            for name, one, two in zip(ContactPath.ARRAYS, rows, others, strict=True)
+        }
+        if isinstance(self.scene.indenter, Flat):
+            errors["contact_radius"] = np.zeros(rows.shape[1])
+        errors["indentation_depth" if by_depth else "normal_force"] = np.zeros(rows.shape[1])
+        shared = errors["normal_force"] + errors["indentation_depth"]
+        changes = np.array([_field_changes(*pair) for pair in pairs]).T
+        return errors | {
+            "pressure": SAFETY * changes[0] + shared,
+            "surface_displacement": SAFETY * changes[1] + shared,
+        }
+
+
+def _field_changes(one: ShapeState, other: ShapeState) -> tuple[float, float]:
+    """Largest change of pressures over their mean, and of displacements over the depth, between two grids."""
+    angle = np.linspace(0.0, 2.0 * pi, ANGLES)[:, None]
+    shares = INSIDE * one.outline(angle)
+    places = shares.ravel(), np.broadcast_to(angle, shares.shape).ravel()
+    mean = one.load / (pi * one.radius**2)
+    pressure = np.abs(one.pressure(*places) - other.pressure(*places)).max() / mean
+    return float(pressure), float(np.abs(one.displacement(*places) - other.displacement(*places)).max() / one.depth)

@@ -1,0 +1,129 @@
+"""Indenters that are no bodies of revolution, pressed into cells of any outline.
+
+Cells in contact are those that neither pull nor are penetrated (active set of linear solves). Their staircase changes
+force and stiffness of a shape and of its mean body of revolution alike, so that the *ratio* of both on one grid is more
+accurate than either: it multiplies the answer on discs (`bem.grid.pressed`), which has no staircase.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from math import ceil
+from typing import Final
+
+import numpy as np
+from scipy.ndimage import map_coordinates
+
+from bem.grid.operators import GridOperator, grid_operator, pressed
+from contact import ElasticLayer, NotConvergedError, Profile, Shape
+from contact.records.validation import BoolArray, FloatArray
+
+# Half the grid over the radius of the mean contact, and its growth where a contact reaches the border.
+MARGIN: Final = 1.5
+GROWTH: Final = 1.4
+# Largest error of the displacement on the contact; forces lose its square.
+TOLERANCE: Final = 1e-7
+# Changes of the active set; ten are usual.
+MOST_SETS: Final = 60
+
+
+@dataclass(frozen=True, eq=False)
+class CellContact:
+    """Cells pressed by an indenter; lengths in cell sizes, pressures in units of E*.
+
+    Attributes:
+        radius: r of the cell centres, of a quadrant or of the whole grid.
+        angle: phi of the cell centres.
+        contact: Cells in contact.
+        pressure: p.
+        displacement: w.
+    """
+
+    radius: FloatArray
+    angle: FloatArray
+    contact: BoolArray
+    pressure: FloatArray
+    displacement: FloatArray
+
+    @property
+    def copies(self) -> int:
+        """Times that the grid represents the surface: 4 for a quadrant."""
+        return 4 if float(self.angle[0, 0]) > 0.0 else 1
+
+    @property
+    def load(self) -> float:
+        """F/(E* s^2)."""
+        return self.copies * float(self.pressure.sum())
+
+    def moment(self, order: int) -> float:
+        """Sum of cos(n phi) over the cells in contact: int a^2/2 cos(n phi) dphi."""
+        return self.copies * float(np.cos(order * self.angle[self.contact]).sum())
+
+    def interpolated(self, name: str, x: FloatArray, y: FloatArray) -> FloatArray:
+        """Pressure or displacement at places in cell sizes, shape (n,), zero beyond the grid."""
+        values = getattr(self, name)
+        if self.copies == 4:
+            values, x, y = np.pad(values, ((1, 0), (1, 0)), mode="symmetric"), np.abs(x) + 0.5, np.abs(y) + 0.5
+        else:
+            x, y = (place + (values.shape[0] - 1) / 2 for place in (x, y))
+        return np.asarray(map_coordinates(values, [x, y], order=1))
+
+
+def pressed_cells(
+    layer: ElasticLayer,
+    indenter: Profile,
+    depth: float,
+    radius: float,
+    cell_size: float,
+    *,
+    whole: bool,
+    threads: int = 1,
+    flat: bool = False,
+) -> CellContact:
+    """Contact at a depth [m], about as large as a circle of this radius [m].
+
+    Args:
+        layer: The layer.
+        indenter: A shape, or a body of revolution on the same cells.
+        depth: Depth [m].
+        radius: First guess of the contact [m].
+        cell_size: s [m].
+        whole: Whether the shape has no mirror symmetry in x.
+        threads: Of the transforms.
+        flat: Whether all cells within the outline are in contact.
+    """
+    half = ceil(MARGIN * radius / cell_size)
+    while True:
+        centre = np.arange(2 * half) - half + 0.5 if whole else np.arange(half) + 0.5
+        r, phi = np.hypot(centre[:, None], centre), np.arctan2(centre, centre[:, None])
+        height = indenter.polar(cell_size * r, phi) if isinstance(indenter, Shape) else indenter.height(cell_size * r)
+        operator = _operator(layer, cell_size, 2 * half, threads, whole)
+        contact, target = (height == 0.0 if flat else r < radius / cell_size), (depth - height) / cell_size
+        contact, p = _active(operator, target, contact, flat=flat)
+        if float(np.max(np.abs(centre)[contact.any(axis=1)], initial=0.0)) < half - 2:
+            return CellContact(r, phi, contact, p, operator.displacement(p))
+        half = ceil(GROWTH * half)
+
+
+@lru_cache(maxsize=4)
+def _operator(layer: ElasticLayer, cell_size: float, cells: int, threads: int, whole: bool) -> GridOperator:
+    return grid_operator(layer, cell_size, cells, "free", threads, whole=whole)
+
+
+def _active(
+    operator: GridOperator, target: FloatArray, contact: BoolArray, *, flat: bool
+) -> tuple[BoolArray, FloatArray]:
+    """Cells in contact and their pressure, for the displacement that contact would prescribe."""
+    p: FloatArray | None = None
+    scale = float(target.max())
+    for _ in range(MOST_SETS):
+        p = pressed(operator, contact, np.where(contact, target, 0.0), TOLERANCE, p)
+        if flat:
+            return contact, p
+        penetrated = ~contact & (operator.displacement(p) < target - TOLERANCE * scale)
+        pulled = contact & (p < 0.0)
+        if not (penetrated.any() or pulled.any()):
+            return contact, p
+        contact = (contact & ~pulled) | penetrated
+    raise NotConvergedError(f"the cells in contact were not found in {MOST_SETS} steps")

@@ -1,0 +1,426 @@
+"""Rigid indenters that are no bodies of revolution, symmetric about phi = 0.
+
+Raised ones have the height f(r, phi) = f_0(r) + sum_n f_n(r) cos(n phi) with f(0) = 0, flat ones the outline a(phi).
+"""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
+from functools import cached_property
+from typing import Annotated, Any, Literal, Never
+
+import numpy as np
+from numpy.typing import ArrayLike
+from pydantic import BeforeValidator, Field, model_validator
+
+from contact.records.errors import UnsupportedSceneError
+from contact.records.record import OneOf, Record, record
+from contact.records.validation import FloatArray, PositiveLength, number
+from contact.scene.profiles import PROFILES, Cone, FlatPunch, Paraboloid, Pointed, Profile, Slope, Sloped, Sphere
+
+# Largest order n of harmonics. The force of a square pyramid changes by 1e-4 with half of it, of a punch by 5e-4.
+LARGEST_ORDER = 16
+# Gauss nodes between two corners of a shape. With half as many the order 16 is wrong, twice as many change nothing.
+_NODES = 24
+_T, _W = np.polynomial.legendre.leggauss(_NODES)
+
+
+class Shape(Profile, ABC):
+    """An indenter whose height or outline depends on the direction phi [rad].
+
+    As a `Profile` it refuses heights at a radius alone, so that no method takes it for a body of revolution.
+    """
+
+    @property
+    @abstractmethod
+    def mean(self) -> Profile:
+        """The body of revolution with the height, or the outline, averaged over phi."""
+
+    @property
+    @abstractmethod
+    def symmetry(self) -> int:
+        """Number of equal sectors: the period of the shape in phi is 2 pi over it."""
+
+    @property
+    def orders(self) -> tuple[int, ...]:
+        """Orders n >= 2 of the harmonics cos(n phi) that are not zero, up to `LARGEST_ORDER`."""
+        return tuple(range(self.symmetry, LARGEST_ORDER + 1, self.symmetry))
+
+    @property
+    def is_truncated(self) -> bool:
+        """Whether harmonics of higher orders are left out."""
+        return True
+
+    @property
+    def corners(self) -> tuple[float, ...]:
+        """Directions [rad] in half a sector where the shape is not analytic."""
+        return ()
+
+    @property
+    def substitute(self) -> Profile:
+        """The body of revolution that methods without shapes may solve in its place."""
+        return self.mean
+
+    @abstractmethod
+    def polar(self, radius: ArrayLike, angle: ArrayLike) -> FloatArray:
+        """f(r, phi) [m] at radii [m] and directions [rad] that broadcast; infinite outside a flat punch."""
+
+    def sector(self) -> tuple[FloatArray, FloatArray]:
+        """Directions [rad] in half a sector and weights of the average over phi, shape (n,)."""
+        ends = np.array([0.0, *self.corners, math.pi / self.symmetry])
+        width = np.diff(ends)[:, None]
+        return (ends[:-1, None] + width * (1.0 + _T) / 2.0).ravel(), (width * _W / (2.0 * ends[-1])).ravel()
+
+    def height(self, radius: ArrayLike) -> FloatArray:
+        """Refused: see the class."""
+        self._refuse()
+
+    def slope_at(self, radius: ArrayLike) -> FloatArray:
+        """Refused: see the class."""
+        self._refuse()
+
+    def _refuse(self) -> Never:
+        name = type(self).__name__
+        raise UnsupportedSceneError(f"indenter = {name}: its height depends on the direction; {self.instead}")
+
+    @property
+    def instead(self) -> str:
+        """What a user may do where shapes are not modelled."""
+        fields = ", ".join(f"{k}={v:.6g}" for k, v in vars(self.substitute).items() if isinstance(v, float))
+        return f"take {type(self.substitute).__name__}({fields}) in its place, or leave out what is not modelled"
+
+    @property
+    def flat_radius(self) -> float:
+        """Radius [m] of the flat end of the mean."""
+        return self.mean.flat_radius
+
+    @property
+    def max_radius(self) -> float:
+        """Radius [m] where the mean ends."""
+        return self.mean.max_radius
+
+
+class Raised(Shape):
+    """A shape with heights."""
+
+    @abstractmethod
+    def polar_slope(self, radius: ArrayLike, angle: ArrayLike) -> FloatArray:
+        """df/dr [-]."""
+
+    def harmonic(self, orders: Sequence[int], radius: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """f_n [m] and df_n/dr [-] of p orders at radii [m], shape (.., p); f_0 is the average over phi."""
+        (angle, weight), n = self.sector(), np.array(orders)
+        share = np.where(n == 0, 1.0, 2.0) * weight[:, None] * np.cos(np.multiply.outer(angle, n))
+        return self.polar(radius[..., None], angle) @ share, self.polar_slope(radius[..., None], angle) @ share
+
+
+class Flat(Shape):
+    """A flat punch that is no circle."""
+
+    @abstractmethod
+    def outline(self, angle: ArrayLike) -> FloatArray:
+        """a(phi) [m]."""
+
+    @cached_property
+    def mean(self) -> FlatPunch:
+        """The circle of the mean radius."""
+        angle, weight = self.sector()
+        return FlatPunch(radius=float(weight @ self.outline(angle)))
+
+    def polar(self, radius: ArrayLike, angle: ArrayLike) -> FloatArray:
+        """Zero within the outline, infinite outside."""
+        return np.where(np.asarray(radius) <= self.outline(angle), 0.0, np.inf)
+
+
+@record
+class EllipticParaboloid(Raised):
+    """f = x^2/(2 R_1) + y^2/(2 R_2), in r and phi: r^2 [cos^2(phi)/R_1 + sin^2(phi)/R_2]/2.
+
+    Attributes:
+        first_radius: R_1 [m], radius of curvature in the plane y = 0.
+        second_radius: R_2 [m], radius of curvature in the plane x = 0.
+    """
+
+    first_radius: PositiveLength
+    second_radius: PositiveLength
+
+    @property
+    def symmetry(self) -> int:
+        """Two equal halves."""
+        return 2
+
+    @property
+    def orders(self) -> tuple[int, ...]:
+        """Of cos(2 phi) alone."""
+        return (2,)
+
+    @property
+    def is_truncated(self) -> bool:
+        """False: there are no others."""
+        return False
+
+    @property
+    def mean(self) -> Paraboloid:
+        """Of the mean curvature."""
+        return Paraboloid(radius_of_curvature=2.0 / (1.0 / self.first_radius + 1.0 / self.second_radius))
+
+    def polar(self, radius: ArrayLike, angle: ArrayLike) -> FloatArray:
+        """f [m]."""
+        return np.asarray(radius) * self.polar_slope(radius, angle) / 2.0
+
+    def polar_slope(self, radius: ArrayLike, angle: ArrayLike) -> FloatArray:
+        """df/dr [-]."""
+        curvature = np.cos(angle) ** 2 / self.first_radius + np.sin(angle) ** 2 / self.second_radius
+        return np.asarray(np.asarray(radius) * curvature)
+
+
+@record
+class Pyramid(Sloped, Raised):
+    """A regular pyramid, f = slope r cos(phi) over the middle half of a face; the edges of its faces are sharp.
+
+    With a tip of radius R each ray is a sphere up to the point where it touches the flank of that ray.
+
+    Attributes:
+        slope: Tangent of the angle between a face and the surface [-].
+        sides: Number of faces, 3 or 4.
+        tip_radius: R [m] of the blunt tip; none for a sharp one.
+    """
+
+    slope: Slope
+    sides: Literal[3, 4] = 4
+    tip_radius: PositiveLength | None = None
+
+    @property
+    def symmetry(self) -> int:
+        """One sector per face."""
+        return self.sides
+
+    @cached_property
+    def mean(self) -> Profile:
+        """A cone where the tip is sharp."""
+        if self.tip_radius is not None:
+            return Averaged(shape=self)
+        return Cone(slope=self.slope * self.sides / math.pi * math.sin(math.pi / self.sides))
+
+    @property
+    def substitute(self) -> Profile:
+        """The cone of equal cross-sections, which is customary."""
+        return Cone(slope=self.slope / math.sqrt(self.sides / math.pi * math.tan(math.pi / self.sides)))
+
+    def polar(self, radius: ArrayLike, angle: ArrayLike) -> FloatArray:
+        """f [m]."""
+        r, slope = np.asarray(radius, dtype=np.float64), self._along(angle)
+        if self.tip_radius is None:
+            return np.asarray(slope * r)
+        b = self._tangent(slope)
+        return Sphere(radius=self.tip_radius).height(np.minimum(r, b)) + slope * np.maximum(r - b, 0.0)
+
+    def polar_slope(self, radius: ArrayLike, angle: ArrayLike) -> FloatArray:
+        """df/dr [-]."""
+        r, slope = np.asarray(radius, dtype=np.float64), self._along(angle)
+        if self.tip_radius is None:
+            return slope + np.zeros_like(r)
+        return np.minimum(Sphere(radius=self.tip_radius).slope_at(np.minimum(r, self._tangent(slope))), slope)
+
+    @property
+    def breakpoints(self) -> tuple[float, ...]:
+        """Between them [m] rays leave the sphere."""
+        ends = self._along(np.array([math.pi / self.sides, 0.0]))
+        return () if self.tip_radius is None else tuple(self._tangent(ends).tolist())
+
+    def _along(self, angle: ArrayLike) -> FloatArray:
+        """Slope of the ray in a direction: that of the face whose middle is nearest."""
+        sector = 2.0 * math.pi / self.sides
+        return np.asarray(self.slope * np.cos(np.asarray(angle) - sector * np.round(np.asarray(angle) / sector)))
+
+    def _tangent(self, slope: FloatArray) -> FloatArray:
+        """Radius [m] where a ray of this slope leaves the sphere."""
+        return np.asarray((self.tip_radius or 0.0) * slope / np.hypot(1.0, slope))
+
+
+@record
+class Averaged(Pointed):
+    """f_0 of a shape by quadrature over phi.
+
+    Attributes:
+        shape: The shape.
+    """
+
+    shape: Pyramid
+
+    def height(self, radius: ArrayLike) -> FloatArray:
+        """f_0 [m]."""
+        return self.shape.harmonic((0,), np.asarray(radius, dtype=np.float64))[0][..., 0]
+
+    def slope_at(self, radius: ArrayLike) -> FloatArray:
+        """df_0/dr [-]."""
+        return self.shape.harmonic((0,), np.asarray(radius, dtype=np.float64))[1][..., 0]
+
+    @property
+    def breakpoints(self) -> tuple[float, ...]:
+        """Those of the shape [m]."""
+        return self.shape.breakpoints
+
+    @property
+    def is_convex(self) -> bool:
+        """True: every ray is convex."""
+        return True
+
+
+@record
+class Harmonic(Record):
+    """One term share f(r) cos(n phi) of `Harmonics`.
+
+    Attributes:
+        order: n >= 2. The order 1 is a shift or tilt: move the axis there.
+        share: Factor of f [-], of either sign.
+        profile: f; the mean profile itself where none is given.
+    """
+
+    order: Annotated[int, Field(ge=2, le=LARGEST_ORDER)]
+    share: Annotated[float, *number("give the factor of the term", low=-math.inf)] = 1.0
+    profile: Annotated[Profile, OneOf(*PROFILES)] | None = None
+
+
+# Profiles whose slope is finite, so that harmonics of it make sense.
+_POINTED = tuple(kind for kind in PROFILES if kind is not FlatPunch)
+
+
+def _terms(given: Any) -> Any:
+    """A mapping {n: share} or {n: profile} as terms."""
+    if not isinstance(given, Mapping):
+        return tuple(given) if isinstance(given, list) else given
+    return tuple(
+        Harmonic(order=order, **{"profile" if isinstance(term, Profile) else "share": term})
+        for order, term in given.items()
+    )
+
+
+@record
+class Harmonics(Raised):
+    """f = f_0(r) + sum_n share_n f_n(r) cos(n phi).
+
+    Attributes:
+        profile: f_0.
+        terms: The terms, as a list of `Harmonic`; in Python also {n: share} or {n: profile}.
+    """
+
+    profile: Annotated[Profile, OneOf(*_POINTED)]
+    terms: Annotated[tuple[Harmonic, ...], BeforeValidator(_terms)]
+
+    @model_validator(mode="after")
+    def _check(self) -> Harmonics:
+        if isinstance(self.profile, FlatPunch | Shape) or self.profile.flat_radius:
+            raise ValueError("profile: must be a profile of revolution without a flat end")
+        if not self.terms or len(set(self.orders)) < len(self.terms):
+            raise ValueError("terms: give at least one term, and each order once")
+        return self
+
+    @property
+    def symmetry(self) -> int:
+        """Greatest common divisor of the orders."""
+        return math.gcd(*self.orders)
+
+    @property
+    def orders(self) -> tuple[int, ...]:
+        """Those of the terms."""
+        return tuple(term.order for term in self.terms)
+
+    @property
+    def is_truncated(self) -> bool:
+        """False: there are no others."""
+        return False
+
+    @property
+    def mean(self) -> Profile:
+        """f_0."""
+        return self.profile
+
+    @property
+    def breakpoints(self) -> tuple[float, ...]:
+        """Those of all profiles [m]."""
+        return tuple(sorted({b for profile in (self.profile, *map(self._of, self.terms)) for b in profile.breakpoints}))
+
+    def polar(self, radius: ArrayLike, angle: ArrayLike) -> FloatArray:
+        """f [m]."""
+        rest = (t.share * self._of(t).height(radius) * np.cos(t.order * np.asarray(angle)) for t in self.terms)
+        return np.asarray(self.profile.height(radius) + sum(rest))
+
+    def polar_slope(self, radius: ArrayLike, angle: ArrayLike) -> FloatArray:
+        """df/dr [-]."""
+        rest = (t.share * self._of(t).slope_at(radius) * np.cos(t.order * np.asarray(angle)) for t in self.terms)
+        return np.asarray(self.profile.slope_at(radius) + sum(rest))
+
+    def _of(self, term: Harmonic) -> Profile:
+        return self.profile if term.profile is None else term.profile
+
+
+@record
+class PolygonalPunch(Flat):
+    """A flat punch whose outline is a regular polygon with rounded corners; phi = 0 is the middle of a side.
+
+    Attributes:
+        sides: Number of sides, 3 to 12.
+        inscribed_radius: Distance [m] of the sides from the axis: half the side of a square.
+        corner_radius: Radius [m] of the corners; zero for sharp ones, `inscribed_radius` for a circle.
+    """
+
+    inscribed_radius: PositiveLength
+    sides: Annotated[int, Field(ge=3, le=12)] = 4
+    corner_radius: Annotated[float, *number("give the radius of the corners in metres", "m")] = 0.0
+
+    @model_validator(mode="after")
+    def _check(self) -> PolygonalPunch:
+        if self.corner_radius > self.inscribed_radius:
+            raise ValueError(f"corner_radius = {self.corner_radius:g}: must be at most inscribed_radius")
+        return self
+
+    @property
+    def symmetry(self) -> int:
+        """One sector per side."""
+        return self.sides
+
+    @property
+    def corners(self) -> tuple[float, ...]:
+        """Where a side ends [rad]."""
+        straight = (self.inscribed_radius - self.corner_radius) * math.tan(math.pi / self.sides)
+        end = math.atan2(straight, self.inscribed_radius)
+        return (end,) if 0.0 < self.corner_radius < self.inscribed_radius else ()
+
+    def outline(self, angle: ArrayLike) -> FloatArray:
+        """a(phi) [m]: a side, or the circle about the centre of a corner."""
+        half = math.pi / self.sides
+        phi = np.abs(np.asarray(angle) - 2.0 * half * np.round(np.asarray(angle) / (2.0 * half)))
+        centre, c = (self.inscribed_radius - self.corner_radius) / math.cos(half), self.corner_radius
+        sine = centre * np.sin(half - phi)
+        round_part = centre * np.cos(half - phi) + np.sqrt(np.maximum((c - sine) * (c + sine), 0.0))
+        end = math.atan2((self.inscribed_radius - c) * math.tan(half), self.inscribed_radius)
+        return np.where(phi <= end, self.inscribed_radius / np.cos(phi), round_part)
+
+
+@record
+class EllipticPunch(Flat):
+    """A flat punch with an elliptic outline.
+
+    Attributes:
+        first_half_axis: A [m], along phi = 0.
+        second_half_axis: B [m].
+    """
+
+    first_half_axis: PositiveLength
+    second_half_axis: PositiveLength
+
+    @property
+    def symmetry(self) -> int:
+        """Two equal halves."""
+        return 2
+
+    def outline(self, angle: ArrayLike) -> FloatArray:
+        """a(phi) = A B/sqrt(B^2 cos^2(phi) + A^2 sin^2(phi)) [m]."""
+        A, B = self.first_half_axis, self.second_half_axis
+        return np.asarray(A * B / np.hypot(B * np.cos(angle), A * np.sin(angle)))
+
+
+SHAPES: tuple[type[Shape], ...] = (EllipticParaboloid, Pyramid, Harmonics, PolygonalPunch, EllipticPunch)

@@ -1,0 +1,153 @@
+"""Pressure of shapes to first order, in a coordinate in which the outline is a circle.
+
+    p_n(r) = (E*/pi) r^n [psi(a)/sqrt(a^2 - r^2) - int_r^a psi'(x)/sqrt(x^2 - r^2) dx],   psi(x) = -x^-n phi_n(x)
+    p(r, phi) = p_0(s) + sum_n cos(n phi) [p_n(s) + s p_0'(s) alpha_n/a_0],   s = r a_0/a(phi)
+
+The brackets are regular at the edge, where p_n alone is infinite. A flat punch has phi_n = delta y_1 alpha_n times the
+delta function at x = a, and a smooth part.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import Final
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.interpolate import CubicSpline
+
+from contact import ContactPath, InvalidInput
+from contact.records.validation import FloatArray
+from contact.scene.shapes import Flat, Raised
+from mdr.harmonics import Harmonics, basis_of
+from mdr.spring_bed import Springs
+
+# Nodes in u = sqrt(1 - s^2/a^2) of the brackets, of their integrals, and in ln(x) of the densities. With half of them
+# pressures lose 1e-4 of their mean.
+_NODES: Final = 40
+_INTEGRAL: Final = np.polynomial.legendre.leggauss(40)
+_DENSITY: Final = 160
+# Share of the outline within which the error of the pressure is stated: at the edge an error of the outline makes one
+# of 100 %.
+_INSIDE: Final = 0.98
+# Smallest x over a of the densities, and relative step of derivatives of the mean pressure.
+_LEAST: Final = 1e-3
+_STEP: Final = 1e-4
+
+
+@dataclass(frozen=True, eq=False)
+class ShapeFields:
+    """Outline and pressure of every step of a path.
+
+    Attributes:
+        shape: The indenter.
+        springs: Of its mean profile.
+        mean: The path of the mean profile.
+        radius: abar [m], shape (n,).
+        harmonics: alpha_n [m], shape (n, p).
+        angle: phi [rad] of the radii at which the pressure is asked for.
+    """
+
+    shape: Raised | Flat
+    springs: Springs
+    mean: ContactPath
+    radius: FloatArray
+    harmonics: FloatArray
+    angle: ArrayLike = 0.0
+    _brackets: dict[int, CubicSpline] = field(default_factory=dict)
+
+    def along(self, angle: ArrayLike) -> ShapeFields:
+        """The same at other directions [rad]."""
+        return replace(self, angle=angle)
+
+    def outline(self, angle: FloatArray, step: int) -> FloatArray:
+        """a(phi) [m]: of a flat punch its own."""
+        if isinstance(self.shape, Flat):
+            return self.shape.outline(angle)
+        return np.asarray(self.radius[step] + self._cosines(angle) @ self.harmonics[step])
+
+    def pressure(self, radius: FloatArray, step: int) -> FloatArray:
+        """p(r, phi) [Pa], zero outside the contact."""
+        angle = np.broadcast_to(self.angle, radius.shape)
+        share = radius / self.outline(angle, step)
+        inside = share < 1.0
+        a = float(self.mean.contact_radius[step])
+        u = np.sqrt(1.0 - share[inside] ** 2)
+        p = np.zeros_like(radius)
+        p[inside] = self.mean.pressure(a * share[inside], step)
+        p[inside] += (self._cosines(angle[inside]) * self._bracket(step)(u)).sum(axis=1) * u**self._power
+        return p
+
+    def truncation(self, step: int) -> float:
+        """Largest pressure [Pa] of the upper half of the orders, within `_INSIDE` of the outline."""
+        orders = np.array(self.shape.orders)
+        upper = orders > orders[-1] / 2
+        if not (self.shape.is_truncated and upper.any()):
+            return 0.0
+        u = np.linspace(np.sqrt(1.0 - _INSIDE**2), 1.0, _NODES)
+        return float(np.max(np.abs(self._bracket(step)(u)[:, upper]).sum(axis=1) * u**self._power))
+
+    def surface_displacement(self, radius: FloatArray, step: int) -> FloatArray:
+        """Not computed.
+
+        Raises:
+            InvalidInput: Always.
+        """
+        raise InvalidInput("mdr gives outline and pressure of shapes, not the displacement of the surface; ask bem")
+
+    def _cosines(self, angle: ArrayLike) -> FloatArray:
+        return np.asarray(np.cos(np.multiply.outer(np.asarray(angle), np.array(self.shape.orders))))
+
+    @property
+    def _power(self) -> int:
+        """Power of u with which the pressure ends at the edge."""
+        return -1 if isinstance(self.shape, Flat) else 1
+
+    def _bracket(self, step: int) -> CubicSpline:
+        """Brackets of every order over their power of u, as a function of u."""
+        if step not in self._brackets:
+            a = float(self.mean.contact_radius[step])
+            u = np.sin(np.pi / 2 * (np.arange(_NODES) + 0.5) / _NODES)
+            found = self._smooth(a, step, u) + self._shifted(a, step, u)
+            self._brackets[step] = CubicSpline(u, found / u[:, None] ** self._power)
+        return self._brackets[step]
+
+    def _smooth(self, a: float, step: int, u: FloatArray) -> FloatArray:
+        """p_n without what the delta function causes, shape (u.size, p)."""
+        orders, x = np.array(self.shape.orders), a * np.geomspace(_LEAST, 1.0, _DENSITY)
+        radius = None if self.springs.kernel.is_uniform else self.springs.radius(a)
+        harmonics = Harmonics(radius, self.shape.orders)
+        if isinstance(self.shape, Flat):
+            each = zip(harmonics.orders, harmonics.resolvent, strict=True)
+            phi = np.array([R @ basis_of(n, harmonics.count, x / a) for n, R in each]) / a
+            phi *= self._edge(a, step) * self.harmonics[step][:, None]
+        else:
+            phi = -harmonics.density(self.shape, a, x)
+        density = CubicSpline(np.log(x), phi, axis=1)
+        s, (t, w) = a * np.sqrt(1.0 - u**2), _INTEGRAL
+        width = np.arccosh(a / s)[:, None] / 2
+        at = s[:, None] * np.cosh(width * (1.0 + t))  # dx/sqrt(x^2 - s^2) = d arccosh(x/s)
+        slope = density(np.log(at), 1) - orders[:, None, None] * density(np.log(at))
+        integral = (slope * (s[:, None] / at) ** orders[:, None, None] / at * width * w).sum(axis=2)
+        first = phi[:, -1:] * (s / a) ** orders[:, None] / (a * u)
+        return np.asarray(self.springs.modulus / np.pi * (first - integral)).T
+
+    def _edge(self, a: float, step: int) -> float:
+        """phi(a) [m] under the flat punch."""
+        return float(self.springs.at([a]).y1[0] * self.mean.indentation_depth[step])
+
+    def _shifted(self, a: float, step: int, u: FloatArray) -> FloatArray:
+        """s p_0'(s) alpha_n/a, and what the delta function causes, shape (u.size, p)."""
+        s, power, alpha = a * np.sqrt(1.0 - u**2), self._power, self.harmonics[step]
+
+        def regular(r: FloatArray) -> FloatArray:
+            """p_0 over its power of sqrt(a^2 - r^2)."""
+            return np.asarray(self.mean.pressure(r, step) / np.sqrt((a - r) * (a + r)) ** power)
+
+        slope = (regular(s * (1 + _STEP)) - regular(s * (1 - _STEP))) / (2 * _STEP)
+        moved = slope * (a * u) ** power - power * s**2 * regular(s) * (a * u) ** (power - 2)
+        found = np.outer(moved, alpha / a)
+        if isinstance(self.shape, Flat):
+            front = self.springs.modulus / np.pi * self._edge(a, step) * a
+            found -= front * alpha * (s[:, None] / a) ** np.array(self.shape.orders) / (a * u[:, None]) ** 3
+        return found

@@ -1,0 +1,215 @@
+"""Indenters that are nearly round: mean profile, outline to first order, force and stiffness to second order.
+
+The mean of f(r, phi) over phi presses a circle of radius a_0. With the densities phi_n at its edge (`mdr.harmonics`)
+
+    a(phi) = abar + sum_n alpha_n cos(n phi),   alpha_n = -phi_n(a_0)/(g'(a_0) y_1(a_0))
+    F = F_0 + S,  S = E*/2 sum_n phi_n(a_0)^2/g'(a_0),    k_N = dF/ddelta = k_0 + S'(a_0)/g'(a_0)
+
+A flat punch of outline a(phi) has k_N = <k_0(a(phi))> + E* y_1^2 sum_n alpha_n^2 [n/(2 abar) + psi_n - psi_0]. The same
+formula gives abar of a raised shape from its k_N. What is left is of third order: S sqrt(sum alpha_n^2)/a_0.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from bem.flat_punch import FlatPunchSource
+from contact import ContactPath, IndentationDepths, NormalForces, NotConvergedError, Scene, StageLog
+from contact import UnsupportedSceneError as Unsupported
+from contact.answer.friction import told_of_friction
+from contact.answer.solution import Setting, StatedErrors
+from contact.records.validation import FloatArray
+from contact.scene.shapes import Flat, Raised, Shape
+from contact.stated import SAFETY
+from mdr.equilibria import StatedError, solve_elastic, springs_on
+from mdr.harmonics import Harmonics
+from mdr.shape_pressure import ShapeFields
+from mdr.spring_bed import Springs
+
+NOTE = "outline and pressure are of first order, force and stiffness of second order in the deviation from a circle"
+# Largest stated error of force or stiffness by the third order.
+LARGEST_THIRD = 0.05
+# Second order of the pressure over its mean, per (sum alpha_n^2)/a^2: 4 for an ellipse at 0.98 of the outline.
+_BESIDE_EDGE = 4.0
+# Relative step of derivatives by the contact radius. Half and twice of it change k_N by 1e-6 of its second order.
+_STEP = 1e-3
+# Radii of one path at which harmonics are solved, and their number per octave: with half of them k_N loses 1e-6.
+_MOST_RADII, _PER_OCTAVE = 30, 8
+# Corrections of the depth under a given force; three are usual.
+_CORRECTIONS, _CLOSE = 12, 1e-12
+
+
+class Expansion(NamedTuple):
+    """Contacts of a shape to second order, n of them with p harmonics.
+
+    Attributes:
+        radius: abar [m], shape (n,).
+        force: F [N], shape (n,).
+        stiffness: k_N [N/m], shape (n,).
+        outline: alpha_n [m], shape (n, p).
+        third: Relative size of the third order of force, stiffness and radius, shape (3, n).
+    """
+
+    radius: FloatArray
+    force: FloatArray
+    stiffness: FloatArray
+    outline: FloatArray
+    third: FloatArray
+
+
+def solve_shape(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[str, Setting]) -> ContactPath:
+    """Depth, force, stiffness and mean contact radius of a shape, with outline and pressure on demand.
+
+    Raises:
+        UnsupportedSceneError: If the third order may exceed `LARGEST_THIRD`, or the layer is graded.
+        NotConvergedError: If the depth under a force is not found.
+    """
+    log, shape, loading = StageLog(), scene.indenter, scene.loading
+    assert isinstance(shape, Raised | Flat)
+    assert isinstance(loading, IndentationDepths | NormalForces)
+    mean = scene.replace(indenter=shape.mean)
+    springs = springs_on(scene.layer, shape.mean, flat_punch)
+    if springs.is_tabulated or springs.kernel.tail:
+        reason = "mdr models shapes on half-spaces, uniform layers and stacks, by the integral equation of contact"
+        raise Unsupported(f"{reason}, not on a {type(scene.layer).__name__} by {type(flat_punch).__name__}")
+    expand = Expanded(springs, shape)
+    with log.stage("mean_profile"):
+        path = solve_elastic(mean, flat_punch, settings)
+    with log.stage("harmonics"):
+        found = expand.at(path)
+        if isinstance(loading, NormalForces):
+            for _ in range(_CORRECTIONS):
+                depth = path.indentation_depth + (loading.values - found.force) / found.stiffness
+                change = float(np.max(np.abs(depth / path.indentation_depth - 1)))
+                path = solve_elastic(mean.replace(loading=IndentationDepths(depth)), flat_punch, settings)
+                found = expand.at(path)
+                if change < _CLOSE:
+                    break
+            else:
+                raise NotConvergedError("the depth under a force was not found", {"change": change})
+            found = found._replace(force=loading.values)
+    _refuse_far(shape, found)
+    fields = ShapeFields(shape, springs, path, found.radius, found.outline)
+    return ContactPath(
+        scene=scene,
+        method="mdr",
+        settings=settings,
+        contact_radius=found.radius,
+        indentation_depth=path.indentation_depth,
+        normal_force=found.force,
+        contact_stiffness=found.stiffness,
+        error_estimate=StatedErrors(_errors(scene, path, found, fields), "mdr"),
+        cost=log.cost(unknowns=0),
+        stages=log.records,
+        notes=(NOTE, *told_of_friction(scene.layer, found.radius)),
+        fields=fields,
+    )
+
+
+def _refuse_far(shape: Shape, found: Expansion) -> None:
+    worst = SAFETY * float(found.third[:2].max())
+    if worst > LARGEST_THIRD:
+        size = float(np.sqrt((found.outline**2).sum(axis=1)).max() / abs(found.radius).max())
+        raise Unsupported(
+            f"indenter = {type(shape).__name__}: its contact deviates from a circle by about {size:.2g} of the radius, "
+            f"so that the second order may be {worst:.2g} off, more than {LARGEST_THIRD:g}; ask bem"
+        )
+
+
+def _errors(scene: Scene, path: ContactPath, found: Expansion, fields: ShapeFields) -> dict[str, StatedError]:
+    """Relative errors: those of the mean profile and the third order."""
+    force, stiffness, radius = SAFETY * found.third
+    share = path.normal_force / (path.contact_stiffness * path.indentation_depth)  # d(ln depth)/d(ln F)
+    by_depth = isinstance(scene.loading, IndentationDepths)
+    mean = path.error_estimate
+    size = (found.outline**2).sum(axis=1) / found.radius**2
+    of_mean = mean["normal_force"] + mean["indentation_depth"]
+    pressure = path.normal_force / (np.pi * path.contact_radius**2)
+
+    def of_pressure() -> FloatArray:
+        """The second order, largest beside the edge, and what truncated harmonics leave."""
+        left = np.array([fields.truncation(step) for step in range(len(path))])
+        return np.asarray(SAFETY * (_BESIDE_EDGE * size + left / pressure) + of_mean)
+
+    return {
+        "contact_radius": mean["contact_radius"] + radius,
+        "indentation_depth": np.zeros_like(force) if by_depth else of_mean + force * share + _CLOSE,
+        "normal_force": of_mean + force if by_depth else np.zeros_like(force),
+        "contact_stiffness": mean["contact_stiffness"] + stiffness,
+        "pressure": of_pressure,
+    }
+
+
+@dataclass(frozen=True)
+class Expanded:
+    """Second order of a shape on springs of its mean profile.
+
+    Attributes:
+        springs: Of the mean profile.
+        shape: The shape.
+    """
+
+    springs: Springs
+    shape: Raised | Flat
+
+    def at(self, path: ContactPath) -> Expansion:
+        """The contacts of a shape at the depths of its mean profile."""
+        if isinstance(self.shape, Flat):
+            return self._flat(self.shape, path)
+        return self._raised(self.shape, path)
+
+    def harmonics(self, a: float) -> Harmonics:
+        """Equations of the order 0 and those of the shape under the contact radius a [m]."""
+        radius = None if self.springs.kernel.is_uniform else self.springs.radius(a)
+        return Harmonics(radius, (0, *self.shape.orders))
+
+    def _flat(self, shape: Flat, path: ContactPath) -> Expansion:
+        angle, weight = shape.sector()
+        outline, orders = shape.outline(angle), np.array(shape.orders)
+        a, one = float(weight @ outline), np.ones(len(path))
+        alpha = 2 * (np.cos(np.outer(orders, angle)) * weight) @ outline
+        y1 = float(self.springs.at([a]).y1[0])
+        terms = self.springs.modulus * y1**2 * alpha**2 * self.harmonics(a).growth / a
+        k = 2 * self.springs.modulus * float(weight @ self.springs.at(outline).K) + float(terms.sum())
+        # Of corners half of the orders tells what the others leave.
+        size, corners = float(np.sqrt((alpha**2).sum()) / a), float(terms[orders > orders[-1] / 2].sum())
+        third = np.array([1.0, 1.0, 0.0]) * (abs(terms.sum()) * size + abs(corners)) / k
+        return Expansion(a * one, k * path.indentation_depth, k * one, np.outer(one, alpha), np.outer(third, one))
+
+    def _raised(self, shape: Raised, path: ContactPath) -> Expansion:
+        a, modulus = path.contact_radius, self.springs.modulus
+        step = np.minimum(_STEP, (self.springs.tip.end / a - 1) / 4)
+        around = a[:, None] * (1 + step[:, None] * np.arange(-2, 3))
+        values = self.springs.at(around.ravel())
+        g, y1 = (np.reshape(v, around.shape) for v in (values.g, values.y1))
+        width = (2 * step * a)[:, None]
+        rise = (g[:, 2:] - g[:, :-2]) / width  # g' at the three inner radii
+        phi, growth = self._edges(shape, around[:, 1:-1])
+        S = 0.5 * modulus * (phi**2).sum(axis=2) / rise
+        more = ((S[:, 2:] - S[:, :1]) / width / rise[:, 1:2])[:, 0]  # dS/ddelta
+        outline = -phi[:, 1] / (rise * y1[:, 1:-1])[:, 1:2]
+        bend = (y1[:, 3:4] ** 2 - y1[:, 1:2] ** 2) / width / 2  # of the average of k_0(a(phi)), over E*
+        known = modulus * (outline**2 * (bend + y1[:, 2:3] ** 2 * growth[:, 1] / a[:, None])).sum(axis=1)
+        radius = a + (more - known) / (2 * modulus * y1[:, 2] ** 2)
+        size = np.sqrt((outline**2).sum(axis=1)) / a
+        force, stiffness = path.normal_force + S[:, 1], path.contact_stiffness + more
+        third = np.array([S[:, 1] * size / force, np.abs(more) * size / stiffness, size**3])
+        return Expansion(radius, force, stiffness, outline, third)
+
+    def _edges(self, shape: Raised, radii: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """phi_n(a) [m] and growth at radii [m], each of shape (n, m, p); of long paths by splines over ln(a)."""
+        flat, scale = radii.ravel(), self.springs.tip.transform
+        count = int(_PER_OCTAVE * np.log2(flat.max() / flat.min())) + 4
+        nodes = flat if flat.size <= max(count, _MOST_RADII) else np.geomspace(flat.min(), flat.max(), count)
+        solved = [self.harmonics(a) for a in nodes.tolist()]
+        phi = np.array([one.density_at_edge(shape, a) for one, a in zip(solved, nodes.tolist(), strict=True)])
+        rows = np.stack([phi[:, 1:] / scale(nodes)[:, None], [one.growth for one in solved]])
+        if nodes is not flat:
+            rows = CubicSpline(np.log(nodes), rows, axis=1)(np.log(flat))
+        rows[0] *= scale(flat)[:, None]
+        return tuple(rows.reshape(2, *radii.shape, -1))
