@@ -48,6 +48,7 @@ class Study:
         nightly: whether it takes too long for the suite "ci".
     """
 
+    kind: ClassVar[str] = "study"
     # Whether its tasks are timed, alone on the machine.
     timed: ClassVar[bool] = False
 

@@ -27,6 +27,7 @@ class Cost(Study):
         cheap: the settings that the ci suite times; empty for all.
     """
 
+    kind: ClassVar[str] = "cost"
     timed: ClassVar[bool] = True
 
     scene: str

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from typing import ClassVar
 
 from cases.advice import NOTHING_PULLS, STATIC, nothing_left, parts_of, without
 from cases.answers import Answer, Table
@@ -24,6 +25,8 @@ class Ablation(Study):
         methods: labels of the methods that solve it with and without.
         slow: labels of those that do so in the nightly suite only.
     """
+
+    kind: ClassVar[str] = "effects"
 
     name: str = "effects"
     scene: str

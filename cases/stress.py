@@ -5,7 +5,7 @@ import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any, Final
+from typing import Any, ClassVar, Final
 
 import numpy as np
 from threadpoolctl import threadpool_limits  # type: ignore[import-untyped]  # ships no types
@@ -69,6 +69,8 @@ class Ladder(Study):
         methods: labels of those under test; empty for all of the case.
         quick: whether the suite ci makes the test, by MDR alone.
     """
+
+    kind: ClassVar[str] = "stress test"
 
     parameter: str
     values: tuple[float, ...]

@@ -304,8 +304,8 @@ def touch_to_touch(
 
     for _ in range(2 * len(active)):
         left = duration - elapsed
-        if least(left) >= 0.0:
-            pressure = held(left)[0]
+        pressure, slack = held(left)
+        if slack.min() >= 0.0:
             surface.accept(pressure)
             return np.maximum(pressure, 0.0), active, touches
         # Zero where a vertex touches or leaves at once.

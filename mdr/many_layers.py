@@ -83,8 +83,7 @@ def _radii(springs: Springs, quantity: Quantity, targets: FloatArray) -> FloatAr
         start = start - np.clip(off / slope, -1.0, 1.0)
     usable = np.abs(off) < _CLOSE
     radius = np.full_like(y, np.inf)
-    some = RadiusSearch(replace(springs, thickness=np.asarray(springs.thickness)[usable]), may_fall=False)
-    radius[usable] = some.refined(quantity, y[usable], start[usable], slope[usable])
+    radius[usable] = search.among(usable).refined(quantity, y[usable], start[usable], slope[usable])
     return radius
 
 

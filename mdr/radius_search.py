@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from typing import Literal
 
 import numpy as np
@@ -123,6 +124,13 @@ class RadiusSearch:
         """ln(depth or force) at z."""
         state = springs.states(self.place(np.atleast_1d(z)))
         return np.asarray(np.log(np.maximum(getattr(state, quantity), 1e-300)))
+
+    def among(self, some: BoolArray) -> RadiusSearch:
+        """The search on some of the layers, where each radius is on a layer of its own."""
+        thickness = self.springs.thickness
+        if isinstance(thickness, float):
+            return self
+        return RadiusSearch(replace(self.springs, thickness=thickness[some]), may_fall=self.may_fall)
 
     def refuse_falls(self, largest: float) -> None:
         """Refuse profiles whose g falls before a contact radius [m].
@@ -306,7 +314,8 @@ class RadiusSearch:
         """
 
         def missed(z: FloatArray, at: BoolArray) -> FloatArray:
-            return self.logarithm(self.springs, quantity, z) - y[at]
+            search = self.among(at)
+            return search.logarithm(search.springs, quantity, z) - y[at]
 
         first = missed(z, np.ones(z.shape, dtype=np.bool_))
         step = -_WIDER * first / np.maximum(slope, 1e-3)

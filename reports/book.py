@@ -5,7 +5,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from cases.case import Case, CaseScene
-from cases.claims import Claim
+from cases.claims import Claim, Study
 from cases.files import write_whole
 from reports.words import Table, display_name, file_name, small
 
@@ -94,18 +94,20 @@ def method_table(case: Case) -> Table:
 
 
 def claim_table(case: Case) -> Table:
-    """The claims with tolerance, reason and origin."""
+    """The claims with tolerance, reason and origin, and the studies of cost, effects and hard parameters by name."""
     heads = ("kind", "claim", "quantity", "tolerance", "expected because", "tolerance from", "origin")
     return Table(
         title="Claims",
         note="",
         heads=heads,
-        rows=tuple(_claim_row(c) for c in case.claims if isinstance(c, Claim)),
+        rows=tuple(map(_claim_row, case.claims)),
         words=7,
     )
 
 
-def _claim_row(claim: Claim) -> tuple[str, ...]:
+def _claim_row(claim: Study) -> tuple[str, ...]:
+    if not isinstance(claim, Claim):
+        return claim.kind, claim.name, getattr(claim, "quantity", ""), "", "", "", ""
     why = claim.why
     names = (str(claim.kind), claim.name, claim.quantity, small(claim.tolerance))
     return *names, why.because, why.tolerance, f"{why.origin}: {why.source}"

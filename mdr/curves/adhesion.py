@@ -230,6 +230,14 @@ def points_beyond(data: Data, fitted: Fitted) -> int:
     return int(np.sum(family.attached & (data.depth - data.deepest + fitted.indentation < depths[0])))
 
 
+def hides_pull_off(fitted: Fitted) -> bool:
+    """Whether the pull-off force of the fit is within the scatter, so that the data do not show where contact ends."""
+    family = fitted.family
+    assert isinstance(family, Adhering)
+    force = fitted.modulus * float(family.table.branch(family.root(fitted.u))[1][0])
+    return abs(force) < _DIP * float(np.std(fitted.residual))
+
+
 def _best(data: Data, ends: Sequence[Fitted]) -> Fitted:
     """The end of the smallest squares whose branch reaches the points in contact.
 

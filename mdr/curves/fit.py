@@ -17,7 +17,7 @@ from numpy.polynomial.polynomial import polyfit
 from contact import Adhesion, InvalidInput, NotConvergedError, Scene
 from contact.answer.small_strains import depth_note
 from contact.records.validation import FloatArray
-from mdr.curves.adhesion import Adhering, fit_adhesive, points_beyond, tabor_sentence
+from mdr.curves.adhesion import Adhering, fit_adhesive, hides_pull_off, points_beyond, tabor_sentence
 from mdr.curves.contact_point import (
     FURTHEST,
     Data,
@@ -276,6 +276,11 @@ def _words(
         beyond = points_beyond(data, fitted)
         if beyond > 1:
             warnings.append(f"{beyond} points in contact are beyond the pull-off of the fit; see the residuals")
+        if "work_of_adhesion" in values and hides_pull_off(fitted):
+            warnings.append(
+                "the pull-off is hidden in the scatter: where contact ends is not seen, and the intervals of modulus "
+                "and work of adhesion may be too narrow; average more curves, or fix the work of adhesion"
+            )
         notes.append(tabor_sentence(scene, modulus, values.get("work_of_adhesion", effect.work_of_adhesion)))
     return tuple(filter(None, warnings)), tuple(filter(None, notes))
 

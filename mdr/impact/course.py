@@ -153,16 +153,15 @@ def _mirrored(growth: Growth, start: State, like: Shrinkage | None) -> Shrinkage
     """The shrinkage back through a growth, guessed from another resolution or as the elastic one."""
     nodes = growth.speed.shape[1]
     r = rule(nodes, growth.rule.power, ending=True)
-    own = growth.bodies, growth.piece, r, start
-    if like is not None:
-        share = np.broadcast_to(r.share[:-1], growth.speed.shape)
-        guess = Shrinkage(*own, like.duration, _speeds(like, share))
-        guess.share = np.array([np.interp(r.share[:-1], like.rule.share[:-1], one) for one in like.share])
-        return guess
-    # A body that entered a piece at a speed v leaves it at -v, less what was lost before.
-    entered = growth.start.speed[:, None] * 0 + 1.0
-    guess = Shrinkage(*own, growth.duration.copy(), -entered * growth.speed[:, ::-1])
-    guess.share = np.broadcast_to(1 - r.share[:-1], growth.speed.shape)
+    if like is None:
+        # A body that entered a piece at a speed v leaves it at -v, less what was lost before.
+        duration, speed = growth.duration.copy(), -growth.speed[:, ::-1]
+        share = np.broadcast_to(1 - r.share[:-1], speed.shape)
+    else:
+        duration, speed = like.duration, _speeds(like, np.broadcast_to(r.share[:-1], growth.speed.shape))
+        share = np.array([np.interp(r.share[:-1], like.rule.share[:-1], one) for one in like.share])
+    guess = Shrinkage(growth.bodies, growth.piece, r, start, duration, speed)
+    guess.share = share
     return guess
 
 

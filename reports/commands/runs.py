@@ -141,8 +141,9 @@ def _show_case(case: Case) -> None:
     for paragraph in case.text.split("\n\n"):
         terminal.print(Padding(Text(" ".join(paragraph.split())), (0, 0, 1, 0)))
     for table in (scene_table(case), method_table(case), claim_table(case)):
-        show_table(table, on=terminal)
-        terminal.print()
+        if table.rows:
+            show_table(table, on=terminal)
+            terminal.print()
 
 
 def cost(names: list[str], options: RunOptions, *, methods: list[str], settings: list[str], quiet: bool) -> int:

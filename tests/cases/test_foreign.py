@@ -24,6 +24,7 @@ from mdr import Mdr
 from reports.command_line import INTERNAL_ERROR, run
 from tests.cases.fake_case import fake_case
 from tests.cases.fake_method import FakeHertz
+from tests.reports.test_command_line import HERTZ
 
 SCENE = Scene(
     layer=Layer.half_space(youngs_modulus=1e6, poissons_ratio=0.3),
@@ -166,23 +167,9 @@ def test_what_is_no_method_is_told_under_its_name(register, value):
         build_guarded("stranger", {})
 
 
-SCENE_FILE = """
-[layer]
-half_space = true
-youngs_modulus = 1e6
-poissons_ratio = 0.3
-[indenter]
-kind = "paraboloid"
-radius_of_curvature = 0.01
-[loading]
-kind = "contact_radii"
-values = [0.5e-3, 1e-3]
-"""
-
-
 @pytest.fixture
 def stranger_solves(register, monkeypatch, tmp_path):
-    (tmp_path / "scene.toml").write_text(SCENE_FILE)
+    (tmp_path / "scene.toml").write_text(HERTZ)
 
     def solve(deed):
         monkeypatch.setattr(Stranger, "deed", staticmethod(deed))

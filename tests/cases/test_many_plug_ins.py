@@ -7,7 +7,7 @@ from importlib.metadata import EntryPoint
 
 import pytest
 
-from cases.claims import Agree
+from cases.claims import Agree, Claim
 from cases.declare import methods
 from cases.declare.registry import load_cases
 from cases.foreign import with_registered
@@ -85,6 +85,7 @@ def asked_of(case):
             claim.tolerance_of(use.label),
         )
         for claim in case.claims
+        if isinstance(claim, Claim)
         for scene, use in claim.places(case)
     }
 

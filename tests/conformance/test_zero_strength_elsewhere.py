@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
 import pytest
 
 from bem.direct_method import IntegralEquationMethod
@@ -21,10 +20,10 @@ from contact import (
     KelvinVoigt,
     Layer,
     Paraboloid,
-    PronySeries,
     Scene,
 )
 from fem_reference import Fem
+from tests.conformance.test_zero_strength import VISCOUS, ZERO, difference
 
 LAYER = Layer.incompressible(thickness=1.0, shear_modulus=1.0)
 COARSE = Fem(order=2, edge_cell=1e-3, growth=1.0, truncation=1e-4)
@@ -35,20 +34,7 @@ IMPACT = Scene(layer=LAYER, indenter=PARABOLOID, loading=Impact(mass=0.1, veloci
 HISTORY = Scene(layer=LAYER, indenter=PARABOLOID, loading=DepthHistory(time=[0.0, 1.0, 2.0], depth=[0.0, 0.05, 0.0]))
 CREEP = HISTORY.replace(loading=ForceHistory(time=[0.0, 1.0, 2.0], force=[0.0, 0.05, 0.02]))
 PUNCH = Scene(layer=LAYER, indenter=FlatPunch(radius=1.0), loading=IndentationDepths([0.01]))
-ZERO = 1e-12  # relative: what "equals absence" means
-
-NO_VISCOSITY = {
-    "no viscosity": KelvinVoigt(shear_modulus=1.0, viscosity=0.0),
-    "a branch without modulus": PronySeries(long_term_shear_modulus=1.0, shear_moduli=[0.0], relaxation_times=[1.0]),
-}
 NUMBERS = ("coefficient_of_restitution", "contact_time", "peak_force", "peak_depth")
-
-
-def difference(one, other, names):
-    return max(
-        float(np.max(np.abs(np.asarray(getattr(one, q)) - getattr(other, q))) / np.max(np.abs(getattr(other, q))))
-        for q in names
-    )
 
 
 def test_finite_elements_without_work_of_adhesion_are_finite_elements_without_adhesion():
@@ -72,16 +58,16 @@ def test_tables_without_work_of_adhesion_are_tables_without_adhesion():
     )
 
 
-@pytest.mark.parametrize("name", NO_VISCOSITY)
+@pytest.mark.parametrize("name", VISCOUS)
 def test_finite_elements_without_viscosity_are_an_elastic_impact(name):
-    with_zero, elastic = COARSE.solve(IMPACT.replace(effects=(NO_VISCOSITY[name],))), COARSE.solve(IMPACT)
+    with_zero, elastic = COARSE.solve(IMPACT.replace(effects=(VISCOUS[name],))), COARSE.solve(IMPACT)
     assert difference(with_zero, elastic, NUMBERS) < ZERO
 
 
-@pytest.mark.parametrize("name", NO_VISCOSITY)
+@pytest.mark.parametrize("name", VISCOUS)
 @pytest.mark.parametrize("history", [HISTORY, CREEP], ids=["depth", "force"])
 def test_finite_elements_without_viscosity_follow_an_elastic_history(history, name):
-    with_zero, elastic = COARSE.solve(history.replace(effects=(NO_VISCOSITY[name],))), COARSE.solve(history)
+    with_zero, elastic = COARSE.solve(history.replace(effects=(VISCOUS[name],))), COARSE.solve(history)
     assert difference(with_zero, elastic, ("normal_force", "indentation_depth")) < ZERO
 
 

@@ -120,7 +120,7 @@ def test_fits_and_sweeps_are_printed_and_what_is_wrong_is_one_line(capsys):
     assert "+373 %" in out
     assert np.genfromtxt("fit.csv", delimiter=",", names=True).size == 120
     assert run(["solve", "force_steps.toml", "--over", "youngs_modulus=1kPa..1MPa:2:log"]) == 0
-    assert "youngs_modulus [Pa]" in capsys.readouterr().out
+    assert "Young's modulus [MPa]" in capsys.readouterr().out
     for arguments, message in (
         (["fit", "curve.csv", "sphere_on_a_gel.toml", "--with", "colour"], "fit youngs_modulus, and any of"),
         (["fit", "none.csv", "sphere_on_a_gel.toml"], "cannot be read"),

@@ -212,7 +212,7 @@ def relaxation(draw: Draw) -> Curve:
 
 # Kinds with white noise, and how many curves of each.
 WHITE = {
-    "elastic": (elastic, 1200),
+    "elastic": (elastic, 1260),
     "film": (film, 60),
     "withdrawal": (withdrawal, 200),
     "relaxation": (relaxation, 60),
@@ -237,6 +237,14 @@ def test_intervals_hold_the_true_number_as_often_as_they_say_where_noise_is_whit
     assert 0.92 - scatter < found.coverage < 0.98 + scatter
     assert not found.silent
     assert sum(found.refused.values()) < 0.1 * count
+
+
+def test_a_pull_off_within_the_scatter_is_warned_of():
+    """The work of adhesion of this curve is half as large as its interval says."""
+    curve = withdrawal(np.random.default_rng((1, 168)))
+    found = curve.fit()
+    assert found.interval("work_of_adhesion")[0] > 1.4 * curve.true["work_of_adhesion"]
+    assert any("the pull-off is hidden in the scatter" in line for line in found.warnings)
 
 
 @pytest.mark.slow

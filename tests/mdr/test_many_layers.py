@@ -61,6 +61,22 @@ def test_together_is_alone(indenter, loading, nu, support):
         np.testing.assert_allclose(together, [getattr(alone, name)[0] for name in NAMES], rtol=2e-13, atol=0.0)
 
 
+def test_a_thousand_truncated_cones_under_one_force():
+    """Every hundredth radius is that of its scene alone."""
+    alike = [
+        Scene(
+            layer=Layer(thickness=float(h), youngs_modulus=9e5, poissons_ratio=0.4),
+            indenter=TruncatedCone(flat_radius=5e-4, slope=0.2),
+            loading=NormalForces([0.2]),
+            beyond_small_strains=True,
+        )
+        for h in np.geomspace(1e-4, 1e-2, 1000)
+    ]
+    together = equilibria(alike, PUNCH).contact_radius[::100]
+    alone = [Mdr(flat_punch=PUNCH).solve(scene).contact_radius[0] for scene in alike[::100]]
+    np.testing.assert_allclose(together, alone, rtol=2e-13, atol=0.0)
+
+
 def test_a_contact_that_has_hardly_left_its_flat_end():
     """Values count relative to how far it has grown."""
     indenter = INDENTERS[0]

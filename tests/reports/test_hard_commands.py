@@ -29,6 +29,13 @@ def test_a_climbed_ladder_tells_its_digits_and_writes_its_table(tmp_path, capsys
     assert "completed to" in page
 
 
+def test_a_case_of_stress_tests_is_listed_with_each_of_them(capsys):
+    assert run(["run", "--list", "stability"]) == 0
+    out = capsys.readouterr().out
+    assert out.count("stress test ") >= 20
+    assert "Scenes" not in out
+
+
 def test_an_unknown_ladder_names_those_there_are(capsys):
     assert run(["run", "--only", "stability", "nonsense"]) == 4
     assert "nearly incompressible" in capsys.readouterr().err.replace("\n", " ")

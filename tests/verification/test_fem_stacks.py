@@ -17,15 +17,14 @@ from contact import (
     FlatPunch,
     GradedLayer,
     Layer,
-    LayerStack,
     NormalForces,
     Paraboloid,
     Scene,
-    Sublayer,
 )
 from fem_reference import Fem
 from mdr import Mdr
 from tests.verification.lift_off import FORCE_AGREEMENT, judge, random_scene
+from tests.verification.test_stacks import stack
 
 PARABOLOID = Paraboloid(radius_of_curvature=1.0)
 QUICK = Fem(growth=0.7, edge_cell=1e-6)
@@ -42,12 +41,6 @@ def differences(ours: ContactPath, other: ContactPath) -> dict[str, tuple[float,
         for name in QUANTITIES
         if ours.error_estimate[name][0]
     }
-
-
-def stack(*layers, interfaces=None, support="bonded"):
-    """From (thickness, E, nu), top first."""
-    sublayers = tuple(Sublayer(thickness=h, youngs_modulus=E, poissons_ratio=nu) for h, E, nu in layers)
-    return LayerStack(sublayers=sublayers, interfaces=interfaces or ("bonded",) * (len(layers) - 1), support=support)
 
 
 def base(modulus, nu, interface="bonded"):
