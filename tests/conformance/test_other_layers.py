@@ -6,11 +6,15 @@ import pytest
 
 from cases.accuracy import solve
 from cases.declare.methods import build
+from cases.referees.calculix import CalculiX
+from cases.referees.contact_mechanics import ContactMechanics
+from cases.referees.tamaas import Tamaas
 from contact import (
     ContactRadii,
     ExponentialDepth,
     Friction,
     GradedLayer,
+    IndentationDepths,
     InvalidInput,
     LayerStack,
     Paraboloid,
@@ -57,3 +61,11 @@ def test_flat_punch_tables_refuse_graded_layers():
 @pytest.mark.parametrize("layer", LAYERS, ids=lambda layer: layer.title)
 def test_the_choice_by_accuracy_answers_other_layers(layer):
     assert solve(scene_of(layer), accuracy=1e-3).stated_error <= 1e-3
+
+
+@pytest.mark.parametrize("method", [CalculiX(), ContactMechanics(), Tamaas()], ids=lambda method: method.name)
+@pytest.mark.parametrize("layer", LAYERS, ids=lambda layer: layer.title)
+def test_outside_solvers_name_the_layer_that_they_do_not_model(method, layer):
+    """A refusal counts as false: taken for none, a bonded stack once passed for a plain layer."""
+    scene = scene_of(layer).replace(loading=IndentationDepths([0.01]))
+    assert type(layer).__name__ in method.supports(scene).reason
