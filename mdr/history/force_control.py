@@ -116,7 +116,7 @@ def steps_of(law: SpringLaw, loading: ForceHistory, substeps: int, degree: int) 
         instants=instants,
         load=found[1:].reshape(-1, degree),
         start=float(found[0]),
-        from_rises=np.linalg.inv(np.vander(nodes, degree + 1, increasing=True)[:, 1:]),
+        from_rises=np.asarray(np.linalg.inv(np.vander(nodes, degree + 1, increasing=True)[:, 1:]), dtype=np.float64),
     )
 
 
