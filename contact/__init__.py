@@ -3,9 +3,6 @@
 Conventions: SI units; pressing is positive; z points into the layer; r is the distance from the axis.
 """
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
-
 from contact.answer.evidence import UNITS as UNITS
 from contact.answer.method import Method as Method
 from contact.answer.method import Supported as Supported
@@ -25,6 +22,9 @@ from contact.answer.solution import Solution as Solution
 from contact.answer.stages import Cost as Cost
 from contact.answer.stages import StageLog as StageLog
 from contact.answer.stages import StageRecord as StageRecord
+from contact.files.scene_file import load_scene as load_scene
+from contact.files.scene_file import scene_from_mapping as scene_from_mapping
+from contact.files.scene_file import scene_to_mapping as scene_to_mapping
 from contact.records.errors import ContactError as ContactError
 from contact.records.errors import InvalidInput as InvalidInput
 from contact.records.errors import NotConvergedError as NotConvergedError
@@ -79,22 +79,3 @@ from contact.scene.shapes import Harmonics as Harmonics
 from contact.scene.shapes import PolygonalPunch as PolygonalPunch
 from contact.scene.shapes import Pyramid as Pyramid
 from contact.scene.shapes import Shape as Shape
-
-if TYPE_CHECKING:
-    from contact.files.scene_file import load_scene as load_scene
-    from contact.files.scene_file import scene_from_mapping as scene_from_mapping
-    from contact.files.scene_file import scene_to_mapping as scene_to_mapping
-
-# Functions of `contact.files.scene_file`, imported at their first use: scenes written in Python need none of them.
-_SCENE_FILES = ("load_scene", "scene_from_mapping", "scene_to_mapping")
-
-
-def __getattr__(name: str) -> Any:
-    """Import a function that reads or writes scene files."""
-    if name not in _SCENE_FILES:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(import_module("contact.files.scene_file"), name)
-
-
-def __dir__() -> list[str]:
-    return sorted({*globals(), *_SCENE_FILES})

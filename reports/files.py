@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from contact import InvalidInput
+from reports.terminal import console
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -28,6 +29,28 @@ def check_outputs(paths: Sequence[Path], endings: Mapping[str, str]) -> None:
             raise InvalidInput(f"--write {path}: the ending says the format; use one of {known}")
         if path.is_dir() or not path.parent.is_dir():
             raise InvalidInput(f"--write {path}: no file can be there; check that the folder exists")
+
+
+Writers = Mapping[str, Callable[[Path], object]]
+
+
+def csv_writer(table: Callable[[], str]) -> Writers:
+    """The writer of a table in CSV, by its ending."""
+    from cases.files import write_whole  # noqa: PLC0415 - storage only where a file is written
+
+    return {".csv": lambda path: write_whole(path, table())}
+
+
+def picture_writers(draw: Callable[[], "Figure"], *, key: str) -> Writers:
+    """Writers of a picture in all its formats, by their endings."""
+    return dict.fromkeys(PICTURES, lambda path: write_picture(path, draw, key=key))
+
+
+def write_outputs(paths: Sequence[Path], writers: Writers) -> None:
+    """Write each file in the format of its ending, and print its name."""
+    for path in paths:
+        writers[path.suffix](path)
+        console().print(f"written: {path}")
 
 
 def write_picture(path: Path, draw: Callable[[], "Figure"], *, key: str) -> None:

@@ -5,7 +5,7 @@ import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Protocol, cast
+from typing import Annotated, Any, ClassVar, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -30,6 +30,9 @@ from contact.records.validation import FloatArray
 from contact.scene.effects import Adhesion
 from contact.scene.shapes import Shape
 
+# Quantities whose magnitude is that of another one.
+_SCALED_BY = {"surface_displacement": "indentation_depth", "stick_radius": "contact_radius"}
+
 
 class Fields(Protocol):
     """Surface fields of one equilibrium."""
@@ -41,19 +44,21 @@ class Fields(Protocol):
         """w(r) [m], positive into the layer."""
 
 
-class InstantInterior(InteriorFields, Protocol):
-    """Fields inside at one instant of a history."""
+class ShapedFields(Protocol):
+    """Fields of one equilibrium under a `Shape`."""
 
-    @property
-    def singular_edge(self) -> bool:
-        """Whether the pressure is infinite at the edge of contact."""
+    def outline(self, angle: FloatArray, step: int) -> FloatArray:
+        """a(phi) [m]."""
+
+    def pressure(self, radius: FloatArray, step: int, angle: FloatArray) -> FloatArray:
+        """p(r, phi) [Pa], zero outside the contact."""
 
 
 class InstantFields(Protocol):
     """Fields of a method at the instants of a history."""
 
-    def inside(self, step: int) -> InstantInterior:
-        """At one of them, at which something touches."""
+    def inside(self, step: int) -> InteriorFields:
+        """At one of them, at which something touches; `singular_edge` says whether the pressure is infinite there."""
 
 
 @dataclass(frozen=True)
@@ -89,19 +94,21 @@ class SampledFields:
 
 
 @one_thread
-def sampled(answer: Solution, fields: object | None, name: str, radius: ArrayLike, step: int) -> FloatArray:
-    """A surface field of one step at radii [m].
+def sampled(
+    answer: Solution, fields: object | None, name: str, radius: ArrayLike, step: int, *angle: FloatArray
+) -> FloatArray:
+    """A surface field of one step at radii [m], of a shape in directions [rad].
 
     Raises:
         InvalidInput: The method gave no fields, the answer has no such step, or a radius is negative or not finite.
     """
-    if fields is None:
-        raise InvalidInput(f"{answer.method} gave no surface fields; ask a method that does")
+    if not hasattr(fields, name):
+        raise InvalidInput(f"{answer.method} gave no surface fields of this name ({name}); ask a method that does")
     answer.refuse_step(step)
     r = np.asarray(radius, dtype=np.float64)
     if not np.all(np.isfinite(r) & (r >= 0.0)):
         raise InvalidInput(f"radius = {np.min(r) if r.size else r}: radii must be finite and not negative")
-    values: FloatArray = getattr(fields, name)(np.atleast_1d(r), step % len(answer))
+    values: FloatArray = getattr(fields, name)(np.atleast_1d(r), step % len(answer), *angle)
     return finite(name, values, answer.method).reshape(r.shape)
 
 
@@ -124,21 +131,23 @@ class ContactPath(Solution):
     indentation_depth: Depths
     normal_force: Forces
     contact_stiffness: Stiffnesses
-    fields: Fields | None = None
+    fields: Fields | ShapedFields | None = None
 
     def scale(self, quantity: str) -> FloatArray:
         """The quantity's own magnitude; with adhesion, where it may cross zero, its largest along the path.
 
-        That of the pressure is the mean pressure F/(pi a^2) under the contact, with adhesion at least that of a flat
-        punch at the same depth; that of the surface's displacement is the depth.
+        That of pressure and traction is the mean pressure F/(pi a^2) under the contact, with adhesion at least that of
+        a flat punch at the same depth; that of the surface's displacement the depth, of the radius of stick the contact
+        radius, of heat the product of force and depth.
         """
-        if quantity == "pressure":
+        quantity = {"surface_displacement": "indentation_depth", "stick_radius": "contact_radius"}.get(
+            quantity, quantity
+        )
+        if quantity in ("pressure", "tangential_traction"):
             return self._mean_pressure()
-        if quantity == "surface_displacement":
-            return self.scale("indentation_depth")
-        if self._adheres or not hasattr(self, quantity):
-            return super().scale(quantity)
-        return self._magnitude(quantity)
+        if quantity == "dissipated_energy":
+            return np.abs(self.normal_force * self.indentation_depth)
+        return super().scale(quantity) if self._adheres or not hasattr(self, quantity) else self._magnitude(quantity)
 
     def _mean_pressure(self) -> FloatArray:
         force, area = np.abs(self.normal_force), np.pi * self.contact_radius**2
@@ -156,11 +165,13 @@ class ContactPath(Solution):
 
         Under a `Shape` it depends on the direction too: an angle [rad] for all radii or one for each.
         """
-        return sampled(self, self._along(angle), "pressure", radius, step)
+        shape = np.shape(radius)
+        along = (np.broadcast_to(angle, shape or 1),) if isinstance(self.scene.indenter, Shape) else ()
+        return sampled(self, self.fields, "pressure", radius, step, *along)
 
-    def surface_displacement(self, radius: ArrayLike, step: int = 0, angle: ArrayLike = 0.0) -> FloatArray:
-        """Surface displacement w(r) [m] of one step at radii [m], inside and outside the contact; as `pressure`."""
-        return sampled(self, self._along(angle), "surface_displacement", radius, step)
+    def surface_displacement(self, radius: ArrayLike, step: int = 0) -> FloatArray:
+        """Surface displacement w(r) [m] of one step at radii [m], inside and outside the contact."""
+        return sampled(self, self.fields, "surface_displacement", radius, step)
 
     def outline(self, angle: ArrayLike, step: int = 0) -> FloatArray:
         """Distance a(phi) [m] of the edge from the axis at directions [rad]; the contact radius of a circle.
@@ -176,13 +187,6 @@ class ContactPath(Solution):
         if of_fields is None:
             raise InvalidInput("the outline of a shape is not kept in files; solve the scene again")
         return np.asarray(of_fields(np.ravel(phi), step % len(self))).reshape(phi.shape)
-
-    def _along(self, angle: ArrayLike) -> Fields | None:
-        """The fields in a direction, where they depend on it."""
-        fields: Any = self.fields
-        if isinstance(self.scene.indenter, Shape) and hasattr(fields, "along"):
-            fields = fields.along(angle)
-        return cast("Fields | None", fields)
 
     def inside(self, step: int = 0) -> Inside:
         """The body under one step: `.at(radius, depth)` and `.largest("von_mises")`.
@@ -245,14 +249,6 @@ class FrictionPath(ContactPath):
 
     stick_radius: Annotated[FloatArray, Quantity("c", "m")]
     dissipated_energy: Dissipation
-
-    def scale(self, quantity: str) -> FloatArray:
-        """The quantity's own magnitude; the contact radius for that of the stick, work for heat, p's for tractions."""
-        if quantity == "dissipated_energy":
-            return np.abs(self.normal_force * self.indentation_depth)
-        if quantity in ("pressure", "tangential_traction"):
-            return np.asarray(np.abs(self.normal_force) / (np.pi * self.contact_radius**2))
-        return self._magnitude("contact_radius" if quantity == "stick_radius" else quantity)
 
     def tangential_traction(self, radius: ArrayLike, step: int = 0) -> FloatArray:
         """Traction q(r) [Pa] of one step at radii [m], positive where it pushes the layer outward, zero outside."""
@@ -381,7 +377,7 @@ class HistoryPath(Solution):
         if radius <= 0.0:
             raise InvalidInput(f"step = {step}: nothing touches at t = {instant:g} s; ask for an instant of contact")
         fields = self.fields.inside(step % len(self))
-        singular = fields.singular_edge
+        singular = getattr(fields, "singular_edge", False)
         return Inside(fields=fields, scene=self.scene, contact_radius=radius, singular_edge=singular)
 
 

@@ -19,6 +19,7 @@ import numpy as np
 from contact.answer.evidence import UNITS, Evidence, Setting, StatedErrors
 from contact.answer.inside import Inside
 from contact.answer.stages import Cost, StageRecord
+from contact.files.scene_file import scene_from_mapping, scene_to_mapping
 from contact.records.errors import InvalidInput, shown
 from contact.records.extras import missing_extra
 from contact.records.record import Record, unit_of
@@ -181,14 +182,12 @@ class Solution(Evidence):
         Raises:
             InvalidInput: If the file cannot be written.
         """
-        # Only answers that are written or read pay for the imports of this section.
+        # Only answers that are written or read pay for the import of h5py.
         from contact.files.storage import write_tree  # noqa: PLC0415
 
         write_tree(path, self._tree())
 
     def _tree(self) -> dict[str, Any]:
-        from contact.files.scene_file import scene_to_mapping  # noqa: PLC0415
-
         texts = {
             "scene": scene_to_mapping(self.scene),
             "cost": dataclasses.asdict(self.cost),
@@ -224,8 +223,6 @@ class Solution(Evidence):
 
     @classmethod
     def _of_tree(cls, tree: Mapping[str, Any]) -> Any:
-        from contact.files.scene_file import scene_from_mapping  # noqa: PLC0415
-
         if tree.get("schema") not in _READABLE:
             raise InvalidInput(f"schema = {shown(tree.get('schema'))}: this version reads {' and '.join(_READABLE)}")
         kinds = {one.__name__: one for one in _subclasses(cls)}

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 import math
-import tomllib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -41,6 +40,8 @@ def _tables(file: Path) -> dict[str, Any]:
         raise InvalidInput(f"{file}: not a text file in UTF-8 (byte {error.start}); save it in UTF-8") from None
     if not text.strip():
         raise InvalidInput(f"{file}: the file is empty; a scene needs [layer], [indenter] and [loading]")
+    import tomllib  # noqa: PLC0415  # scenes written in Python do not pay for it
+
     try:
         return tomllib.loads(text)
     except ValueError as error:

@@ -18,10 +18,6 @@ from contact.records.errors import InvalidInput, shown
 Tree: TypeAlias = Mapping[str, Any]
 
 SEAL = b"contact-verification sha256 "  # a file begins with it, before the digest of its content
-# Deeper trees are refused, so that reading and writing them needs no deep recursion; a solution is three deep.
-MAX_DEPTH = 32
-# Longer names of entries are refused; those of solutions have fewer than thirty letters.
-MAX_NAME = 200
 # HDF5 leaves so many bytes to its user before its own; 512 is the smallest block that its format allows.
 _BLOCK = 512
 
@@ -38,7 +34,7 @@ def write_tree(path: str | Path, tree: Tree) -> None:
     file = Path(path)
     # The whole file is made in memory: HDF5 itself crashes when a disk fills up under it.
     with h5py.File("tree", "w", track_order=True, userblock_size=_BLOCK, driver="core", backing_store=False) as root:
-        _write(root, tree, depth=0)
+        _write(root, tree)
         root.flush()
         content = bytes(root.id.get_file_image())
     remedy = "check that the folder exists"
@@ -63,14 +59,12 @@ def _seal(content: bytes) -> bytes:
     return (SEAL + hashlib.sha256(content).hexdigest().encode()).ljust(_BLOCK, b"\0")
 
 
-def _write(group: h5py.Group, tree: Tree, depth: int) -> None:
-    if not isinstance(tree, Mapping) or depth > MAX_DEPTH:
-        raise InvalidInput(f"{shown(tree)}: give mappings of arrays and numbers, at most {MAX_DEPTH} deep")
+def _write(group: h5py.Group, tree: Tree) -> None:
     for name, value in tree.items():
-        if not isinstance(name, str) or not 0 < len(name) <= MAX_NAME or name == "." or set(name) & set("/\0"):
-            raise InvalidInput(f"{group.name}: {shown(name)} cannot name an entry; give a short text without a slash")
+        if not isinstance(name, str) or name in ("", ".") or set(name) & set("/\0"):
+            raise InvalidInput(f"{group.name}: {shown(name)} cannot name an entry; give a text without a slash")
         if isinstance(value, Mapping):
-            _write(group.create_group(name, track_order=True), value, depth + 1)
+            _write(group.create_group(name, track_order=True), value)
         elif not _is_storable(value):
             kind = f"{type(value).__name__} of {value.dtype}" if isinstance(value, np.ndarray) else type(value).__name__
             raise InvalidInput(f"{group.name}/{name}: a {kind} cannot be stored; give an array or number")

@@ -7,7 +7,6 @@ files as well. Files that mix numbers with and without units are read a second t
 from __future__ import annotations
 
 import math
-import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from numbers import Real
@@ -169,12 +168,6 @@ Modulus = Annotated[float, *positive("give the modulus in pascals", "Pa")]
 PoissonsRatio = Annotated[float, *in_range(0.0, 0.5, "Poisson's ratio is 0.5 for incompressible materials")]
 
 
-def _is_masked(value: object) -> bool:
-    """Whether an array is masked; numpy's module of them is not loaded where none was ever made."""
-    masked = sys.modules.get("numpy.ma")
-    return masked is not None and isinstance(value, masked.MaskedArray)
-
-
 def as_vector(value: object, remedy: str, unit: str | None, reading: Reading | None) -> FloatArray:
     """A read-only vector of finite numbers from a number, a list, a range or a column, shape (n,).
 
@@ -188,7 +181,7 @@ def as_vector(value: object, remedy: str, unit: str | None, reading: Reading | N
         raise ValueError(f"must be a list of numbers; {remedy}")  # pydantic collects ValueError only
     if isinstance(value, np.ndarray) and (value.ndim != 1 or value.dtype.kind not in "iuf"):
         raise ValueError(f"must be a one-dimensional array of real numbers; {remedy}")
-    if _is_masked(value):
+    if hasattr(value, "mask"):
         raise ValueError(f"must not be masked: what hides under the mask is no number; {remedy}")
     if not 0 < len(value) <= MAX_ENTRIES:
         raise ValueError(f"must hold at least one number and at most {MAX_ENTRIES} numbers, got {len(value)}; {remedy}")

@@ -20,7 +20,7 @@ from numpy.typing import ArrayLike
 from bem.flat_punch import IntegralEquation
 from contact import Adhesion, IndentationDepths, NotConvergedError, Paraboloid, Scene, Sphere
 from contact.records.validation import BoolArray, FloatArray
-from mdr.curves.contact_point import Data, Fitted, check_contact, least_squares, modulus_and_residual, rough_indentation
+from mdr.curves.contact_point import Data, Fitted, check_contact, least_squares, rough_indentation
 from mdr.curves.families import CurveShape, Family
 from mdr.curves.force_curve import longest_curve
 from mdr.equilibria import solve_elastic
@@ -224,9 +224,8 @@ def points_beyond(data: Data, fitted: Fitted) -> int:
     family = fitted.family
     assert isinstance(family, Adhering)
     depths, forces = family.table.branch(family.root(fitted.u))
-    modulus, residual = modulus_and_residual(data, family, fitted.indentation, fitted.u)
-    scatter = max(float(np.std(residual)), _NO_PULL_OFF * float(np.ptp(data.force)))
-    if abs(modulus * float(forces[0])) < 3 * scatter:
+    scatter = max(float(np.std(fitted.residual)), _NO_PULL_OFF * float(np.ptp(data.force)))
+    if abs(fitted.modulus * float(forces[0])) < 3 * scatter:
         return 0
     return int(np.sum(family.attached & (data.depth - data.deepest + fitted.indentation < depths[0])))
 
@@ -240,23 +239,21 @@ def _best(data: Data, ends: Sequence[Fitted]) -> Fitted:
     possible = sorted(
         (end for end in ends if points_beyond(data, end) <= 1 + _BEYOND * data.depth.size), key=lambda end: end.squares
     )
-    moduli = [modulus_and_residual(data, end.family, end.indentation, end.u)[0] for end in possible]
-    if not possible or not moduli[0] > 0.0:
+    if not possible or not possible[0].modulus > 0.0:
         raise NotConvergedError(
             "no values describe the curve of withdrawal; press deeper (the force has to rise above its minimum), or "
             "check the tip of the scene and the sign of the force (pressing is positive)"
         )
     best = possible[0]
-    residual = modulus_and_residual(data, best.family, best.indentation, best.u)[1]
-    check_contact(data, float(data.remaining @ data.remaining) - best.squares, residual)
+    check_contact(data, float(data.remaining @ data.remaining) - best.squares, best.residual)
     limit = best.squares * (1 + 3 / data.force.size) + 1e-12 * float(data.force @ data.force)
-    for end, modulus in zip(possible[1:], moduli[1:], strict=True):
-        if end.squares <= limit and abs(modulus / moduli[0] - 1) > _SAME:
-            change = residual - modulus_and_residual(data, end.family, end.indentation, end.u)[1]
-            if float(change @ change) > 9 * limit / data.force.size or modulus == 0.0:
+    for end in possible[1:]:
+        if end.squares <= limit and abs(end.modulus / best.modulus - 1) > _SAME:
+            change = best.residual - end.residual
+            if float(change @ change) > 9 * limit / data.force.size or end.modulus == 0.0:
                 raise NotConvergedError(
-                    f"two sets of values fit this curve equally well (E = {moduli[0]:.4g} and {modulus:.4g} Pa); "
-                    "include the baseline before pull-off, or fix the work of adhesion or the contact point"
+                    f"two sets of values fit this curve equally well (E = {best.modulus:.4g} and {end.modulus:.4g} "
+                    "Pa); include the baseline before pull-off, or fix the work of adhesion or the contact point"
                 )
     return best
 

@@ -89,14 +89,21 @@ class Fitted(NamedTuple):
     Attributes:
         indentation: Depth of indentation at the largest depth [m].
         u: Number of the family of shapes.
-        squares: Sum of squared residuals [N^2].
         family: Of shapes.
+        modulus: E [Pa].
+        residual: Measured less fitted force [N], shape (n,).
     """
 
     indentation: float
     u: float
-    squares: float
     family: Family
+    modulus: float
+    residual: FloatArray
+
+    @property
+    def squares(self) -> float:
+        """Sum of squared residuals [N^2]."""
+        return float(self.residual @ self.residual)
 
 
 def rough_indentation(data: Data) -> float:
@@ -180,15 +187,15 @@ def trial_indentations(data: Data, rough: float, reach: float) -> FloatArray:
     return np.minimum(trials, min(reach, FURTHEST * float(np.ptp(data.depth))))
 
 
-def modulus_and_residual(data: Data, family: Family, indentation: float, u: float) -> tuple[float, FloatArray]:
-    """E [Pa] and the residual [N], shape (n,), at a depth of indentation [m]."""
+def fitted_at(data: Data, family: Family, indentation: float, u: float) -> Fitted:
+    """Modulus and residual at a depth of indentation [m]."""
     phi = data.projected(family.at(u).extended(data.depth - data.deepest + indentation))
+    square = float(phi @ phi)
     if not family.is_scaled:
         modulus = family.factor(u)
-        return modulus, data.remaining - modulus * phi
-    square = float(phi @ phi)
-    modulus = max(float(phi @ data.remaining) / square, 0.0) if square > 0.0 else 0.0
-    return modulus, data.remaining - modulus * phi
+    else:
+        modulus = max(float(phi @ data.remaining) / square, 0.0) if square > 0.0 else 0.0
+    return Fitted(indentation, u, family, modulus, data.remaining - modulus * phi)
 
 
 def least_squares(data: Data, family: Family, trials: dict[float, FloatArray]) -> list[Fitted]:
@@ -216,10 +223,9 @@ def _polished(data: Data, family: Family, indentation: float, u: float) -> Fitte
         return point, float(x[-1]) * unit if varies else u
 
     def residual(x: FloatArray) -> FloatArray:
-        return modulus_and_residual(data, family, *unpacked(x))[1]
+        return fitted_at(data, family, *unpacked(x)).residual
 
     start = np.array([1.0] * free_point + [u / unit] * varies)
     if start.size:
         start = leastsq(residual, start, xtol=1e-9, ftol=1e-12, maxfev=400, full_output=True)[0]
-    end = residual(start)
-    return Fitted(*unpacked(start), float(end @ end), family)
+    return fitted_at(data, family, *unpacked(start))

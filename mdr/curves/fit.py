@@ -23,7 +23,6 @@ from mdr.curves.contact_point import (
     Data,
     Fitted,
     least_squares,
-    modulus_and_residual,
     rough_indentation,
     trial_indentations,
 )
@@ -34,14 +33,18 @@ from mdr.curves.families import (
     changed,
     check_parameters,
     elastic_family,
+    is_modulus,
 )
 from mdr.curves.force_curve import curve_to, longest_curve
 from mdr.curves.formulas import formulas_for
-from mdr.curves.result import CurveFit, FormulaFit, with_intervals
+from mdr.curves.result import ROUNDING, CurveFit, FormulaFit, with_intervals
 
 DEFAULT_PARAMETERS: Final = ("youngs_modulus", "contact_point", "baseline", "tilt")
 # Relative step of central differences by u. Errors grow as its square; at a tenth of it rounding shows.
 _STEP: Final = 1e-3
+# Widening of the interval of E by a free square of the depth in the background, from which the baseline is too short.
+# At twice that shifts of several intervals are silent; at half of it curves with a baseline of half the travel warn.
+_BENT: Final = 3.0
 # Points in contact beside the parameters of the contact. With one less the interval of E may be ten times too narrow.
 _SPARE_POINTS: Final = 2
 
@@ -166,7 +169,7 @@ def _check_inside(family: Solved, u: float, value: float) -> None:
 def _stated(scene: Scene, data: Data, fitted: Fitted, confidence: float) -> CurveFit:
     """Covariance, intervals, band and warnings of the values of least squares."""
     family, u = fitted.family, fitted.u
-    modulus, _ = modulus_and_residual(data, family, fitted.indentation, u)
+    modulus = fitted.modulus
     point = data.deepest - fitted.indentation
     pressed = family.attached if isinstance(family, Adhering) else data.depth > point
     contact_names = [name for name in data.names if name not in ("baseline", "tilt")]
@@ -188,6 +191,9 @@ def _stated(scene: Scene, data: Data, fitted: Fitted, confidence: float) -> Curv
     fitted_force = modulus * phi + line["baseline"] + line["tilt"] * shifted
     order = np.argsort(data.depth, kind="stable")
     warnings, notes = _words(scene, data, fitted, values, modulus)
+    scatter = float(np.std(data.force - fitted_force))
+    if scatter > ROUNDING * float(np.ptp(data.force)):
+        warnings = (*warnings, *_bent_background(jacobian, list(values), shifted))
     return with_intervals(
         jacobian,
         (data.force - fitted_force)[order],
@@ -206,6 +212,22 @@ def _stated(scene: Scene, data: Data, fitted: Fitted, confidence: float) -> Curv
         notes=notes,
         per_modulus=phi,
     )
+
+
+def _bent_background(jacobian: FloatArray, names: list[str], depth: FloatArray) -> tuple[str, ...]:
+    """Warning on curves with too short a baseline, on which a square of the depth in the background is not seen."""
+    if "tilt" not in names:
+        return ()
+    unit = jacobian / np.maximum(np.linalg.norm(jacobian, axis=0), np.finfo(float).tiny)
+    bend, inverse = (depth / np.ptp(depth)) ** 2, np.linalg.pinv(unit.T @ unit, hermitian=True)
+    shift = inverse @ (unit.T @ bend)
+    left, row = bend - unit @ shift, next(i for i, name in enumerate(names) if is_modulus(name))
+    wider = math.hypot(1.0, float(shift[row] / np.sqrt(left @ left * inverse[row, row] + np.finfo(float).tiny)))
+    text = (
+        "the baseline is too short to show whether the background is straight: with a free square of the depth the "
+        f"interval of the modulus would be {min(wider, 999):.2g} times as wide; measure more points before contact"
+    )
+    return (text,) if wider > _BENT else ()
 
 
 def _background(data: Data, remaining: FloatArray, shifted: FloatArray) -> dict[str, float]:
@@ -279,6 +301,5 @@ def _by_formulas(scene: Scene, data: Data, own: float) -> tuple[FormulaFit, ...]
     found, rough = [], rough_indentation(data)
     for formula in formulas_for(scene):
         best = _search(data, Family(formula), rough, math.inf)
-        modulus, _ = modulus_and_residual(data, best.family, best.indentation, best.u)
-        found.append(FormulaFit(formula=formula, youngs_modulus=modulus, bias=modulus / own - 1.0))
+        found.append(FormulaFit(formula=formula, youngs_modulus=best.modulus, bias=best.modulus / own - 1.0))
     return tuple(found)

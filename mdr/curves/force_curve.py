@@ -48,10 +48,9 @@ class ForceCurve:
         if not deepest > 0.0:
             raise InvalidInput(f"loading.values = {deepest:g}: give the largest depth that the curve shall reach")
         self.scene = scene
-        self._method = method or Mdr()
         depths = deepest * np.logspace(-_DECADES, 0.0, _DEPTHS)
         depths[-1] = deepest
-        path = self._method.solve(scene.replace(loading=IndentationDepths(depths), beyond_small_strains=True))
+        path = (method or Mdr()).solve(scene.replace(loading=IndentationDepths(depths), beyond_small_strains=True))
         log_depth = np.log(path.indentation_depth)
         log_force = np.log(path.normal_force / scene.layer.surface.youngs_modulus)
         power = path.contact_stiffness * path.indentation_depth / path.normal_force
@@ -102,14 +101,6 @@ class ForceCurve:
         phi[touches] = np.exp(np.minimum(log_force, 700.0))
         return phi
 
-    def per_modulus_slope(self, depth: ArrayLike) -> FloatArray:
-        """d(phi)/d(depth) = k_N/E [m]."""
-        d, phi = np.asarray(depth, dtype=np.float64), self.extended(depth)
-        slope, touches = np.zeros_like(d), d > 0.0
-        inside = np.clip(np.log(d[touches]), self._nodes[0][0], self._nodes[0][-1])
-        slope[touches] = self._power(inside) * phi[touches] / d[touches]
-        return slope
-
     def depth_of(self, per_modulus: ArrayLike) -> FloatArray:
         """Depth [m] at F/E [m^2], zero where that is at most zero."""
         phi = np.asarray(per_modulus, dtype=np.float64)
@@ -122,43 +113,25 @@ class ForceCurve:
         depth[touches] = np.exp(inverse(inside) + (wanted - inside) / np.interp(inside, log_force, power))
         return depth
 
-    def replaced(self, **changes: object) -> ForceCurve:
-        """The curve with other numbers of layer or indenter, as in `replaced(thickness=2e-6, radius=1e-5)`; cached.
 
-        Raises:
-            InvalidInput: If neither has such a field.
-        """
-        layer, indenter = self.scene.layer, self.scene.indenter
-        for name, value in changes.items():
-            if hasattr(layer, name):
-                layer = layer.replace(**{name: value})
-            elif hasattr(indenter, name):
-                indenter = indenter.replace(**{name: value})
-            else:
-                raise InvalidInput(f"{name}: neither the layer nor the indenter has it")
-        return _cached(self.scene.replace(layer=layer, indenter=indenter), self._method)
-
-
-@lru_cache(maxsize=256)
 def curve_to(scene: Scene, reach: float) -> ForceCurve:
     """The elastic curve of the scene up to a depth [m]; the last 64 are cached."""
-    return _cached(scene.replace(loading=IndentationDepths([reach]), effects=(), beyond_small_strains=True), Mdr())
+    return _cached(scene.replace(loading=IndentationDepths([reach]), effects=(), beyond_small_strains=True))
 
 
 @lru_cache(maxsize=256)
-def longest_curve(scene: Scene, reach: float) -> ForceCurve:
+def longest_curve(scene: Scene, reach: float, halvings: int = _HALVINGS) -> ForceCurve:
     """The elastic curve up to a depth [m], halved until the indenter is that long.
 
     Raises:
         InvalidInput, UnsupportedSceneError: If no reach is answered.
     """
-    for halvings in range(_HALVINGS + 1):
-        try:
-            return curve_to(scene, reach / 2**halvings)
-        except (InvalidInput, UnsupportedSceneError):
-            if halvings == _HALVINGS:
-                raise
-    raise AssertionError
+    try:
+        return curve_to(scene, reach)
+    except (InvalidInput, UnsupportedSceneError):
+        if halvings == 0:
+            raise
+    return longest_curve(scene, reach / 2, halvings - 1)
 
 
 def blended(numbers: Sequence[float], curves: Sequence[ForceCurve]) -> Callable[[float], ForceCurve]:
@@ -177,5 +150,5 @@ def blended(numbers: Sequence[float], curves: Sequence[ForceCurve]) -> Callable[
 
 
 @lru_cache(maxsize=64)
-def _cached(scene: Scene, method: Mdr) -> ForceCurve:
-    return ForceCurve(scene, method)
+def _cached(scene: Scene) -> ForceCurve:
+    return ForceCurve(scene)

@@ -54,8 +54,8 @@ SNEDDON = "Sneddon 1965"
 DIMITRIADIS = "Dimitriadis et al. 2002, Biophys. J. 82, 2798"
 GARCIA = "Garcia, Garcia 2018, Biophys. J. 114, 2923"
 # Coefficients of 1, x, x^2, .. at nu = 1/2, Garcia's on bonded layers. The originals were not at hand: the numbers are
-# those of public programs that cite them, which agree with one another. x is sqrt(R d)/h of a paraboloid,
-# d tan(alpha)/h of a cone of half angle alpha, a/h of a flat punch.
+# those of public programs that cite them, which agree with one another. x is sqrt(R d)/h of a paraboloid, a/h of a flat
+# punch, d tan(alpha)/h of a cone of half angle alpha.
 DIMITRIADIS_BONDED = (1.0, 1.133, 1.283, 0.769, 0.0975)
 DIMITRIADIS_NOT_BONDED = (1.0, 0.884, 0.781, 0.386, 0.0048)
 GARCIA_PARABOLOID = (1.0, 1.133, 1.497, 1.469, 0.755)

@@ -19,7 +19,7 @@ from mdr.curves.formulas import Formula
 # other one known, 1/sqrt(1 - 0.99^2).
 _CONFOUNDED: Final = 0.99
 # Residuals below this share of the largest force have no warning: rounding of files. At 1e-3 some misfits are silent.
-_ROUNDING: Final = 1e-4
+ROUNDING: Final = 1e-4
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -193,7 +193,7 @@ def _widening(residual: FloatArray, pressed: BoolArray, variance: float, size: f
             f"residuals in contact are {np.sqrt(larger):.2g} times the average: intervals are as much wider; see the "
             "residuals"
         )
-    return correlated * larger, warnings if np.sqrt(variance) > _ROUNDING * size else []
+    return correlated * larger, warnings if np.sqrt(variance) > ROUNDING * size else []
 
 
 def _larger_in_contact(residual: FloatArray, pressed: BoolArray, variance: float) -> float:

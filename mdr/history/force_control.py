@@ -116,7 +116,7 @@ def steps_of(law: SpringLaw, loading: ForceHistory, substeps: int, degree: int) 
         instants=instants,
         load=found[1:].reshape(-1, degree),
         start=float(found[0]),
-        from_rises=np.asarray(np.linalg.inv(np.vander(nodes, degree + 1, increasing=True)[:, 1:]), dtype=np.float64),
+        from_rises=np.asarray(np.linalg.inv(np.vander(nodes, degree + 1, increasing=True)[:, 1:])),
     )
 
 
@@ -260,8 +260,8 @@ def _fronts(time: FloatArray, radius: FloatArray, instants: FloatArray) -> Float
     apart = time[-1] + instants.max()
     time, radius = np.concatenate([[-2 * apart, -apart], time, [apart, 2 * apart]]), np.pad(radius, 2, mode="edge")
     i = np.clip(np.searchsorted(time, instants) - 1, 1, time.size - 3)
-    with np.errstate(all="ignore"):
-        pace = np.diff(radius) / np.diff(time)
+    with np.errstate(all="ignore"):  # springs that touch at one instant have an infinite pace, which times zero is zero
+        pace = np.nan_to_num(np.diff(radius) / np.diff(time), posinf=1e150, neginf=-1e150)
     turns = (pace[i] == 0) & (pace[i - 1] * pace[i + 1] < 0)
     beyond = np.minimum(np.abs(pace[i - 1]) * (instants - time[i]), np.abs(pace[i + 1]) * (time[i + 1] - instants))
     return np.interp(instants, time, radius) + np.where(turns, np.sign(pace[i - 1]) * np.maximum(beyond, 0.0), 0.0)

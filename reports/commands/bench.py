@@ -7,7 +7,6 @@ from typing import Any, Literal
 import numpy as np
 
 from cases.declare.uncertain_inputs import read_inputs
-from cases.files import write_whole
 from cases.uncertain_fit import fit_uncertain
 from contact import Adhesion, InvalidInput, Scene, load_scene
 from contact.files.scene_file import uses_units
@@ -16,7 +15,7 @@ from contact.scene.effects import Viscoelasticity
 from mdr.curves import Limit, fit_curve, fit_history, fit_map
 from mdr.curves.fit import DEFAULT_PARAMETERS
 from mdr.curves.reading import Cantilever, Direction, Measured, load_curves, read_map
-from reports.files import PICTURES, check_outputs, write_picture
+from reports.files import PICTURES, check_outputs, csv_writer, picture_writers, write_outputs
 from reports.fit_tables import fit_csv, fit_table, formula_table, map_csv, map_facts, shares_table
 from reports.terminal import console, show_facts, show_table
 from reports.words import small
@@ -59,7 +58,13 @@ def fit_file(
             scene, depths, forces, limit=read_limit(until), positions=positions, progress=progress, **options
         )
         show_facts(map_facts(of_map), on=console())
-        _write_outputs(outputs, lambda: map_csv(of_map), "map_figure", of_map)
+        write_outputs(
+            outputs,
+            {
+                **csv_writer(lambda: map_csv(of_map)),
+                **picture_writers(lambda: _figures().map_figure(of_map), key="fit"),
+            },
+        )
         return
     if not 0 <= number < len(curves):
         raise InvalidInput(f"{file}: has no curve {number}; it has {len(curves)}, counted from 0")
@@ -80,7 +85,10 @@ def fit_file(
     facts += [("numerical error", f"{small(found.numerical_error)} of E, in its interval")]
     facts += [("note", line) for line in (*found.notes, *curve.notes)]
     show_facts(facts, on=console())
-    _write_outputs(outputs, lambda: fit_csv(found), "fit_figure", found)
+    write_outputs(
+        outputs,
+        {**csv_writer(lambda: fit_csv(found)), **picture_writers(lambda: _figures().fit_figure(found), key="fit")},
+    )
 
 
 def fitted_parameters(scene: Scene, fit: str, also: str) -> tuple[str, ...]:
@@ -126,14 +134,8 @@ def _relaxes(scene: Scene) -> bool:
     return scene.effect(Viscoelasticity) is not None
 
 
-def _write_outputs(outputs: Sequence[Path], table: Callable[[], str], figure: str, found: object) -> None:
-    """Write the table to files that end with .csv, the figure of that name in `reports.fit_figures` to the others."""
-    for path in outputs:
-        if path.suffix == ".csv":
-            write_whole(path, table())
-        else:
-            # Matplotlib only where it is asked for.
-            from reports import fit_figures  # noqa: PLC0415
+def _figures() -> Any:
+    # Matplotlib only where it is asked for.
+    from reports import fit_figures  # noqa: PLC0415
 
-            write_picture(path, lambda: getattr(fit_figures, figure)(found), key="fit")
-        console().print(f"written: {path}")
+    return fit_figures

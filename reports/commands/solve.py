@@ -4,6 +4,7 @@ import inspect
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from cases.declare.guarded_method import build_guarded
 from cases.declare.methods import load
@@ -31,7 +32,7 @@ from reports.answer import (
     solution_table,
     sweep_table,
 )
-from reports.files import PICTURES, check_outputs, write_picture
+from reports.files import PICTURES, Writers, check_outputs, csv_writer, picture_writers, write_outputs, write_picture
 from reports.terminal import console, show_facts, show_table
 from reports.words import small, with_prefix
 
@@ -115,9 +116,7 @@ def solve(scene_file: Path, request: Request, progress: Callable[[int, int], Non
         _sweep(scene, scene_file, request, progress)
     else:
         solution = _uncertain(scene, scene_file, request) if request.uncertain else _answer(scene, scene_file, request)
-        for path in request.outputs:
-            _write(solution, path)
-            console().print(f"written: {path}")
+        write_outputs(request.outputs, _writers(solution))
 
 
 def _answer(scene: Scene, scene_file: Path, request: Request) -> Solution:
@@ -218,47 +217,42 @@ def _sweep(scene: Scene, scene_file: Path, request: Request, progress: Callable[
     show_facts([("warning", f"at its deepest, {note}")] * bool(note), on=console())
     show_table(sweep_table(found), on=console())
     show_facts([("refused", f"{value:g}: {reason}") for value, reason in found.refused], on=console())
-    for path in request.outputs:
-        if path.suffix == ".csv":
-            _put(path, found.to_csv())
-        else:
-            from reports.pictures import sweep_figure  # noqa: PLC0415 - Matplotlib only where it is asked for
-
-            write_picture(path, lambda: sweep_figure(found), key="sweep")
-        console().print(f"written: {path}")
+    pictures = picture_writers(lambda: _pictures().sweep_figure(found), key="sweep")
+    write_outputs(request.outputs, {**csv_writer(found.to_csv), **pictures})
 
 
-def _put(path: Path, content: str) -> None:
-    from cases.files import write_whole  # noqa: PLC0415 - storage only where a file is written
+def _pictures() -> Any:
+    from reports import pictures  # noqa: PLC0415 - Matplotlib only where it is asked for
 
-    write_whole(path, content)
+    return pictures
 
 
-def _write(solution: Solution, path: Path) -> None:
-    """Write the answer in the format of the ending."""
-    if path.suffix == ".csv":
-        _put(path, solution_csv(solution))
-    elif path.suffix == ".h5":
-        solution.save(path)
-    elif path.suffix in MESHES:
+def _writers(solution: Solution) -> Writers:
+    """Writers of an answer by the ending of a file."""
+
+    def mesh(path: Path) -> None:
+        """Write the fields on a mesh."""
         write = getattr(solution.inside(-1).fields, "write", None) if isinstance(solution, ContactPath) else None
         if write is None:
             raise InvalidInput(
                 f"--write {path}: {solution.method} has no mesh of this scene; add --method fem, or take .csv"
             )
         write(path)
-    elif path.stem.startswith(INSIDE):
-        from reports.inside import draw_inside  # noqa: PLC0415 - Matplotlib only where it is asked for
 
-        other = _answer_or_none(SHOWN_BESIDE.get(solution.method, "fem"), solution.scene)
-        write_picture(path, lambda: draw_inside(solution, other), key=INSIDE)
-    else:
-        from reports.pictures import between, solution_figure  # noqa: PLC0415 - as above
+    def picture(path: Path) -> None:
+        """Draw the fields inside where the name says so, else the answer."""
+        if path.stem.startswith(INSIDE):
+            from reports.inside import draw_inside  # noqa: PLC0415 - as above
 
+            other = _answer_or_none(SHOWN_BESIDE.get(solution.method, "fem"), solution.scene)
+            return write_picture(path, lambda: draw_inside(solution, other), key=INSIDE)
         # Other methods than MDR would take longer for states between than for the answer.
-        finer = between(solution.scene) if solution.method == "mdr" else None
+        finer = _pictures().between(solution.scene) if solution.method == "mdr" else None
         curve = None if finer is None else _answer_or_none("mdr", finer)
-        write_picture(path, lambda: solution_figure(solution, curve), key="solution")
+        return write_picture(path, lambda: _pictures().solution_figure(solution, curve), key="solution")
+
+    pictures, meshes = dict.fromkeys(PICTURES, picture), dict.fromkeys(MESHES, mesh)
+    return {**csv_writer(lambda: solution_csv(solution)), ".h5": solution.save, **pictures, **meshes}
 
 
 def _answer_or_none(method: str, scene: Scene) -> Solution | None:

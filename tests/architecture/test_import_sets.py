@@ -13,7 +13,7 @@ scene = Scene(layer=layer, indenter=Cone(slope=0.1), loading=ContactRadii([1e-3]
 # What an elastic answer of MDR computes with is numpy and the compiled files of LAPACK and of special functions.
 LAPACK = "scipy.linalg._flapack"
 FEM = ("skfem", "fem_reference")
-FILES = ("contact.files.scene_file", "tomllib", "difflib")
+FILES = ("tomllib", "difflib")
 FAR = ("matplotlib", "h5py", "typer", "rich", "pyfftw", "numpy.ma", *FILES, *FEM)
 
 

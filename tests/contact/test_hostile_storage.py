@@ -38,13 +38,6 @@ def test_what_cannot_be_stored_is_named_and_nothing_is_written(tmp_path, tree, m
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_tree_without_end_is_refused(tmp_path):
-    tree = {}
-    tree["again"] = tree
-    with pytest.raises(InvalidInput, match="at most 32 deep"):
-        write_tree(tmp_path / "tree.h5", tree)
-
-
 def damaged(draw, content):
     """The content cut off, with bits flipped, or with a piece repeated, removed or replaced by noise."""
     data, (first, last) = bytearray(content), sorted(draw.integers(0, len(content) + 1, 2).tolist())

@@ -130,18 +130,10 @@ def test_every_scene_survives_a_round_trip_through_json(scene):
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        ("thickness = 1e-3", "thickness = -1", r"layer\.thickness = -1: must be positive"),
-        ("thickness = 1e-3", "", r"layer\.thickness is missing; add it"),
-        ("thickness = 1e-3", "thicknes = 1e-3", r"layer\.thicknes = 0\.001: no such field"),
         ("poissons_ratio = 0.45", "poissons_ratio = nan", r"layer\.poissons_ratio = nan: must lie in"),
-        ('kind = "truncated_cone"', 'kind = "prism"', r"indenter\.kind = 'prism': must be one of cone, flat_punch"),
-        ('kind = "truncated_cone"', "", r"indenter\.kind = None: must be one of"),
         ("values = [1e-3, 2e-3]", "values = [2e-3, 1e-3]", r"loading\.values = .*must increase strictly"),
         ("values = [1e-3, 2e-3]", 'values = "1e-3"', r"loading\.values = '1e-3': must be a list"),
         ("work_of_adhesion = 0.05", "work_of_adhesion = -1", r"effects\[0\]\.work_of_adhesion = -1: must be finite"),
-        ("[[effects]]", "[effects]", r"effects = .*must be a list of tables; write \[\[effects\]\]"),
-        ("[layer]", "[layers]", r"layers = .*: no such field; write layer instead"),
-        ("[layer]", "[layer", r"not valid TOML: .*line 2"),
         (
             "thickness = 1e-3",
             "thickness = 1e-3\nhalf_space = true",

@@ -78,6 +78,7 @@ def test_the_modulus_of_a_film_does_not_follow_its_guess(guess):
     assert found.youngs_modulus == pytest.approx(2e9, rel=1e-4, abs=0.0)
 
 
+@pytest.mark.slow
 def test_the_modulus_of_a_base_is_fitted_by_its_name():
     path = Mdr().solve(film(2e9).replace(loading=IndentationDepths(np.linspace(5e-9, 3e-7, 60))))
     found = fit_curve(
@@ -146,6 +147,16 @@ def test_residuals_that_are_not_noise_widen_the_interval_and_warn():
     assert found.standard_error["youngs_modulus"] > 1.5 * white.standard_error["youngs_modulus"]
     low, high = found.interval("youngs_modulus")
     assert low <= 5e3 <= high
+
+
+def test_a_bent_background_that_no_baseline_shows_is_warned_of():
+    """A square of the depth is nearly the curve itself where all points are in contact."""
+    depth = np.linspace(0, 5e-7, 400)
+    bend = 0.05 * hertz(depth).max() * (depth / 5e-7) ** 2
+    found = fit_curve(HALF_SPACE, depth, with_noise(hertz(depth) + bend, 1e-3))
+    half = np.diff(found.interval("youngs_modulus"))[0] / 2
+    assert abs(found.youngs_modulus - 5e3) > 3 * half
+    assert any("the baseline is too short" in line for line in found.warnings)
 
 
 @pytest.mark.parametrize(
