@@ -179,8 +179,9 @@ def first_fall(course: Course) -> FloatArray:
     least = course.fading(s[[0, -1]]).min(axis=1).sum(axis=0) + course.constant + shared.min(axis=0)
     some = np.flatnonzero(least <= course.rounding)
     few = course.among(some)
-    s = np.broadcast_to(s, (s.shape[0], event.size))[:, some]
+    s = s[:, some] if s.shape[1] > 1 else s
     falls = few.values(s) < -few.rounding
+    s = np.broadcast_to(s, falls.shape)
     ends = falls.any(axis=0)
     first, which = np.argmax(falls, axis=0)[ends], np.flatnonzero(ends)
     if which.size:
