@@ -38,6 +38,7 @@ from contact import (
     LayerStack,
     NotConvergedError,
     Paraboloid,
+    Shape,
     Sphere,
     UnsupportedSceneError,
     Viscoelasticity,
@@ -319,7 +320,9 @@ def validity_lines(scene: Scene, answer: Solution) -> list[str]:
 
 
 def numbers(scene: Scene, answer: Solution, accuracy: float) -> list[Number]:
-    """The numbers that apply to a solved scene."""
+    """The numbers that apply to a solved scene; those of its body of revolution where the indenter is none."""
+    if isinstance(scene.indenter, Shape):
+        scene = scene.replace(indenter=scene.indenter.substitute)
     found = [_thickness(scene, answer, accuracy), _strain(scene, answer), _friction(scene, answer)]
     if scene.effect(Adhesion) is not None:
         found += _adhesion(scene, answer, accuracy)

@@ -16,6 +16,7 @@ R = TypeVar("R", bound=Record)
 _QUANTITIES: dict[tuple[int, int, int], str] = {
     (1, 0, 0): (
         "thickness radius flat_radius radius_of_curvature reference_radius reference_height radii heights "
+        "first_radius second_radius tip_radius inscribed_radius corner_radius first_half_axis second_half_axis "
         "smoothing initial_contact_radius depth ContactRadii.values IndentationDepths.values contact_radius "
         "indentation_depth peak_depth peak_contact_radius pull_off_depth pull_off_contact_radius"
     ),
@@ -26,7 +27,7 @@ _QUANTITIES: dict[tuple[int, int, int], str] = {
     (1, 0, -1): "velocity",
     (1, 1, 2): "mass",
     (1, 1, 0): "work_of_adhesion contact_stiffness machine_stiffness",
-    (0, 0, 0): "slope exponent coefficient poissons_ratio coefficient_of_restitution",
+    (0, 0, 0): "slope exponent share coefficient poissons_ratio coefficient_of_restitution",
     (3, 1, 0): "kinetic_energy stored_energy dissipated_energy",
 }
 DIMENSIONS: dict[str, tuple[int, int, int]] = {
@@ -77,7 +78,7 @@ def with_numbers(scene: Scene, change: Callable[[Record, str, Any], Any]) -> Sce
 
 def _changed(item: R, change: Callable[[Record, str, Any], Any]) -> R:
     values = {field.name: getattr(item, field.name) for field in dataclasses.fields(item)}
-    numbers = {name: value for name, value in values.items() if value is not None and not isinstance(value, str)}
+    numbers = {name: value for name, value in values.items() if value is not None and not isinstance(value, str | int)}
     return item.replace(**{name: _changed_value(item, name, value, change) for name, value in numbers.items()})
 
 

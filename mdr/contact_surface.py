@@ -65,7 +65,8 @@ class Surface:
         is_singular: Whether phi(a) is not zero: under a flat punch, and with adhesion.
     """
 
-    _corner = 0.0  # of psi at the edge, on graded layers
+    # Of psi at the edge of graded layers: `smooth_slope` leaves -corner ln[(a + t)/(a - t)] out of psi'.
+    corner = 0.0
     _degree = 0  # of polynomials under the quadrature of the pressure
 
     def __init__(self, springs: Springs, a: float, depth: float, *, is_singular: bool = False) -> None:
@@ -98,10 +99,10 @@ class Surface:
         self._phi, self._series = phi * radius.degree, (phi - load) * radius.degree
         self._smooth = self._series
         if self.kernel.tail and self.edge != 0:
-            self._corner = -self.kernel.tail[0] / self.springs.unit * self.edge / np.pi
+            self.corner = -self.kernel.tail[0] / self.springs.unit * self.edge / np.pi
             m = 2.0 * np.arange(1, radius.count)
             known = 4 * (2 * m + 1) / ((m - 1) * m * (m + 1) * (m + 2))
-            self._smooth = self._series - self._corner * self.a * np.concatenate([[2 * np.log(2) - 1], known])
+            self._smooth = self._series - self.corner * self.a * np.concatenate([[2 * np.log(2) - 1], known])
 
     def psi(self, t: FloatArray) -> FloatArray:
         """psi [m] at t <= a [m]."""
@@ -113,14 +114,9 @@ class Surface:
         return 2 * self._smooth.size
 
     @property
-    def corner(self) -> float:
-        """-1/ln[(a + t)/(a - t)] times what `smooth_slope` leaves out of psi'."""
-        return self._corner
-
-    @property
     def edge_of_series(self) -> float:
         """phi(a) [m] as the series has it, which differs from `edge` by what they miss."""
-        known = self.depth - float(self.tip.transform(np.array([self.a]))[0]) + 2 * np.log(2) * self.a * self._corner
+        known = self.depth - float(self.tip.transform(np.array([self.a]))[0]) + 2 * np.log(2) * self.a * self.corner
         return float(known + self._smooth.sum())
 
     def smooth_slope(self, t: FloatArray) -> FloatArray:
@@ -146,10 +142,10 @@ class Surface:
 
     def _slope(self, t: FloatArray) -> FloatArray:
         """-phi' that is integrated numerically, without the singular terms of kinks."""
-        if self._corner == 0:
+        if self.corner == 0:
             return self.tip.transform_slope(t)
         to_edge = np.maximum(self.a - t, 1e-17 * self.a)
-        return np.asarray(self.tip.transform_slope(t) - self._corner * np.log((self.a + t) / to_edge))
+        return np.asarray(self.tip.transform_slope(t) - self.corner * np.log((self.a + t) / to_edge))
 
     def pressure(self, radius: FloatArray) -> FloatArray:
         """p(r) [Pa] at radii [m], shape (n,), zero outside the contact.

@@ -16,7 +16,6 @@ the transfer from the surface to a depth, times p^ = (E*/pi) phi^. z points into
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import NamedTuple
@@ -265,18 +264,17 @@ def _from_rows(rows: FloatArray, r: FloatArray, shear: FloatArray) -> FloatArray
 
 @dataclass(frozen=True, eq=False)
 class Interior:
-    """Fields inside a layer under contacts, each counted so many times, with errors by another resolution.
+    """Fields inside a layer under one contact, with errors by another resolution.
 
     Attributes:
         layer: The layer.
-        contacts: (weight, contact at two resolutions, the finer one first): one contact of weight 1, or many whose
-            weighted pressures add up.
+        pair: The contact at two resolutions, the finer one first.
         known: Radius and errors of the contact.
         depth: delta [m], to which errors of displacements are relative.
     """
 
     layer: ElasticLayer
-    contacts: Sequence[tuple[float, tuple[Surface, Surface]]]
+    pair: tuple[Surface, Surface]
     known: KnownContact
     depth: float
 
@@ -288,9 +286,8 @@ class Interior:
         """
         self._refuse_distant(radius, depth)
         z = np.minimum(depth, self.layer.thickness)
-        values, sizes = self._sum(0, radius, z)
-        other, _ = self._sum(1, radius, z)
-        surface = self.contacts[0][1][0]
+        (values, sizes), (other, _) = (Body(self.layer, one).at(radius, z) for one in self.pair)
+        surface = self.pair[0]
         floor = _ROUNDINGS * float(surface.springs.floor(np.array([surface.a]))[1][0])
         near = np.hypot(radius - self.known.radius, np.maximum(z, _NEAREST * self.known.radius))
         errors = SAFETY * np.abs(values - other) + (floor + _ROUNDINGS * EPS * self.known.radius / near) * sizes
@@ -299,13 +296,6 @@ class Interior:
         errors[:2] += raised * np.abs(values[2:6]).max(axis=0) / self.layer.contact_modulus
         errors[2:7] += raised * np.abs(values[7:]).max(axis=0)
         return InsideFields(**Fields(*values)._asdict(), error_estimate=self._stated(values, errors))
-
-    def _sum(self, which: int, r: FloatArray, z: FloatArray) -> tuple[FloatArray, FloatArray]:
-        parts = [(weight, Body(self.layer, pair[which]).at(r, z)) for weight, pair in self.contacts]
-        return (
-            np.sum([weight * values for weight, (values, _) in parts], axis=0),
-            np.sum([abs(weight) * sizes for weight, (_, sizes) in parts], axis=0),
-        )
 
     def _stated(self, values: FloatArray, errors: FloatArray) -> dict[str, float]:
         """Largest errors of each kind over their scales, see `InsideFields`."""
@@ -334,15 +324,14 @@ class Interior:
 def interior(
     springs: Springs, layer: ElasticLayer, known: KnownContact, depth: float, *, is_singular: bool
 ) -> Interior:
-    """The body under one contact [m]; `is_singular`: whether phi(a) is not zero."""
-    return Interior(layer, [(1.0, pair_of(springs, known, depth, is_singular=is_singular))], known, depth)
+    """The body under one contact [m]; `is_singular`: whether phi(a) is not zero.
 
-
-def pair_of(springs: Springs, known: KnownContact, depth: float, *, is_singular: bool) -> tuple[Surface, Surface]:
-    """One contact with finer sizes, and with the usual ones at a radius that is off by its error."""
-    sizes, a = springs.sizes, known.radius
-    shifted = min(a * (1 + known.radius_error), springs.tip.end)
-    return tuple(_surface(springs, *one, depth, is_singular) for one in ((sizes.finer, a), (sizes, shifted)))  # type: ignore[return-value]
+    The contact has finer sizes, and in its companion the usual ones and a radius that is off by its error.
+    """
+    shifted = min(known.radius * (1 + known.radius_error), springs.tip.end)
+    finer = _surface(springs, springs.sizes.finer, known.radius, depth, is_singular)
+    usual = _surface(springs, springs.sizes, shifted, depth, is_singular)
+    return Interior(layer, (finer, usual), known, depth)
 
 
 def field_sizes(sizes: Sizes) -> Sizes:

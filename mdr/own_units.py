@@ -5,7 +5,6 @@ With lengths in the thickness h, depths in C h^n and forces in E* C h^(n+1), eve
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import ClassVar
@@ -13,8 +12,7 @@ from typing import ClassVar
 import numpy as np
 
 from bem.kernels.moduli import contact_modulus
-from contact import ElasticLayer, Layer, PowerLaw, Profile
-from contact.scene.layer import Support
+from contact import ElasticLayer, PowerLaw, Profile
 from mdr.profiles import PowerTip, tip_of
 
 
@@ -59,16 +57,7 @@ def own_units(layer: ElasticLayer, indenter: Profile, length: float = 1.0) -> Ow
         raise TypeError(f"{type(indenter).__name__} is no power law")
     length = length if layer.is_half_space else layer.thickness
     depth, stiffness = float(indenter.height(np.array([length]))[0]), contact_modulus(layer) * length
-    alike = _uniform(layer.support, layer.poissons_ratio, layer.is_half_space) if isinstance(layer, Layer) else None
-    return OwnUnits(alike or layer.in_own_units(), _unit_power(tip_of(indenter).exponent), length, depth, stiffness)
-
-
-@lru_cache(maxsize=64)
-def _uniform(support: Support, poissons_ratio: float, is_half_space: bool) -> Layer:
-    """One record for all uniform layers that are alike, so that caches find it by identity."""
-    thickness = math.inf if is_half_space else 1.0
-    layer = Layer(thickness=thickness, youngs_modulus=1.0, poissons_ratio=poissons_ratio, support=support)
-    return layer.in_own_units()
+    return OwnUnits(layer.in_own_units(), _unit_power(tip_of(indenter).exponent), length, depth, stiffness)
 
 
 @lru_cache(maxsize=64)

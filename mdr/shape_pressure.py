@@ -9,16 +9,16 @@ delta function at x = a, and a smooth part.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Final
 
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.interpolate import CubicSpline
 
-from contact import ContactPath, InvalidInput
+from contact import ContactPath
 from contact.records.validation import FloatArray
-from contact.scene.shapes import Flat, Raised
+from contact.scene.shapes import LARGEST_ORDER, Flat, Raised
 from mdr.harmonics import Harmonics, basis_of
 from mdr.spring_bed import Springs
 
@@ -45,7 +45,6 @@ class ShapeFields:
         mean: The path of the mean profile.
         radius: abar [m], shape (n,).
         harmonics: alpha_n [m], shape (n, p).
-        angle: phi [rad] of the radii at which the pressure is asked for.
     """
 
     shape: Raised | Flat
@@ -53,12 +52,7 @@ class ShapeFields:
     mean: ContactPath
     radius: FloatArray
     harmonics: FloatArray
-    angle: ArrayLike = 0.0
     _brackets: dict[int, CubicSpline] = field(default_factory=dict)
-
-    def along(self, angle: ArrayLike) -> ShapeFields:
-        """The same at other directions [rad]."""
-        return replace(self, angle=angle)
 
     def outline(self, angle: FloatArray, step: int) -> FloatArray:
         """a(phi) [m]: of a flat punch its own."""
@@ -66,9 +60,8 @@ class ShapeFields:
             return self.shape.outline(angle)
         return np.asarray(self.radius[step] + self._cosines(angle) @ self.harmonics[step])
 
-    def pressure(self, radius: FloatArray, step: int) -> FloatArray:
+    def pressure(self, radius: FloatArray, step: int, angle: FloatArray) -> FloatArray:
         """p(r, phi) [Pa], zero outside the contact."""
-        angle = np.broadcast_to(self.angle, radius.shape)
         share = radius / self.outline(angle, step)
         inside = share < 1.0
         a = float(self.mean.contact_radius[step])
@@ -81,19 +74,9 @@ class ShapeFields:
     def truncation(self, step: int) -> float:
         """Largest pressure [Pa] of the upper half of the orders, within `_INSIDE` of the outline."""
         orders = np.array(self.shape.orders)
-        upper = orders > orders[-1] / 2
-        if not (self.shape.is_truncated and upper.any()):
-            return 0.0
+        upper = orders > LARGEST_ORDER / 2
         u = np.linspace(np.sqrt(1.0 - _INSIDE**2), 1.0, _NODES)
         return float(np.max(np.abs(self._bracket(step)(u)[:, upper]).sum(axis=1) * u**self._power))
-
-    def surface_displacement(self, radius: FloatArray, step: int) -> FloatArray:
-        """Not computed.
-
-        Raises:
-            InvalidInput: Always.
-        """
-        raise InvalidInput("mdr gives outline and pressure of shapes, not the displacement of the surface; ask bem")
 
     def _cosines(self, angle: ArrayLike) -> FloatArray:
         return np.asarray(np.cos(np.multiply.outer(np.asarray(angle), np.array(self.shape.orders))))

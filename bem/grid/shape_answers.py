@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from math import pi, sqrt
+from dataclasses import dataclass
+from math import pi
 from typing import Any, Final
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from bem.grid.discs import refuse_unresolved
-from bem.grid.pressed import PressedState, Pressing, equilibrium
+from bem.grid.pressed import Prescribed, PressedState, Pressing, equilibrium
 from bem.grid.shapes import CellContact, pressed_cells
 from bem.kernels.moduli import contact_modulus
-from contact import ContactPath, IndentationDepths, InvalidInput, NotConvergedError, Profile, Scene, Shape, StageLog
+from contact import ContactPath, IndentationDepths, NotConvergedError, Profile, Scene, Shape, StageLog
 from contact.records.validation import FloatArray
 from contact.scene.shapes import LARGEST_ORDER, Flat, Raised
 from contact.stated import SAFETY, stated_error
@@ -66,20 +66,9 @@ class ShapeState:
 
     def pressure(self, radius: FloatArray, angle: FloatArray) -> FloatArray:
         """p/E* between the centres of cells, scaled to the load."""
-        scale = self.load / (self.cells.load * self.cell_size**2)
-        return np.where(radius < self.outline(angle), scale * self._at("pressure", radius, angle), 0.0)
-
-    def displacement(self, radius: FloatArray, angle: FloatArray) -> FloatArray:
-        """w [m] between the centres of cells."""
-        edge = float(self.cells.radius[-1, -1]) / sqrt(2.0) * self.cell_size
-        if np.max(radius, initial=0.0) > edge:
-            raise InvalidInput(f"radius: bem gives displacements by shapes up to {edge:g} m from the axis")
-        unit = self.depth if isinstance(self.shape, Flat) else self.cell_size
-        return unit * self._at("displacement", radius, angle)
-
-    def _at(self, name: str, radius: FloatArray, angle: FloatArray) -> FloatArray:
-        r = radius / self.cell_size
-        return self.cells.interpolated(name, r * np.cos(angle), r * np.sin(angle))
+        scale, r = self.load / (self.cells.load * self.cell_size**2), radius / self.cell_size
+        found = self.cells.pressure_at(r * np.cos(angle), r * np.sin(angle))
+        return np.where(radius < self.outline(angle), scale * found, 0.0)
 
 
 def _cosines(shape: Shape) -> range:
@@ -89,33 +78,23 @@ def _cosines(shape: Shape) -> range:
 
 @dataclass(frozen=True, eq=False)
 class OutlinedFields:
-    """Fields of every step of a path, along one direction or several.
+    """Outline and pressure of every step of a path.
 
     Attributes:
         states: Of each step.
         modulus: E* [Pa].
-        angle: phi [rad].
     """
 
-    states: tuple[ShapeState, ...]
+    states: Sequence[ShapeState]
     modulus: float
-    angle: ArrayLike = 0.0
-
-    def along(self, angle: ArrayLike) -> OutlinedFields:
-        """The same at other directions [rad]."""
-        return replace(self, angle=angle)
 
     def outline(self, angle: FloatArray, step: int) -> FloatArray:
         """a(phi) [m]."""
         return self.states[step].outline(angle)
 
-    def pressure(self, radius: FloatArray, step: int) -> FloatArray:
+    def pressure(self, radius: FloatArray, step: int, angle: FloatArray) -> FloatArray:
         """p(r, phi) [Pa]."""
-        return self.modulus * self.states[step].pressure(radius, np.broadcast_to(self.angle, radius.shape))
-
-    def surface_displacement(self, radius: FloatArray, step: int) -> FloatArray:
-        """w(r, phi) [m]."""
-        return self.states[step].displacement(radius, np.broadcast_to(self.angle, radius.shape))
+        return self.modulus * self.states[step].pressure(radius, angle)
 
 
 @dataclass(frozen=True)
@@ -157,7 +136,7 @@ class ShapeSolver:
             error_estimate=self._errors(rows, others, list(zip(fine, coarse, strict=True)), by_depth=by_depth),
             cost=self.log.cost(unknowns=fine[0].cells.radius.size),
             stages=self.log.records,
-            fields=OutlinedFields(tuple(fine), modulus),
+            fields=OutlinedFields(fine, modulus),
             **dict(zip(ContactPath.ARRAYS, rows, strict=True)),
         )
 
@@ -191,35 +170,27 @@ class ShapeSolver:
 
     def _raised(self, shape: Raised, points: int, value: float, *, by_depth: bool) -> ShapeState:
         pressing = Pressing(self.scene.layer, shape.mean, points, threads=self.threads)
-        mean, _, near = equilibrium(pressing, "indentation_depth" if by_depth else "normal_force", value)
+        prescribed: Prescribed = "indentation_depth" if by_depth else "normal_force"
+        s, ratio, near = 0.0, 1.0, None
+        for _ in range(MOST_STEPS):
+            mean, _, near = equilibrium(pressing, prescribed, value if by_depth else value / ratio, near)
+            s = s or 2.0 * mean.radius / points
+            shaped, round_ = self._pair(shape, s, mean)
+            before, ratio = ratio, shaped.load / round_.load
+            if by_depth or abs(ratio / before - 1.0) < CLOSE:
+                break
+        else:
+            raise NotConvergedError("the depth under a force was not found on cells")
         refuse_unresolved(pressing.layer, shape.mean, mean.radius, points)
-        s = 2.0 * mean.radius / points
-        shaped, round_ = self._pair(shape, s, mean)
-        if not by_depth:
-            for _ in range(MOST_STEPS):
-                ratio = shaped.load / round_.load
-                mean, _, near = equilibrium(pressing, "normal_force", value / ratio, near)
-                shaped, round_ = self._pair(shape, s, mean)
-                if abs(shaped.load / round_.load / ratio - 1.0) < CLOSE:
-                    break
-            else:
-                raise NotConvergedError("the depth under a force was not found on cells")
-        ratio, load = shaped.load / round_.load, mean.load
         # The ratio varies so little with the depth that cells twice as wide will do.
         low, high = (self._pair(shape, 2.0 * s, mean._replace(depth=mean.depth * (1.0 + e))) for e in (-STEP, STEP))
         change = (high[0].load / high[1].load - low[0].load / low[1].load) / (2.0 * STEP * mean.depth)
         moved = np.array([shaped.moment(n) - round_.moment(n) for n in _cosines(shape)]) * s * s / pi
         square = np.append(moved[0], 2.0 * moved[1:])
         square[0] += mean.radius**2
-        return ShapeState(
-            shaped,
-            s,
-            mean.depth,
-            load * ratio if by_depth else value,
-            mean.stiffness * ratio + load * change,
-            square,
-            shape,
-        )
+        load = mean.load * ratio if by_depth else value
+        stiffness = mean.stiffness * ratio + mean.load * change
+        return ShapeState(shaped, s, mean.depth, load, stiffness, square, shape)
 
     def _pair(self, shape: Raised, cell_size: float, mean: PressedState) -> tuple[CellContact, CellContact]:
         """The shape and its mean on the same cells."""
@@ -247,18 +218,12 @@ class ShapeSolver:
             errors["contact_radius"] = np.zeros(rows.shape[1])
         errors["indentation_depth" if by_depth else "normal_force"] = np.zeros(rows.shape[1])
         shared = errors["normal_force"] + errors["indentation_depth"]
-        changes = np.array([_field_changes(*pair) for pair in pairs]).T
-        return errors | {
-            "pressure": SAFETY * changes[0] + shared,
-            "surface_displacement": SAFETY * changes[1] + shared,
-        }
+        return errors | {"pressure": SAFETY * np.array([_pressure_change(*pair) for pair in pairs]) + shared}
 
 
-def _field_changes(one: ShapeState, other: ShapeState) -> tuple[float, float]:
-    """Largest change of pressures over their mean, and of displacements over the depth, between two grids."""
+def _pressure_change(one: ShapeState, other: ShapeState) -> float:
+    """Largest change of pressures over their mean between two grids."""
     angle = np.linspace(0.0, 2.0 * pi, ANGLES)[:, None]
-    shares = INSIDE * one.outline(angle)
-    places = shares.ravel(), np.broadcast_to(angle, shares.shape).ravel()
-    mean = one.load / (pi * one.radius**2)
-    pressure = np.abs(one.pressure(*places) - other.pressure(*places)).max() / mean
-    return float(pressure), float(np.abs(one.displacement(*places) - other.displacement(*places)).max() / one.depth)
+    radius = INSIDE * one.outline(angle)
+    change = one.pressure(radius, angle) - other.pressure(radius, angle)
+    return float(np.abs(change).max()) * pi * one.radius**2 / one.load

@@ -37,14 +37,12 @@ class CellContact:
         angle: phi of the cell centres.
         contact: Cells in contact.
         pressure: p.
-        displacement: w.
     """
 
     radius: FloatArray
     angle: FloatArray
     contact: BoolArray
     pressure: FloatArray
-    displacement: FloatArray
 
     @property
     def copies(self) -> int:
@@ -60,9 +58,9 @@ class CellContact:
         """Sum of cos(n phi) over the cells in contact: int a^2/2 cos(n phi) dphi."""
         return self.copies * float(np.cos(order * self.angle[self.contact]).sum())
 
-    def interpolated(self, name: str, x: FloatArray, y: FloatArray) -> FloatArray:
-        """Pressure or displacement at places in cell sizes, shape (n,), zero beyond the grid."""
-        values = getattr(self, name)
+    def pressure_at(self, x: FloatArray, y: FloatArray) -> FloatArray:
+        """p at places in cell sizes, zero beyond the grid."""
+        values = self.pressure
         if self.copies == 4:
             values, x, y = np.pad(values, ((1, 0), (1, 0)), mode="symmetric"), np.abs(x) + 0.5, np.abs(y) + 0.5
         else:
@@ -102,7 +100,7 @@ def pressed_cells(
         contact, target = (height == 0.0 if flat else r < radius / cell_size), (depth - height) / cell_size
         contact, p = _active(operator, target, contact, flat=flat)
         if float(np.max(np.abs(centre)[contact.any(axis=1)], initial=0.0)) < half - 2:
-            return CellContact(r, phi, contact, p, operator.displacement(p))
+            return CellContact(r, phi, contact, p)
         half = ceil(GROWTH * half)
 
 

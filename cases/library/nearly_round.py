@@ -33,9 +33,18 @@ def pressed(name: str, body: Layer, indenter: Profile, depth: float = DEPTH, *me
     return c.scene(name, body, indenter, IndentationDepths([depth]), methods=methods or (c.MDR, BEM), steep=True)
 
 
+def on_layers(name: str, tip: Profile, *methods: MethodUse) -> tuple[CaseScene, ...]:
+    """Return a tip at two depths on two layers."""
+    return tuple(
+        pressed(f"{name}, {label}, depth={depth:g} h", c.layer(label), tip, depth * c.THICKNESS, *methods)
+        for label in LABELS
+        for depth in (0.02, 0.05)
+    )
+
+
 def hertz(scene: c.AnyScene) -> float:
     """F = 2 pi E* a depth/(3 K) with A a^2 = depth (K - E)/(m K), B/A = [E/q^2 - K]/(K - E), q = b/a, m = 1 - q^2."""
-    depth, tip = float(scene.loading.values[0]), scene.indenter
+    depth, tip = float(scene.loading.values[0]), TIP
 
     def off(q: float) -> float:
         K, E = ellipk(1 - q * q), ellipe(1 - q * q)
@@ -53,7 +62,7 @@ def stiffness(scene: c.AnyScene) -> float:
     """
     if isinstance(scene.indenter, PolygonalPunch):
         return float(np.pi * 0.73358 * c.contact_modulus(scene.layer) * scene.indenter.inscribed_radius)
-    A, B = scene.indenter.first_half_axis, scene.indenter.second_half_axis
+    A, B = PUNCH.first_half_axis, PUNCH.second_half_axis
     if scene.layer.is_half_space:
         return float(np.pi * c.contact_modulus(scene.layer) * A / ellipk(1 - (B / A) ** 2))
     squeezed = (A * B) ** 3 / (A * A + B * B)
@@ -69,15 +78,7 @@ ELLIPSE = pressed("elliptic paraboloid, half-space", c.half_space(), TIP)
 PUNCHES = pressed("elliptic punch, half-space", c.half_space(), PUNCH)
 SQUARES = pressed("square punch, half-space", c.half_space(), SQUARE)
 LAYERS = tuple(pressed(f"square punch, {label}", c.layer(label), SQUARE) for label in LABELS)
-PYRAMIDS = tuple(
-    pressed(f"pyramid, {label}, depth={depth:g} h", c.layer(label), PYRAMID, depth * c.THICKNESS)
-    for label in LABELS
-    for depth in (0.02, 0.05)
-)
-CONES = tuple(
-    pressed(f"equivalent {s.name}", s.scene.layer, CONE, s.scene.loading.values[0], c.MDR, c.QUICK_FEM)
-    for s in PYRAMIDS
-)
+PYRAMIDS, CONES = on_layers("pyramid", PYRAMID), on_layers("equivalent cone", CONE, c.MDR, c.QUICK_FEM)
 SLENDER = tuple(
     pressed(f"elliptic punch a/h={ratio:g}", SQUEEZED.replace(thickness=c.THICKNESS / ratio), PUNCH, 1e-6, c.MDR)
     for ratio in (75.0, 150.0)

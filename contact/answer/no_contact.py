@@ -8,7 +8,6 @@ from collections.abc import Callable
 from typing import Any, TypeVar, cast
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from contact.answer.inside import InteriorFields, KnownContact
 from contact.answer.paths import ContactPath
@@ -48,22 +47,18 @@ class _PressedFields:
         """`number` is that of each step among the pressed ones, -1 for no contact."""
         self._fields, self._number = fields, number
 
-    def __getattr__(self, name: str) -> Callable[[FloatArray, int], FloatArray]:
+    def __getattr__(self, name: str) -> Callable[..., FloatArray]:
         """A surface field of the method, such as `pressure`, zero without contact."""
         if name.startswith("_"):
             raise AttributeError(name)
         of_method = getattr(self._fields, name)
 
-        def field(radius: FloatArray, step: int) -> FloatArray:
+        def field(radius: FloatArray, step: int, *angle: FloatArray) -> FloatArray:
             """Values at radii [m], zero without contact."""
             pressed = self._number[step]
-            return np.zeros_like(radius) if pressed < 0 else np.asarray(of_method(radius, pressed))
+            return np.zeros_like(radius) if pressed < 0 else np.asarray(of_method(radius, pressed, *angle))
 
         return field
-
-    def along(self, angle: ArrayLike) -> _PressedFields:
-        """The fields of a shape in directions [rad]."""
-        return _PressedFields(self._fields.along(angle), self._number)
 
     def inside(self, step: int, known: KnownContact) -> InteriorFields:
         """The body under one step that presses.

@@ -5,7 +5,7 @@ import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Protocol, cast
+from typing import Annotated, Any, ClassVar, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -42,6 +42,16 @@ class Fields(Protocol):
 
     def surface_displacement(self, radius: FloatArray, step: int) -> FloatArray:
         """w(r) [m], positive into the layer."""
+
+
+class ShapedFields(Protocol):
+    """Fields of one equilibrium under a `Shape`."""
+
+    def outline(self, angle: FloatArray, step: int) -> FloatArray:
+        """a(phi) [m]."""
+
+    def pressure(self, radius: FloatArray, step: int, angle: FloatArray) -> FloatArray:
+        """p(r, phi) [Pa], zero outside the contact."""
 
 
 class InstantFields(Protocol):
@@ -84,19 +94,21 @@ class SampledFields:
 
 
 @one_thread
-def sampled(answer: Solution, fields: object | None, name: str, radius: ArrayLike, step: int) -> FloatArray:
-    """A surface field of one step at radii [m].
+def sampled(
+    answer: Solution, fields: object | None, name: str, radius: ArrayLike, step: int, *angle: FloatArray
+) -> FloatArray:
+    """A surface field of one step at radii [m], of a shape in directions [rad].
 
     Raises:
         InvalidInput: The method gave no fields, the answer has no such step, or a radius is negative or not finite.
     """
-    if fields is None:
-        raise InvalidInput(f"{answer.method} gave no surface fields; ask a method that does")
+    if not hasattr(fields, name):
+        raise InvalidInput(f"{answer.method} gave no surface fields of this name ({name}); ask a method that does")
     answer.refuse_step(step)
     r = np.asarray(radius, dtype=np.float64)
     if not np.all(np.isfinite(r) & (r >= 0.0)):
         raise InvalidInput(f"radius = {np.min(r) if r.size else r}: radii must be finite and not negative")
-    values: FloatArray = getattr(fields, name)(np.atleast_1d(r), step % len(answer))
+    values: FloatArray = getattr(fields, name)(np.atleast_1d(r), step % len(answer), *angle)
     return finite(name, values, answer.method).reshape(r.shape)
 
 
@@ -119,7 +131,7 @@ class ContactPath(Solution):
     indentation_depth: Depths
     normal_force: Forces
     contact_stiffness: Stiffnesses
-    fields: Fields | None = None
+    fields: Fields | ShapedFields | None = None
 
     def scale(self, quantity: str) -> FloatArray:
         """The quantity's own magnitude; with adhesion, where it may cross zero, its largest along the path.
@@ -153,11 +165,13 @@ class ContactPath(Solution):
 
         Under a `Shape` it depends on the direction too: an angle [rad] for all radii or one for each.
         """
-        return sampled(self, self._along(angle), "pressure", radius, step)
+        shape = np.shape(radius)
+        along = (np.broadcast_to(angle, shape or 1),) if isinstance(self.scene.indenter, Shape) else ()
+        return sampled(self, self.fields, "pressure", radius, step, *along)
 
-    def surface_displacement(self, radius: ArrayLike, step: int = 0, angle: ArrayLike = 0.0) -> FloatArray:
-        """Surface displacement w(r) [m] of one step at radii [m], inside and outside the contact; as `pressure`."""
-        return sampled(self, self._along(angle), "surface_displacement", radius, step)
+    def surface_displacement(self, radius: ArrayLike, step: int = 0) -> FloatArray:
+        """Surface displacement w(r) [m] of one step at radii [m], inside and outside the contact."""
+        return sampled(self, self.fields, "surface_displacement", radius, step)
 
     def outline(self, angle: ArrayLike, step: int = 0) -> FloatArray:
         """Distance a(phi) [m] of the edge from the axis at directions [rad]; the contact radius of a circle.
@@ -173,13 +187,6 @@ class ContactPath(Solution):
         if of_fields is None:
             raise InvalidInput("the outline of a shape is not kept in files; solve the scene again")
         return np.asarray(of_fields(np.ravel(phi), step % len(self))).reshape(phi.shape)
-
-    def _along(self, angle: ArrayLike) -> Fields | None:
-        """The fields in a direction, where they depend on it."""
-        fields: Any = self.fields
-        if isinstance(self.scene.indenter, Shape) and hasattr(fields, "along"):
-            fields = fields.along(angle)
-        return cast("Fields | None", fields)
 
     def inside(self, step: int = 0) -> Inside:
         """The body under one step: `.at(radius, depth)` and `.largest("von_mises")`.

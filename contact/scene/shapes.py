@@ -18,7 +18,7 @@ from pydantic import BeforeValidator, Field, model_validator
 from contact.records.errors import UnsupportedSceneError
 from contact.records.record import OneOf, Record, record
 from contact.records.validation import FloatArray, PositiveLength, number
-from contact.scene.profiles import PROFILES, Cone, FlatPunch, Paraboloid, Pointed, Profile, Slope, Sloped, Sphere
+from contact.scene.profiles import PROFILES, Cone, FlatPunch, Paraboloid, Pointed, Profile, Slope, Sloped
 
 # Largest order n of harmonics. The force of a square pyramid changes by 1e-4 with half of it, of a punch by 5e-4.
 LARGEST_ORDER = 16
@@ -47,11 +47,6 @@ class Shape(Profile, ABC):
     def orders(self) -> tuple[int, ...]:
         """Orders n >= 2 of the harmonics cos(n phi) that are not zero, up to `LARGEST_ORDER`."""
         return tuple(range(self.symmetry, LARGEST_ORDER + 1, self.symmetry))
-
-    @property
-    def is_truncated(self) -> bool:
-        """Whether harmonics of higher orders are left out."""
-        return True
 
     @property
     def corners(self) -> tuple[float, ...]:
@@ -95,11 +90,6 @@ class Shape(Profile, ABC):
     def flat_radius(self) -> float:
         """Radius [m] of the flat end of the mean."""
         return self.mean.flat_radius
-
-    @property
-    def max_radius(self) -> float:
-        """Radius [m] where the mean ends."""
-        return self.mean.max_radius
 
 
 class Raised(Shape):
@@ -157,11 +147,6 @@ class EllipticParaboloid(Raised):
         return (2,)
 
     @property
-    def is_truncated(self) -> bool:
-        """False: there are no others."""
-        return False
-
-    @property
     def mean(self) -> Paraboloid:
         """Of the mean curvature."""
         return Paraboloid(radius_of_curvature=2.0 / (1.0 / self.first_radius + 1.0 / self.second_radius))
@@ -210,34 +195,27 @@ class Pyramid(Sloped, Raised):
         return Cone(slope=self.slope / math.sqrt(self.sides / math.pi * math.tan(math.pi / self.sides)))
 
     def polar(self, radius: ArrayLike, angle: ArrayLike) -> FloatArray:
-        """f [m]."""
-        r, slope = np.asarray(radius, dtype=np.float64), self._along(angle)
-        if self.tip_radius is None:
-            return np.asarray(slope * r)
-        b = self._tangent(slope)
-        return Sphere(radius=self.tip_radius).height(np.minimum(r, b)) + slope * np.maximum(r - b, 0.0)
+        """f [m]: R (1 - cos(t)) = R sin(t) tan(t/2) on the sphere, then straight."""
+        slope, t = self._rays(radius, angle)
+        b = (self.tip_radius or 0.0) * np.sin(t)
+        return np.asarray(b * np.tan(t / 2.0) + slope * (np.asarray(radius) - b))
 
     def polar_slope(self, radius: ArrayLike, angle: ArrayLike) -> FloatArray:
         """df/dr [-]."""
-        r, slope = np.asarray(radius, dtype=np.float64), self._along(angle)
-        if self.tip_radius is None:
-            return slope + np.zeros_like(r)
-        return np.minimum(Sphere(radius=self.tip_radius).slope_at(np.minimum(r, self._tangent(slope))), slope)
+        return np.asarray(np.tan(self._rays(radius, angle)[1]))
 
     @property
     def breakpoints(self) -> tuple[float, ...]:
         """Between them [m] rays leave the sphere."""
-        ends = self._along(np.array([math.pi / self.sides, 0.0]))
-        return () if self.tip_radius is None else tuple(self._tangent(ends).tolist())
+        _, t = self._rays(math.inf, np.array([math.pi / self.sides, 0.0]))
+        return tuple((self.tip_radius * np.sin(t)).tolist()) if self.tip_radius else ()
 
-    def _along(self, angle: ArrayLike) -> FloatArray:
-        """Slope of the ray in a direction: that of the face whose middle is nearest."""
+    def _rays(self, radius: ArrayLike, angle: ArrayLike) -> tuple[FloatArray, FloatArray]:
+        """Slope of the flank in a direction, and the inclination t [rad] of the ray at a radius [m]."""
         sector = 2.0 * math.pi / self.sides
-        return np.asarray(self.slope * np.cos(np.asarray(angle) - sector * np.round(np.asarray(angle) / sector)))
-
-    def _tangent(self, slope: FloatArray) -> FloatArray:
-        """Radius [m] where a ray of this slope leaves the sphere."""
-        return np.asarray((self.tip_radius or 0.0) * slope / np.hypot(1.0, slope))
+        slope = self.slope * np.cos(np.asarray(angle) - sector * np.round(np.asarray(angle) / sector))
+        sine = np.minimum(np.asarray(radius) / (self.tip_radius or 1e-300), 1.0)
+        return slope, np.minimum(np.arcsin(sine), np.arctan(slope))
 
 
 @record
@@ -284,10 +262,6 @@ class Harmonic(Record):
     profile: Annotated[Profile, OneOf(*PROFILES)] | None = None
 
 
-# Profiles whose slope is finite, so that harmonics of it make sense.
-_POINTED = tuple(kind for kind in PROFILES if kind is not FlatPunch)
-
-
 def _terms(given: Any) -> Any:
     """A mapping {n: share} or {n: profile} as terms."""
     if not isinstance(given, Mapping):
@@ -307,7 +281,7 @@ class Harmonics(Raised):
         terms: The terms, as a list of `Harmonic`; in Python also {n: share} or {n: profile}.
     """
 
-    profile: Annotated[Profile, OneOf(*_POINTED)]
+    profile: Annotated[Profile, OneOf(*PROFILES)]
     terms: Annotated[tuple[Harmonic, ...], BeforeValidator(_terms)]
 
     @model_validator(mode="after")
@@ -327,11 +301,6 @@ class Harmonics(Raised):
     def orders(self) -> tuple[int, ...]:
         """Those of the terms."""
         return tuple(term.order for term in self.terms)
-
-    @property
-    def is_truncated(self) -> bool:
-        """False: there are no others."""
-        return False
 
     @property
     def mean(self) -> Profile:

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bem.kernels.moduli import confined_modulus, contact_modulus
+from bem.kernels.moduli import contact_modulus
 from bem.numerics import gauss
 from contact import InvalidInput, Layer, Profile
 from contact.records.validation import FloatArray
@@ -32,7 +32,7 @@ def is_film(layer: Layer) -> bool:
 
 def foundation_modulus(layer: Layer) -> float:
     """E~ [Pa] of the bed p = E~ w/h: confined modulus if bonded, Eq. (17), E* if unbonded, Eq. (22)."""
-    return contact_modulus(layer) if layer.support == "unbonded" else confined_modulus(layer)
+    return contact_modulus(layer) if layer.support == "unbonded" else layer.confined_modulus
 
 
 def thin_spring_stiffness(layer: Layer, x: ArrayLike) -> FloatArray:

@@ -59,26 +59,21 @@ class Steps(NamedTuple):
         force: F there [N].
         given: Indices of the instants of the history.
         nodes: Shares of a substep at which depths are determined, shape (q,).
+        instants: All of these [s], shape (n, q).
         load: F_e [N] at these, shape (n, q).
         start: F_e [N] at the first instant.
+        from_rises: From rises at the nodes to coefficients of a polynomial in the share of a substep, without the
+            constant, shape (q, q).
     """
 
     time: FloatArray
     force: FloatArray
     given: NDArray[np.intp]
     nodes: FloatArray
+    instants: FloatArray
     load: FloatArray
     start: float
-
-    @property
-    def instants(self) -> FloatArray:
-        """All nodes [s], shape (n, q)."""
-        return np.asarray(self.time[:-1, None] + np.diff(self.time)[:, None] * self.nodes)
-
-    @property
-    def from_rises(self) -> FloatArray:
-        """From rises at the nodes to coefficients of a polynomial in the share of a substep, without the constant."""
-        return np.asarray(np.linalg.inv(np.vander(self.nodes, self.nodes.size + 1, increasing=True)[:, 1:]))
+    from_rises: FloatArray
 
     def ways(self, depth: FloatArray) -> FloatArray:
         """Coefficients of the depth in substeps [m], from depths at the first instant and all nodes."""
@@ -105,25 +100,24 @@ def steps_of(law: SpringLaw, loading: ForceHistory, substeps: int, degree: int) 
         s = np.arange(1, count + 1) / count
         way = s**2 if min(load[k], force[k]) > 0 else s**4
         if force[k + 1] <= 0:
-            way = (
-                np.concatenate([way / 2, 1 - 0.5 * _SHORTER ** np.arange(1, 2 * degree), [1.0]])
-                if force[k] > 0
-                else np.ones(1)
-            )
+            ends_at_zero = np.concatenate([way / 2, 1 - 0.5 * _SHORTER ** np.arange(1, 2 * degree), [1.0]])
+            way = ends_at_zero if force[k] > 0 else np.ones(1)
         time.append(np.append(ends[k] + durations[k] * way[:-1], ends[k + 1]))
     every = np.concatenate(time)
     nodes = (1 - np.cos(np.pi * np.arange(1, degree + 1) / degree)) / 2
-    steps = Steps(
-        every,
-        np.interp(every, loading.time, loading.force),
-        np.searchsorted(every, loading.time),
-        nodes,
-        np.zeros(0),
-        0.0,
+    instants = every[:-1, None] + np.diff(every)[:, None] * nodes
+    all_instants = np.append(every[0], instants)
+    found = law.elastic_force(all_instants, np.interp(all_instants, loading.time, loading.force))
+    return Steps(
+        time=every,
+        force=np.interp(every, loading.time, loading.force),
+        given=np.searchsorted(every, loading.time),
+        nodes=nodes,
+        instants=instants,
+        load=found[1:].reshape(-1, degree),
+        start=float(found[0]),
+        from_rises=np.asarray(np.linalg.inv(np.vander(nodes, degree + 1, increasing=True)[:, 1:])),
     )
-    instants = np.append(every[0], steps.instants)
-    found = law.elastic_force(instants, np.interp(instants, loading.time, loading.force))
-    return steps._replace(load=found[1:].reshape(-1, degree), start=float(found[0]))
 
 
 def turns(law: SpringLaw, loading: ForceHistory) -> FloatArray:
@@ -183,15 +177,11 @@ class March:
         """
         (count, degree), steps = self.steps.load.shape, self.steps
         bed = SpringBed.undeformed(self.law, self.layout.g, float(self.closed[0]))
-        ways, depth, free = (
-            np.zeros((count, degree + 1)),
-            np.full(count + 1, self.closed[0]),
-            np.zeros(count, dtype=np.bool_),
-        )
+        ways, depth = np.zeros((count, degree + 1)), np.full(count + 1, self.closed[0])
+        free = ~self.known & (steps.force[1:] <= 0)
         self.depth = np.zeros((count, degree))
         touched, passed = np.zeros((count, degree), dtype=np.bool_), [np.zeros((2, 1))]
         for k, span in enumerate(np.diff(steps.time).tolist()):
-            free[k] = not self.known[k] and steps.force[k + 1] <= 0
             if free[k]:
                 bed.release(span)
                 touching = np.zeros((degree, bed.g.size), dtype=np.bool_)
@@ -212,15 +202,11 @@ class March:
         return Path(steps.time, depth, ways, free)
 
     @cached_property
-    def _inverse(self) -> FloatArray:
-        return self.steps.from_rises
-
-    @cached_property
     def _dashpots(self) -> tuple[FloatArray, FloatArray]:
         """From values at the start and the nodes to integrals up to the nodes, and from rises to slopes there."""
         nodes, order = np.append(0.0, self.steps.nodes), np.arange(1, self.steps.nodes.size + 2)
         powers = np.vander(nodes, nodes.size, increasing=True)
-        slopes = powers[:, :-1] * order[:-1] @ self._inverse
+        slopes = powers[:, :-1] * order[:-1] @ self.steps.from_rises
         return (nodes[1:, None] * powers[1:] / order) @ np.linalg.inv(powers), slopes
 
     def _correction(self, missed: FloatArray, touching: NDArray[np.bool_], before: SpringBed) -> FloatArray:
@@ -237,7 +223,7 @@ class March:
 
     def _way(self, start: float, depth: FloatArray) -> FloatArray:
         """Coefficients of the polynomial through a depth at the start and depths at the nodes."""
-        return np.append(start, self._inverse @ (depth - start))
+        return np.append(start, self.steps.from_rises @ (depth - start))
 
     def _met(
         self, before: SpringBed, start: float, k: int, span: float
@@ -274,8 +260,8 @@ def _fronts(time: FloatArray, radius: FloatArray, instants: FloatArray) -> Float
     apart = time[-1] + instants.max()
     time, radius = np.concatenate([[-2 * apart, -apart], time, [apart, 2 * apart]]), np.pad(radius, 2, mode="edge")
     i = np.clip(np.searchsorted(time, instants) - 1, 1, time.size - 3)
-    with np.errstate(all="ignore"):
-        pace = np.diff(radius) / np.diff(time)
+    with np.errstate(all="ignore"):  # springs that touch at one instant have an infinite pace, which times zero is zero
+        pace = np.nan_to_num(np.diff(radius) / np.diff(time), posinf=1e150, neginf=-1e150)
     turns = (pace[i] == 0) & (pace[i - 1] * pace[i + 1] < 0)
     beyond = np.minimum(np.abs(pace[i - 1]) * (instants - time[i]), np.abs(pace[i + 1]) * (time[i + 1] - instants))
     return np.interp(instants, time, radius) + np.where(turns, np.sign(pace[i - 1]) * np.maximum(beyond, 0.0), 0.0)

@@ -19,10 +19,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bem.numerics import EPS, panels
-from contact import UnsupportedSceneError
+from contact import FlatPunch, InvalidInput, Scene, UnsupportedSceneError
 from contact.records.validation import FloatArray
+from mdr.equilibria import is_simple, refuse_inadmissible
 from mdr.history.spring_bed import Path, SpringBed, followed
 from mdr.history.spring_law import SpringLaw
+from mdr.radius_search import Quantity, RadiusSearch, refuse_too_wide
 from mdr.spring_bed import Springs
 
 # Secant steps to a front; eight are usual.
@@ -36,6 +38,92 @@ _APART = 1e-9
 # Power of the distance from a kink, or from the axis, in which springs are smooth: g goes with roots of the former, and
 # tips like r^1.7 are not analytic at the latter.
 KINK_POWER, _AXIS_POWER = 2.0, 4.0
+# What messages name where the indenter ends before a depth or force.
+_PRESCRIBED = {"depth": "loading.depth", "force": "loading.force, as an elastic layer must bear it to be as deep"}
+
+
+class Response(NamedTuple):
+    """What springs answer to a history.
+
+    Attributes:
+        path: Depths between all instants.
+        given: Indices in the path of the instants of the history, shape (n,).
+        depth: delta [m] at these, shape (n,).
+        force: F_N [N], shape (n,).
+        radius: a [m], zero without contact, shape (n,).
+        known: Where the depth is known in closed form, shape (n,).
+        bent: Whether spring forces ever rose outwards.
+        springs: Number of them.
+        doubt: Last correction of the depth [m].
+    """
+
+    path: Path
+    given: NDArray[np.intp]
+    depth: FloatArray
+    force: FloatArray
+    radius: FloatArray
+    known: NDArray[np.bool_]
+    bent: bool
+    springs: int
+    doubt: float = 0.0
+
+
+class Problem(NamedTuple):
+    """A layer that relaxes, under an indenter.
+
+    Attributes:
+        scene: The problem.
+        springs: Of the layer.
+        law: Of each spring.
+    """
+
+    scene: Scene
+    springs: Springs
+    law: SpringLaw
+
+    @property
+    def finer(self) -> Problem:
+        """The same on finer springs."""
+        return self._replace(springs=self.springs.finer)
+
+    @property
+    def punch(self) -> float | None:
+        """Radius of a flat punch [m], None of other indenters."""
+        return self.scene.indenter.radius if isinstance(self.scene.indenter, FlatPunch) else None
+
+    def elastic_radii(self, quantity: Quantity, values: FloatArray) -> FloatArray:
+        """Contact radii [m] under depths [m] or forces [N] > 0 of the elastic layer.
+
+        Raises:
+            InvalidInput: If the indenter ends before.
+        """
+        if self.punch is not None:
+            refuse_too_wide(self.springs, self.punch)
+            return np.full(values.size, self.punch)
+        search = RadiusSearch(self.springs, may_fall=not is_simple(self.scene))
+        try:
+            return search.radii(quantity, values, self.refuse_circle)
+        except InvalidInput as error:
+            raise InvalidInput(str(error).replace("loading.values", _PRESCRIBED[quantity])) from None
+
+    def radii(self, gamma: FloatArray) -> FloatArray:
+        """Contact radii [m] of fronts gamma [m], zero where gamma < 0."""
+        radius, some = np.where(gamma >= 0, self.scene.indenter.flat_radius, 0.0), gamma > 0
+        if some.any():
+            radius[some] = self.elastic_radii("depth", gamma[some])
+        return radius
+
+    def depths(self, load: FloatArray) -> FloatArray:
+        """Depths [m] of the elastic layer under forces [N], zero where these are."""
+        depth, some = np.zeros(load.size), load > 0
+        radius = self.elastic_radii("force", load[some])
+        depth[some] = self.springs.depth_of(load[some], self.springs.at(radius))
+        return depth
+
+    def refuse_circle(self, radius: float, depth: float = 0.0) -> None:
+        """Refuse an elastic contact of a radius [m], under a flat punch at a depth [m], that is no disc."""
+        a, values = np.array([radius]), self.springs.at([radius])
+        refuse_inadmissible(self.scene, self.springs, self.springs.state(a, values, np.maximum(values.g, depth)))
 
 
 def fronts(law: SpringLaw, path: Path, some: NDArray[np.bool_] | bool = True) -> FloatArray:

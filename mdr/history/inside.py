@@ -20,12 +20,11 @@ from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
 from bem.numerics import even_legendre, gauss
-from contact import FlatPunch, Profile, Scene
+from contact import FlatPunch, Profile
 from contact.answer.inside import InsideFields, KnownContact
 from contact.records.validation import FloatArray
-from mdr.history.fronts import KINK_POWER
-from mdr.history.spring_bed import Path, SpringBed, followed
-from mdr.history.spring_law import SpringLaw
+from mdr.history.fronts import KINK_POWER, Problem, Response
+from mdr.history.spring_bed import followed
 from mdr.inside import Interior
 from mdr.spring_bed import Springs
 
@@ -183,7 +182,7 @@ class HistoryInterior:
     @property
     def singular_edge(self) -> bool:
         """Whether the pressure is infinite at the edge of contact."""
-        return self.stressed.contacts[0][1][0].edge > 0.0
+        return self.stressed.pair[0].edge > 0.0
 
     def at(self, radius: FloatArray, depth: FloatArray) -> InsideFields:
         """At points [m] of shape (n,)."""
@@ -202,63 +201,51 @@ class HistoryFields:
     """What is inside the body at the instants of a history.
 
     Attributes:
-        scene: The problem.
-        springs: Its springs.
-        law: Of each spring.
-        path: Depths between all instants.
-        given: Indices in the path of the instants of the history.
-        radius: Contact radii at all of them [m], zero without contact.
-        fronts: Radii at which spring forces bend [m].
+        problem: Layer and indenter.
+        answer: What the springs answered.
         density_error: Relative error of the force at each instant.
     """
 
-    scene: Scene
-    springs: Springs
-    law: SpringLaw
-    path: Path
-    given: NDArray[np.intp]
-    radius: FloatArray
-    fronts: FloatArray
+    problem: Problem
+    answer: Response
     density_error: FloatArray
 
     def inside(self, step: int) -> HistoryInterior:
         """The body at one instant of contact."""
-        a, widest = float(self.radius[step]), float(self.radius[: step + 1].max())
+        radius, depth = self.answer.radius, float(self.answer.depth[step])
+        a, widest = float(radius[step]), float(radius[: step + 1].max())
         known = KnownContact(a, 0.0, float(self.density_error[step]))
-        depth = float(self.path.depth[self.given[step]])
-        pairs = [self._densities(one, nodes, a, widest, step) for one, nodes in self._resolutions]
-        bodies = (
-            Interior(self.scene.layer, [(1.0, (one, other))], known, depth) for one, other in zip(*pairs, strict=True)
-        )
-        return HistoryInterior(*bodies)
+        pairs = zip(*(self._densities(*one, a, widest, step) for one in self._resolutions), strict=True)
+        layer = self.problem.scene.layer
+        return HistoryInterior(*(Interior(layer, pair, known, depth) for pair in pairs))
 
     @cached_property
     def _resolutions(self) -> tuple[tuple[Springs, int], tuple[Springs, int]]:
-        return (self.springs.finer, _NODES + 6), (self.springs, _NODES)
+        return (self.problem.springs.finer, _NODES + 6), (self.problem.springs, _NODES)
 
     def _densities(self, springs: Springs, nodes: int, a: float, widest: float, step: int) -> list[SpringDensity]:
         """phi of the spring forces within the contact, and of the displacements of all springs that were touched."""
-        found = []
+        found, indenter, viscosity = [], self.problem.scene.indenter, bool(self.problem.law.viscosity)
         for b, moved in ((a, False), (widest, True)):
-            panels = self._panels_to(springs, b, a if self.law.viscosity and moved else 0.0)
+            panels = self._panels_to(springs, b, a if viscosity and moved else 0.0)
             x = SpringDensity._at(panels, gauss(nodes)[0])
             q = self._springs_at(springs, x.ravel(), step, moved=moved).reshape(x.shape)
             # Dashpots press as soon as they are touched.
-            has_edge = isinstance(self.scene.indenter, FlatPunch) or (bool(self.law.viscosity) and not moved)
-            found.append(SpringDensity(springs, self.scene.indenter, panels, q, has_edge=has_edge))
+            has_edge = isinstance(indenter, FlatPunch) or (viscosity and not moved)
+            found.append(SpringDensity(springs, indenter, panels, q, has_edge=has_edge))
         return found
 
     def _panels_to(self, springs: Springs, b: float, front: float) -> FloatArray:
         """Panels of [0, b], closer beside a front at which springs let go by and by."""
-        tip, rows = springs.tip, []
+        tip, rows, fronts = springs.tip, [], self.answer.radius.tolist()
         beside = front + np.concatenate([[0.0], (b - front) * _BESIDE_FRONT, -front * _BESIDE_FRONT])
-        flat = self.scene.indenter.flat_radius
+        flat = springs.tip.flat
         stretches = [0.0, *(end for end in sorted({flat, *tip.breaks}) if 0 < end < b * (1 - _APART)), b]
         for low, high in pairwise(stretches):
             power = KINK_POWER if low or not flat else 1.0
             even = np.linspace(low, high, 1 + int(np.ceil((high - low) / (_WIDEST * springs.unit))))[1:-1]
             inner = np.unique(
-                [f for f in (*self.fronts, *beside, *(even if not springs.kernel.is_uniform else ())) if low < f < high]
+                [f for f in (*fronts, *beside, *(even if not springs.kernel.is_uniform else ())) if low < f < high]
             )
             share = np.append(0.0, ((inner - low) / (high - low)) ** (1 / power))
             if power != 1.0 and low == 0:  # tips like r^1.7 are not analytic at the axis
@@ -269,21 +256,13 @@ class HistoryFields:
 
     def _springs_at(self, springs: Springs, x: FloatArray, step: int, *, moved: bool) -> FloatArray:
         """Forces, or displacements, of springs at x [m] at one instant [m]."""
-        flat = self.scene.indenter.flat_radius
+        flat = springs.tip.flat
         g = np.zeros(x.size)
         above = x > flat
         if above.any():
             g[above] = np.maximum(springs.at(x[above], x[above] - flat).g, 0.0)
-        order = np.argsort(g, kind="stable")
-        last = int(self.given[step])
-        bed: SpringBed | None = None
-        for number, one in enumerate(followed(self.law, g[order], self.path)):
-            if number == last:
-                bed = one
-                break
-        assert bed is not None
+        order, path, last = np.argsort(g, kind="stable"), self.answer.path, int(self.answer.given[step])
+        *_, bed = followed(self.problem.law, g[order], path.until(last))
         values = np.empty(x.size)
-        values[order] = (
-            bed.surface if moved else np.where(bed.touching, bed.forces(float(self.path.final_speed[last])), 0.0)
-        )
+        values[order] = bed.surface if moved else bed.forces(float(path.final_speed[last]))
         return values

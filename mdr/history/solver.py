@@ -8,7 +8,6 @@ Errors: the same history on finer springs with more of them, and with other step
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +17,6 @@ from bem.kernels.moduli import relaxation_of
 from bem.numerics import EPS
 from contact import (
     DepthHistory,
-    FlatPunch,
     ForceHistory,
     HistoryPath,
     InvalidInput,
@@ -29,14 +27,13 @@ from contact import (
 from contact.answer.solution import Setting
 from contact.records.validation import FloatArray
 from contact.stated import stated_error
-from mdr.equilibria import is_simple, refuse_inadmissible, springs_on
+from mdr.equilibria import springs_on
 from mdr.history.force_control import March, Steps, never_larger, resting_depth, steps_of
-from mdr.history.fronts import fronts, layout, panel_ends, refuse_open_inside
+from mdr.history.fronts import Problem, Response, fronts, layout, panel_ends, refuse_open_inside
 from mdr.history.inside import HistoryFields
 from mdr.history.spring_bed import Path, followed
 from mdr.history.spring_law import SpringLaw
 from mdr.method import DEFAULT_ACCURACY
-from mdr.radius_search import Quantity, RadiusSearch, refuse_too_wide
 from mdr.spring_bed import Springs
 
 # Nodes per panel under a depth, and under a force, where panels are as many as instants. With half as many errors of
@@ -58,101 +55,6 @@ _BENT = (
     "Reloading has left spring forces that rise outwards somewhere; that the pressure is positive everywhere then "
     "follows no longer from the springs alone."
 )
-
-
-class Response(NamedTuple):
-    """What springs answer to a history.
-
-    Attributes:
-        path: Depths between all instants.
-        given: Indices in the path of the instants of the history, shape (n,).
-        depth: delta [m] at these, shape (n,).
-        force: F_N [N], shape (n,).
-        radius: a [m], zero without contact, shape (n,).
-        known: Where the depth is known in closed form, shape (n,).
-        bent: Whether spring forces ever rose outwards.
-        springs: Number of them.
-        doubt: Last correction of the depth [m].
-    """
-
-    path: Path
-    given: NDArray[np.intp]
-    depth: FloatArray
-    force: FloatArray
-    radius: FloatArray
-    known: NDArray[np.bool_]
-    bent: bool
-    springs: int
-    doubt: float = 0.0
-
-
-class Problem(NamedTuple):
-    """A layer that relaxes, under an indenter.
-
-    Attributes:
-        scene: The problem.
-        springs: Of the layer.
-        law: Of each spring.
-    """
-
-    scene: Scene
-    springs: Springs
-    law: SpringLaw
-
-    @property
-    def finer(self) -> Problem:
-        """The same on finer springs."""
-        return self._replace(springs=self.springs.finer)
-
-    @property
-    def punch(self) -> float | None:
-        """Radius of a flat punch [m], None of other indenters."""
-        return self.scene.indenter.radius if isinstance(self.scene.indenter, FlatPunch) else None
-
-    def elastic_radii(self, quantity: Quantity, values: FloatArray) -> FloatArray:
-        """Contact radii [m] under depths [m] or forces [N] > 0 of the elastic layer."""
-        search = RadiusSearch(self.springs, may_fall=not is_simple(self.scene))
-        return search.radii(quantity, values, self.refuse_circle)
-
-    def radii(self, gamma: FloatArray) -> FloatArray:
-        """Contact radii [m] of fronts gamma [m], zero where gamma < 0.
-
-        Raises:
-            InvalidInput: If the indenter ends before.
-        """
-        if self.punch is not None:
-            return np.where(gamma >= 0, self.punch, 0.0)
-        radius, some = np.where(gamma >= 0, self.scene.indenter.flat_radius, 0.0), gamma > 0
-        if some.any():
-            try:
-                radius[some] = self.elastic_radii("depth", gamma[some])
-            except InvalidInput as error:
-                raise InvalidInput(str(error).replace("loading.values", "loading.depth")) from None
-        return radius
-
-    def depths(self, load: FloatArray) -> FloatArray:
-        """Depths [m] of the elastic layer under forces [N], zero where these are.
-
-        Raises:
-            InvalidInput: If the indenter ends before.
-        """
-        depth, some = np.zeros(load.size), load > 0
-        if self.punch is not None:
-            refuse_too_wide(self.springs, self.punch)
-            radius = np.full(np.count_nonzero(some), self.punch)
-        else:
-            try:
-                radius = self.elastic_radii("force", load[some])
-            except InvalidInput as error:
-                message = f"loading.force, as an elastic layer must bear it to be as deep: {error}"
-                raise InvalidInput(message) from None
-        depth[some] = self.springs.depth_of(load[some], self.springs.at(radius))
-        return depth
-
-    def refuse_circle(self, radius: float, depth: float = 0.0) -> None:
-        """Refuse an elastic contact of a radius [m], under a flat punch at a depth [m], that is no disc."""
-        a, values = np.array([radius]), self.springs.at([radius])
-        refuse_inadmissible(self.scene, self.springs, self.springs.state(a, values, np.maximum(values.g, depth)))
 
 
 def solve_history(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[str, Setting]) -> HistoryPath:
@@ -194,7 +96,7 @@ def solve_history(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
         indentation_depth=answer.depth,
         normal_force=answer.force,
         contact_radius=answer.radius,
-        fields=_fields(problem, answer, errors["normal_force"] + errors["indentation_depth"]),
+        fields=HistoryFields(problem, answer, errors["normal_force"] + errors["indentation_depth"]),
     )
 
 
@@ -208,20 +110,6 @@ def _errors(springs: Springs, answer: Response, other: Response) -> dict[str, Fl
         unknown = change.max() + answer.doubt / answer.depth.max()
         found[name] = np.asarray(np.where(known, change[known].max(initial=0.0), unknown))
     return found
-
-
-def _fields(problem: Problem, answer: Response, error: FloatArray) -> HistoryFields:
-    """What is inside the body at the instants, with the relative error of the force or depth."""
-    return HistoryFields(
-        scene=problem.scene,
-        springs=problem.springs,
-        law=problem.law,
-        path=answer.path,
-        given=answer.given,
-        radius=answer.radius,
-        fronts=np.unique(answer.radius[answer.radius > 0]),
-        density_error=error,
-    )
 
 
 def _substeps(settings: Mapping[str, Setting]) -> int:
@@ -244,12 +132,10 @@ def _refuse_idle(loading: DepthHistory | ForceHistory) -> None:
 def _by_depth(problem: Problem, loading: DepthHistory) -> list[Response]:
     """The answer to depths, and the same on finer springs with fronts a rounding further out."""
     law, path, found = problem.law, Path.linear(loading.time, loading.depth), []
-    gamma = fronts(law, path) if problem.punch is None else np.zeros(path.time.size)
+    gamma = fronts(law, path) if problem.punch is None else np.where(path.depth > 0, path.depth, 0.0)
     moved = np.where(gamma > 0, gamma + 8 * EPS * path.peaks[-1], gamma)
     for one, front in ((problem, gamma), (problem.finer, moved)):
-        if one.punch is not None:
-            refuse_too_wide(one.springs, one.punch)
-        ends = np.zeros(0) if one.punch is not None else one.radii(panel_ends(law, path.time, front))
+        ends = one.radii(panel_ends(law, path.time, front))
         bed, force, bent = layout(one.springs, ends, _NODES_OF_DEPTHS), np.zeros(path.time.size), False
         for k, (now, speed) in enumerate(zip(followed(law, bed.g, path), path.final_speed, strict=True)):
             refuse_open_inside(now.touching, float(path.time[k]))

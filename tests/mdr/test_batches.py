@@ -55,8 +55,7 @@ def test_pull_offs_are_what_detachment_paths_say():
             )
             for layer in LAYERS
             for indenter in INDENTERS
-            for control in ("displacement", "force")
-            for work in (0.01, 0.05)
+            for control, work in (("displacement", 0.01), ("force", 0.05))
         ]
     )
     seen = []

@@ -18,10 +18,8 @@ def detached(slope, poissons_ratio, **start):
     return Mdr().solve(scene)
 
 
-@pytest.mark.parametrize(
-    ("slope", "poissons_ratio"),
-    [(1e-3, 0.3), pytest.param(1e-3, 0.5, marks=pytest.mark.slow), pytest.param(1e-4, 0.5, marks=pytest.mark.slow)],
-)
+@pytest.mark.slow
+@pytest.mark.parametrize(("slope", "poissons_ratio"), [(1e-3, 0.3), (1e-3, 0.5), (1e-4, 0.5)])
 def test_a_withdrawal_without_a_first_radius_meets_the_one_from_a_given_radius(slope, poissons_ratio):
     found, given = detached(slope, poissons_ratio), detached(slope, poissons_ratio, initial_contact_radius=0.1)
     bar = sum(path.uncertainty("pull_off_force")[0] for path in (found, given))

@@ -78,6 +78,7 @@ def test_the_modulus_of_a_film_does_not_follow_its_guess(guess):
     assert found.youngs_modulus == pytest.approx(2e9, rel=1e-4, abs=0.0)
 
 
+@pytest.mark.slow
 def test_the_modulus_of_a_base_is_fitted_by_its_name():
     path = Mdr().solve(film(2e9).replace(loading=IndentationDepths(np.linspace(5e-9, 3e-7, 60))))
     found = fit_curve(

@@ -80,17 +80,9 @@ def test_stacks_of_more_and_more_sublayers_come_to_the_same_waves(nu, support):
     assert orders == pytest.approx([2.0, 2.0], rel=0, abs=0.1)
 
 
-@pytest.mark.parametrize(
-    ("support", "indenter"),
-    [
-        pytest.param("bonded", ROUND, marks=pytest.mark.slow),
-        pytest.param("unbonded", ROUND, marks=pytest.mark.slow),
-        pytest.param(FOUNDATION, ROUND, marks=pytest.mark.slow),
-        pytest.param("bonded", FlatPunch(radius=0.7), marks=pytest.mark.slow),
-        ("unbonded", FlatPunch(radius=0.7)),
-        pytest.param(FOUNDATION, FlatPunch(radius=0.7), marks=pytest.mark.slow),
-    ],
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("support", ["bonded", "unbonded", FOUNDATION])
+@pytest.mark.parametrize("indenter", [ROUND, FlatPunch(radius=0.7)], ids=lambda one: type(one).__name__)
 def test_surface_base_and_force(support, indenter):
     path = pressed(graded(0.3, support), indenter)
     inside, a = path.inside(), float(path.contact_radius[0])

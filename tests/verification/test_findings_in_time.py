@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 
 from contact import (
+    Cone,
     DepthHistory,
     FlatPunch,
+    ForceHistory,
     Impact,
     IndentationDepths,
     KelvinVoigt,
@@ -73,3 +75,16 @@ def test_a_relaxation_far_faster_than_the_impact_is_an_answer_or_a_named_refusal
         return
     # limit tau -> 0: an elastic layer of modulus G_inf; the loss is of the order tau G_1 / (G_inf T), T about 0.3 s
     assert 1.0 - 9.0 * np.pi * time / 0.3 < restitution <= 1.0
+
+
+def test_springs_that_touch_at_one_instant_under_a_force_have_no_infinite_front():
+    """Infinite pace times no time was NaN (and a warning, which fails a test)."""
+    layer = Layer(thickness=3.37702e-07, youngs_modulus=11772.7, poissons_ratio=0.5, support="unbonded")
+    loading = ForceHistory(time=[0.0, 2.66493, 2.72075], force=[0.0, 0.0004327, 0.0])
+    effect = KelvinVoigt(shear_modulus=layer.shear_modulus, viscosity=14695.2)
+    scene = Scene(
+        layer=layer, indenter=Cone(slope=30.3796), loading=loading, effects=(effect,), beyond_small_strains=True
+    )
+    history = Mdr().solve(scene)
+    assert history.contact_radius[2] == 0.0
+    assert np.isfinite(history.indentation_depth).all()
