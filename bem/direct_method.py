@@ -7,7 +7,7 @@ stationary in a. Errors: the same contacts by a finer discretisation (`contact.s
 from __future__ import annotations
 
 from functools import cache
-from math import exp, log, pi
+from math import exp, inf, log, pi
 from typing import Annotated, ClassVar, NamedTuple, Self
 
 import numpy as np
@@ -39,8 +39,8 @@ _PRESCRIBED = {ContactRadii: 0, IndentationDepths: 1, NormalForces: 2}
 LARGEST_RATIO, LARGEST_GRADED_RATIO = 100.0, 16.0
 # Quantities whose changes are errors.
 _COMPARED = (*ContactPath.ARRAYS[1:], "pressure", "surface_displacement")
-# Largest d ln(a) per d ln(depth or force), under stiff films on soft bases.
-_SOFTENING = 4.0
+# Step of ln(a - b) for the derivative of the load. Its third digit enters an error only.
+_STEP = 1e-3
 # Rounding error over the condition k_bar, and of pressure and displacement by quadrature.
 _ROUNDING, _FIELD_ROUNDING = 32 * EPS, 1e-12
 # Largest d ln k_N/d ln a, that of thin incompressible layers.
@@ -58,11 +58,13 @@ class Contact(NamedTuple):
         density: Solution of its radius.
         state: a [m], depth [m], F_N [N], k_N [N/m], the prescribed one inserted.
         reached: Value of the prescribed quantity with which phi(a) = 0.
+        slope: d ln(reached)/d ln a.
     """
 
     density: Density
     state: FloatArray
     reached: float
+    slope: float = inf
 
     @property
     def mean_pressure(self) -> float:
@@ -198,7 +200,9 @@ class DirectSolver:
             low, high = high, high + log(2)
         while missed(low) > 0:
             low, high = 2 * low - high - 1, low
-        return contact(toms748(missed, low, high, xtol=self.sizes.search))
+        z = toms748(missed, low, high, xtol=self.sizes.search)
+        change = log(contact(z).state[0] / contact(z - _STEP).state[0])
+        return contact(z)._replace(slope=abs(missed(z) - missed(z - _STEP)) / change if change > 0 else inf)
 
     def pressure(self, contact: Contact, radius: FloatArray) -> FloatArray:
         """p(r) [Pa] at r < a [m]."""
@@ -266,7 +270,7 @@ def _errors(solver: DirectSolver, contacts: list[Contact], finer: DirectSolver) 
     radius, miss, rounded = np.zeros((3, floor.size))
     if solver.prescribed and not solver.is_punch:
         miss = stated_error([contact.reached for contact in others], values, scale=values)
-        radius = _SOFTENING * miss + floor
+        radius = miss / np.array([contact.slope for contact in contacts]) + floor
         # A radius close to that of a flat end has few digits of a - b.
         a = np.array([contact.state[0] for contact in contacts])
         rounded = EPS * a / np.maximum(a - solver.scene.indenter.flat_radius, EPS * a)

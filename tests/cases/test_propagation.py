@@ -126,7 +126,7 @@ def test_too_few_samples_are_refused():
         propagate(HERTZ, "youngs_modulus=2%", samples=3)
 
 
-def test_the_command_prints_both_uncertainties_and_what_moves_together(tmp_path, capsys):
+def test_the_command_prints_both_uncertainties_and_correlations(tmp_path, capsys):
     from reports.commands.solve import Request, solve
 
     scene = tmp_path / "scene.toml"
@@ -137,7 +137,7 @@ def test_the_command_prints_both_uncertainties_and_what_moves_together(tmp_path,
     )
     solve(scene, Request(uncertain="thickness=3%,poissons_ratio=0.48..0.5"))
     printed = " ".join(capsys.readouterr().out.split())
-    for words in ("numerical error", "by inputs", "thickness", "poissons_ratio", "Moving together", "4.6 %"):
+    for words in ("numerical error", "by inputs", "thickness", "poissons_ratio", "Correlated", "4.6 %"):
         assert words in printed
     with pytest.raises(InvalidInput, match="--samples"):
         solve(scene, Request(samples=20))

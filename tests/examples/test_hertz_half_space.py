@@ -32,7 +32,7 @@ def test_the_mistake_is_caught_and_the_report_shows_where(tmp_path, capsys):
     assert run([*ARGUMENTS, "--out", str(tmp_path)]) == 1
     told = " ".join(capsys.readouterr().out.split())
     assert "FAIL truncated_cone" in told
-    sentence = "normal force is off against closed form, -9.0e-02 each in 4 comparisons, as by one factor 0.91"
+    sentence = "normal force is off against closed form, -0.09 each in 4 comparisons, as by one factor 0.91"
     pages = [(tmp_path / name).read_text(encoding="utf-8") for name in ("report.html", "summary.md")]
     for text in (told, *pages):
         assert text.count(sentence) == 1
