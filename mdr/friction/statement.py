@@ -29,7 +29,7 @@ from mdr.inside import Body, field_sizes
 from mdr.spring_bed import Springs
 
 # Share of min(1, mu U) by which friction moves the radius at most. Full stick moved it by up to 0.14 of min(1, U), most
-# under a cone on a thick layer of nu = 0 (252 scenes: nu 0 to 1/2, a/h 0.1 to 10, both supports, 2026-11-22).
+# under a cone on a thick layer of nu = 0 (of 252: nu 0 to 1/2, a/h 0.1 to 10, both supports).
 _RADIUS_SHARE = 0.2
 # Slip of less than this share of the largest has no direction; ten times as much would call small reversals one way.
 _NO_DIRECTION = 1e-3

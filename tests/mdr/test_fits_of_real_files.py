@@ -235,7 +235,9 @@ def test_a_sphere_that_hardly_adheres_is_withdrawn_over_any_travel(travel):
     depth = np.linspace(-travel, 2e-7, 1500)[::-1]
     elastic = ForceCurve(scene.replace(effects=(), loading=IndentationDepths([1e-6])))
     found = fit_curve(scene, depth, with_noise(elastic(depth, 5e3)))
-    assert found.youngs_modulus == pytest.approx(5e3, rel=0.2, abs=0.0)
+    low, high = found.interval("youngs_modulus")
+    assert 2 * low - high < 5e3 < 2 * high - low
+    assert high < 1.2 * low
 
 
 def test_a_few_points_in_contact_are_no_curve():
