@@ -232,7 +232,7 @@ def adhesive_equilibria(scene: Scene, solve: ContactSolver, growth: float) -> li
     largest, profile, is_punch = float(targets.max()), scene.indenter, isinstance(scene.indenter, FlatPunch)
 
     def reached(r: float) -> bool:
-        """Whether the load exceeds the target, by the bounds delta_0 >= f and F >= E* a f, less twice dl."""
+        """Whether the load exceeds the target, by delta_0 >= f and F >= E* a f (convex profiles), f less twice dl."""
         alone = height(profile, r) - 2 * np.sqrt(2 * np.pi * r * work)
         return bool(alone >= (1.5 * largest if by_depth else largest / r))
 
