@@ -1,13 +1,15 @@
 """JKR adhesion: the branch of equilibria over the contact radius, states at prescribed loads, and detachment.
 
-The energy release rate ``G = k_N' (delta - delta_0)^2 / (4 pi a)`` equals the work of adhesion where
+With dPi/da of `prescribed_contact`, the energy release rate ``G = (dPi/da) / (2 pi a) = k_N' (delta - delta_0)^2 /
+(4 pi a)`` equals the work of adhesion dgamma where
 
     delta(a) = delta_0(a) - dl(a),   dl(a) = sqrt(4 pi a dgamma / k_N'(a)),      F(a) = k_N delta + F_2.
 
-k_N, k_N', delta_0 and F_2 are solved at Chebyshev points and interpolated. They are smooth between the kinks of the
-profile, next to a flat end in the square root of a - b. Final states are solved at their radii.
+dl is Eq. (40) of Machines 11 (2023) 474, with c_N = k_N'/2. k_N, k_N', delta_0 and F_2 are solved at Chebyshev points
+and interpolated. They are smooth functions of a between the kinks of the profile. Next to a flat end of radius b they
+are smooth in sqrt(a - b). Final states are solved at their radii.
 
-Units: SI for lengths, stresses by E*.
+Units: lengths in m, stresses by E*, hence forces F / E* in m^2 and dgamma / E* in m.
 """
 
 from __future__ import annotations
@@ -50,7 +52,7 @@ CAVITATION = (
     "the pressure under a flat punch of radius {radius:g} m has a second maximum in the centre: detachment may lose "
     "its axial symmetry (cavitation, fingering), and this branch may be unphysical there"
 )
-# Interpolated quantities, with the power of the contact radius that turns them into SI lengths.
+# Interpolated quantities of `PrescribedContact`, which has a = 1, with the power of a that turns them into powers of m.
 POWERS = {"stiffness": 1, "stiffness_slope": 0, "smooth_depth": 1, "profile_force": 2}
 # Chebyshev points of a piece at a growth of 1/2, and the power of the growth by which they become more.
 NODES, NODE_POWER = 12, 0.75
@@ -85,7 +87,7 @@ class BranchPiece:
 
     @classmethod
     def solved(cls, low: float, high: float, solve: ContactSolver, nodes: int, *, graded: bool = False) -> BranchPiece:
-        """The piece between two radii [m], from so many contacts."""
+        """The piece between two radii [m], interpolated from ``nodes`` contacts."""
         s = chebyshev_points(nodes)
         radii = low + (high - low) * s**2 if graded else low * (high / low) ** s
         radii[0], radii[-1] = low, high
@@ -97,13 +99,13 @@ class BranchPiece:
         radii = np.array([contact.contact_radius for contact in self.contacts])
         for name, power in POWERS.items():
             values = np.array([getattr(contact, name) for contact in self.contacts])
-            # Stiffnesses over the power of a that half-spaces have; depth and force in SI lengths.
+            # log(k_N / (E* a)) and log(k_N' / E*), constant on a half-space; delta_0 in m, F_2 / E* in m^2.
             values = np.log(values) if name.startswith("stiffness") else values * radii**power
             found[name] = Chebyshev.fit(s, values, len(s) - 1, domain=[0, 1])
         return found
 
     def evaluate(self, name: str, radius: FloatArray) -> FloatArray:
-        """A quantity [powers of m, E* = 1] at radii within the piece."""
+        """A quantity of `POWERS`, over E* and in powers of m, at radii [m] within the piece."""
         if self.graded:
             s = np.sqrt((radius - self.low) / (self.high - self.low))
         else:
@@ -147,7 +149,10 @@ class Branch:
 
     @property
     def is_rough(self) -> bool:
-        """Whether the profile has breakpoints inside a piece: points between the solved ones err like the path."""
+        """Whether the profile has breakpoints inside a piece.
+
+        Interpolation across them is inexact: critical radii then have the errors of the whole path.
+        """
         breakpoints = self.contacts[-1].indenter.profile.breakpoints
         return any(p.low * (1 + 1e-9) < b < p.high * (1 - 1e-9) for p in self.pieces for b in breakpoints)
 
@@ -184,9 +189,12 @@ class Branch:
         return slopes
 
     def slope_root(self, load: Load, low: float, high: float) -> float:
-        """Radius [m] between two at which the slope of a load changes its sign; the outer one at a kink."""
-        jumps = np.prod(self.slope(load, np.array([low, high]))) >= 0
-        return high if jumps else root(lambda radius: self.slope(load, radius), low, high)
+        """Radius [m] between two at which the slope of a load changes its sign, or where it jumps across zero (kink).
+
+        The outer radius where both slopes have one sign, or one of them is zero.
+        """
+        same_sign = np.prod(self.slope(load, np.array([low, high]))) >= 0
+        return high if same_sign else root(lambda radius: self.slope(load, radius), low, high)
 
 
 def root(function: Load, low: float, high: float) -> float:
@@ -224,7 +232,7 @@ def adhesive_equilibria(scene: Scene, solve: ContactSolver, growth: float) -> li
     largest, profile, is_punch = float(targets.max()), scene.indenter, isinstance(scene.indenter, FlatPunch)
 
     def reached(r: float) -> bool:
-        """Whether the elastic load exceeds the target, adhesion included."""
+        """Whether the load exceeds the target, by delta_0 >= f and F >= E* a f (convex profiles), f less twice dl."""
         alone = height(profile, r) - 2 * np.sqrt(2 * np.pi * r * work)
         return bool(alone >= (1.5 * largest if by_depth else largest / r))
 
@@ -265,7 +273,7 @@ def branch_of(scene: Scene, start: float | None, solve: ContactSolver, growth: f
     indenter, work = scene.indenter, work_of_adhesion(scene)
     is_punch, high = isinstance(indenter, FlatPunch), start or indenter.flat_radius
     if not start and not is_punch:
-        # Where f exceeds twice the elongation of a half-space, contact presses.
+        # Where f exceeds twice dl of a half-space (k_N' = 2 E*), contact presses: delta_0 >= f.
         high = first_radius(indenter, lambda r: height(indenter, r) >= 2 * np.sqrt(2 * np.pi * r * work))
     kinks = [k for k in indenter.kinks if k < high]
     smallest = min([high / 3, scene.layer.surface.thickness, *kinks])
@@ -276,6 +284,7 @@ def branch_of(scene: Scene, start: float | None, solve: ContactSolver, growth: f
     for end in (*ends, high):
         count = max(1, int(np.ceil(np.log(end / breaks[-1]) / np.log(WIDEST_PIECE))))
         breaks += [*np.geomspace(breaks[-1], end, count + 1)[1:-1], end]
+    # A piece that starts at a kink is interpolated in the root of the distance.
     nodes, solve = max(4, round(NODES * (0.5 / growth) ** NODE_POWER)), cache(solve)
     pairs = pairwise(map(float, breaks))
     return Branch([BranchPiece.solved(*pair, solve, nodes, graded=pair[0] in kinks) for pair in pairs], work)
@@ -297,7 +306,7 @@ class Separation:
 
     @classmethod
     def of(cls, scene: Scene, solve: ContactSolver, growth: float) -> Separation:
-        """Solve a branch long enough to become unstable, or the longest."""
+        """Solve the shortest branch of `SPANS` that becomes unstable, or the longest."""
         loading: Any = scene.loading
         solve = cache(solve)
         for span in SPANS:
@@ -311,7 +320,7 @@ class Separation:
 
     @property
     def control(self) -> Controlled:
-        """What is withdrawn."""
+        """The quantity that the withdrawal prescribes: depth, force, or displacement of a machine."""
         return self.scene.loading.controlled  # type: ignore[attr-defined, no-any-return]
 
     @property
@@ -337,7 +346,11 @@ class Separation:
         )
 
     def critical_points(self) -> list[CriticalPoint]:
-        """Where a withdrawal starts, turns and lands, by control."""
+        """Critical points of every control.
+
+        "start" of a flat punch's detachment; "pull-off" and "snap-in", where the load's slope over a changes its sign;
+        and "snap-in" of an approaching indenter at first touch.
+        """
         is_punch, flat = isinstance(self.scene.indenter, FlatPunch), self.scene.indenter.flat_radius
         # A flat punch holds its radius until detachment begins at its edge.
         points = [self.point(flat, control, "start") for control in self.controls if is_punch]
@@ -359,9 +372,10 @@ class Separation:
         return {"displacement": depth, "force": force, "machine": depth + self.branch.machine * force}[self.control]
 
     def pull_off(self, critical: list[CriticalPoint]) -> CriticalPoint:
-        """Where contact is lost for good: at the lowest of the first state, if that is unstable, and turning points.
+        """The state from which contact is lost for good.
 
-        A contact that jumps from a higher one comes to rest on the stable part of the branch before the lowest.
+        Of all pull-off points, and of the first state if that is unstable, it is the one with the lowest load. A
+        contact that jumps at a higher load comes to rest on the stable part of the branch that ends there.
 
         Raises:
             NotConvergedError: the branch ends before it becomes unstable.
@@ -379,7 +393,7 @@ class Separation:
         return min(lost, key=self._load)
 
     def strongest_pull(self, critical: list[CriticalPoint], pull_off: CriticalPoint) -> CriticalPoint:
-        """Where the force is least until pull-off: at a sample, at a turning point or at pull-off itself."""
+        """The state of least force until pull-off: a sample, a critical point or pull-off itself."""
         passed = self.radius[self.radius >= pull_off.contact_radius]
         sampled = self.point(float(passed[np.argmin(self.branch.force(passed))]), self.control, "strongest")
         turned = (point for point in critical if point.contact_radius >= pull_off.contact_radius)
@@ -462,7 +476,7 @@ def _numbers(separation: Separation, critical: list[CriticalPoint]) -> dict[str,
 
 
 def _notes(contacts: list[PrescribedContact]) -> tuple[str, ...]:
-    """A warning where the pressure of a flat punch has a second maximum at r = 0."""
+    """A warning where the flat punch's pressure at r = 0 exceeds that at 0.3 a: a second maximum besides the edge."""
     cavitating = []
     for contact in contacts:
         centre, beside = contact.contact_trace.evaluate(contact.pressures[:, 0], np.array([0.0, 0.3]))

@@ -1,8 +1,9 @@
 """Unknowns of a mesh, and element matrices of the weak forms by batched dense products.
 
-The matrices equal those of scikit-fem's assembly of `weak_forms` and take a fifth of its time. Numbering is
-scikit-fem's own: displacement component c of scalar unknown i is ``2 i + c``; pressures follow. Strains are stored as
-(rr, zz, hoop, sqrt(2) rz), so that ``eps : eps`` is a plain sum of squares.
+The matrices equal those of scikit-fem's assembly of `weak_forms` and take a fifth of its time: on straight triangles
+the products of basis functions are tabulated once, and each triangle only weights them. Numbering is scikit-fem's own
+for `ElementVector`: displacement component c of scalar unknown i is ``2 i + c``. Pressures follow. Strains are stored
+as (rr, zz, hoop, sqrt(2) rz), so that ``eps : eps`` is a plain sum of squares.
 """
 
 from __future__ import annotations
@@ -58,12 +59,13 @@ class ElementPair:
     def inner(self) -> list[int]:
         """Places, among a triangle's unknowns, of those inside it that can be condensed.
 
-        Pressures are condensed only beside displacements.
+        scikit-fem numbers interior unknowns last. Pressures are condensed only together with displacements: alone their
+        block is ``-int p q / K``, which vanishes at nu = 1/2.
         """
-        moved, inside = 2 * len(self.displacement.doflocs), int(self.displacement.interior_dofs)
-        last = moved + len(self.pressure.doflocs) if self.pressure else moved
-        pressed = int(self.pressure.interior_dofs) if self.pressure and inside else 0
-        return [*range(moved - 2 * inside, moved), *range(last - pressed, last)]
+        displacements, inside = 2 * len(self.displacement.doflocs), int(self.displacement.interior_dofs)
+        count = displacements + len(self.pressure.doflocs) if self.pressure else displacements
+        inner_pressures = int(self.pressure.interior_dofs) if self.pressure and inside else 0
+        return [*range(displacements - 2 * inside, displacements), *range(count - inner_pressures, count)]
 
 
 # All element pairs by name: the stable ones, displacement formulations, and two unstable pairs for tests.
@@ -83,12 +85,18 @@ PAIRS = {
 
 
 def taylor_hood(degree: int) -> ElementPair:
-    """P_k-P_(k-1): stable at every Poisson's ratio, 1/2 included."""
+    """Taylor-Hood pair P_k-P_(k-1), k = 2, 3 or 4, both continuous: stable at every Poisson's ratio, 1/2 included."""
     return PAIRS[f"P{degree}P{degree - 1}"]
 
 
 class Face(NamedTuple):
-    """Facets of the upper and of the lower part at the same places, and whether they share the normal motion only."""
+    """The interface of two parts, whose vertices exist twice.
+
+    Attributes:
+        above: facets of the upper part.
+        below: facets of the lower part, at the same places.
+        slips: whether both sides share u_z only (frictionless); else they share u_r, too.
+    """
 
     above: IntArray
     below: IntArray
@@ -97,9 +105,14 @@ class Face(NamedTuple):
 
 @dataclass(frozen=True)
 class Space:
-    """Unknowns of one element pair on one mesh; both sides of a face share those of the part above.
+    """Unknowns of one element pair on one mesh; both sides of a face share the displacements of the part above.
 
     The pressure jumps where the material does, so each part has pressures of its own.
+
+    Attributes:
+        mesh: triangles of all parts; the parts are not connected.
+        pair: elements.
+        faces: where parts meet.
     """
 
     mesh: MeshTri
@@ -128,7 +141,7 @@ class Space:
 
     @cached_property
     def positions(self) -> FloatArray:
-        """(r, z) of the scalar displacement unknowns, shape (2, n)."""
+        """(r, z) of the scalar displacement unknowns, shape (2, n): scikit-fem's `doflocs`, without its `Basis`."""
         nodes, positions = self.pair.displacement.doflocs.T, np.empty((2, int(self.displacement_dofs.N)))
         positions[:, self.displacement_dofs.element_dofs] = np.einsum(
             "cvt,vb->cbt", self.mesh.p[:, self.mesh.t], barycentric(nodes)
@@ -142,7 +155,7 @@ class Space:
 
     @cached_property
     def owner(self) -> IntArray:
-        """Displacement unknown that represents each one; itself except below a face."""
+        """Displacement unknown that represents each one; itself except on the lower side of a face."""
         owner = np.arange(self.displacement_count)
         for face in self.faces:
             above, below = self.nodes_on(face.above), self.nodes_on(face.below)
@@ -153,7 +166,7 @@ class Space:
 
     @cached_property
     def element_displacements(self) -> IntArray:
-        """Displacement unknowns of each triangle, shape (triangle, 2 x basis)."""
+        """Displacement unknowns of each triangle, shape (triangle, 2 x basis), u_r and u_z alternating."""
         scalar = self.displacement_dofs.element_dofs.T.astype(np.int64)
         return np.asarray(self.owner[np.stack([2 * scalar, 2 * scalar + 1], axis=-1).reshape(len(scalar), -1)])
 
@@ -186,18 +199,24 @@ def tabulate(element: Element, points: FloatArray) -> tuple[FloatArray, FloatArr
 
 @cache
 def quadrature(degree: int) -> tuple[FloatArray, FloatArray]:
-    """Points (2, n) and weights of the rule on the reference triangle that is exact for polynomials of degree 2 k."""
+    """Points (2, n) and weights (n,) on the reference triangle, exact for polynomials of degree 2 k, k = ``degree``.
+
+    Of uniform parts all integrands are polynomials of lower degree, except the hoop terms ``u_r v_r / r``.
+    """
     points, weights = get_quadrature(RefTri, 2 * degree)
     return points, weights
 
 
 @cache
 def _products(pair: ElementPair) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Products of the reference derivatives and the value of basis functions at quadrature points.
+    """Products of basis functions at quadrature points, the same for all triangles.
+
+    The three terms of a displacement function phi are its reference derivatives ``phi,xi`` and ``phi,eta``, and phi.
 
     Returns:
-        Of two displacements, shape (3, 3, point, basis, basis); of a displacement and a pressure, shape
-        (3, point, pressure, basis); the pressures, shape (pressure, point).
+        Products of the terms of two displacement functions, shape (3, 3, point, basis, basis).
+        Products of the terms of one with the pressure functions, shape (3, point, pressure, basis).
+        Values of the pressure functions, shape (pressure, point).
     """
     points, _ = quadrature(pair.degree)
     value, gradient = tabulate(pair.displacement, points)
@@ -208,7 +227,13 @@ def _products(pair: ElementPair) -> tuple[FloatArray, FloatArray, FloatArray]:
 
 
 def strains(jacobian: FloatArray) -> FloatArray:
-    """Strain of a basis function by (triangle, strain, component, term); terms: two derivatives and the value / r."""
+    """Coefficients of the strains of a basis function, shape (triangle, 4, 2, 3).
+
+    Axes: triangle; strain (rr, zz, hoop, sqrt(2) rz); component (r, z); term ``phi,xi``, ``phi,eta`` or ``phi / r``.
+
+    Args:
+        jacobian: d(r, z)/d(xi, eta), shape (triangle, 2, 2).
+    """
     inverse = np.linalg.inv(jacobian)
     strain = np.zeros((len(inverse), 4, 2, 3), dtype=inverse.dtype)
     strain[:, 0, 0, :2], strain[:, 1, 1, :2] = inverse[:, :, 0], inverse[:, :, 1]
@@ -219,12 +244,16 @@ def strains(jacobian: FloatArray) -> FloatArray:
 
 def measures(jacobian: FloatArray, radius: FloatArray, weights: FloatArray) -> FloatArray:
     """``2 pi r dr dz`` at quadrature points, shape (triangle, point)."""
-    area = np.linalg.det(jacobian)
-    return np.asarray(2 * np.pi * radius * (area * np.sign(area.real))[:, None] * weights)
+    # Triangles with sorted vertices, as scikit-fem has them, may be clockwise. np.abs would end complex steps.
+    determinant = np.linalg.det(jacobian)
+    return np.asarray(2 * np.pi * radius * (determinant * np.sign(determinant.real))[:, None] * weights)
 
 
 def element_matrices(pair: ElementPair, corners: FloatArray, moduli: PointModuli) -> FloatArray:
     """Matrix ``[[A, B^T], [B, -C]]`` of each triangle, in the order of `Space.element_unknowns`.
+
+    A, B and C are `weak_forms.shear`, `constraint` and `pressure_mass` / K. A displacement formulation has A plus
+    `weak_forms.volume` alone.
 
     Args:
         pair: elements.
@@ -251,14 +280,20 @@ def element_matrices(pair: ElementPair, corners: FloatArray, moduli: PointModuli
 def _strain_products(
     pair: ElementPair, strain: FloatArray, weight: FloatArray, radius: FloatArray, form: FloatArray
 ) -> FloatArray:
-    """``int eps(u) : form : eps(v) weight`` of each triangle, a sum over pairs of terms and over points."""
+    """``int eps(u) : form : eps(v) weight`` of each triangle, shape (triangle, 2 x basis, 2 x basis).
+
+    It sums, over pairs of terms and over points, coefficients of the triangle times products of the reference triangle:
+    one matrix product for each pair of components.
+    """
+    # (triangle, component and term of u, the same of v, 1).
     flat, products = strain.reshape(-1, 4, 6), _products(pair)[0]
     mutual = (flat.transpose(0, 2, 1) @ form @ flat).reshape(-1, 2, 3, 2, 3, 1)
+    # Factor of each term: 1, 1 and 1/r.
     over_r = np.stack([np.ones_like(radius)] * 2 + [1 / radius], axis=1)
     weights, basis = (weight[:, None] * over_r)[:, :, None] * over_r[:, None], products.shape[-1]
     elements = np.empty((len(weight), basis, 2, basis, 2), dtype=weight.dtype)
     for one, other in ((0, 0), (0, 1), (1, 1)):
-        # Axial displacements have no part over r.
+        # u_z has no hoop strain: two terms instead of three.
         i, j = slice(3 - one), slice(3 - other)
         share = mutual[:, one, i, other, j] * weights[:, i, j]
         block = share.reshape(len(share), -1) @ products[i, j].reshape(-1, basis**2)
@@ -280,9 +315,10 @@ def _constraints(pair: ElementPair, strain: FloatArray, measure: FloatArray, rad
 
 
 def scatter(elements: FloatArray, unknowns: IntArray, size: int) -> sparse.csc_array:
-    """Sum of element matrices (triangle, n, n) as a sparse matrix.
+    """Sum of element matrices (triangle, n, n) as a sparse matrix of shape (size, size).
 
-    A product of sparse matrices adds the rows that belong to one unknown: its duplicates need no sorting.
+    It is ``P^T R``: R has each row of each element matrix as one sparse row, and P assigns these rows to unknowns. The
+    product adds what belongs together, without the sorting of duplicates in COO format.
     """
     count, short = unknowns.shape[1], unknowns.astype(np.int32)
     ends = np.arange(short.size + 1, dtype=np.int32)

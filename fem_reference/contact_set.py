@@ -2,9 +2,10 @@
 
     p >= 0,   g = C p - b >= 0,   p . g = 0,      C symmetric positive definite.
 
-The primal-dual active set method (Hintermueller, Ito and Kunisch 2002) takes a handful of dense solves. It may cycle
-in principle: when a set returns, only the outermost wrong vertex changes at a time, and such principal pivoting does
-not cycle (Murty 1974). Every answer is checked against all conditions.
+Here p are nodal pressures, and g and b moments of the gap and of the overlap (`surface.Surface`). The primal-dual
+active set method (Hintermueller, Ito and Kunisch, SIAM J. Optim. 13 (2002) 865-888) takes a handful of dense solves. It
+may cycle. When a set returns, only the wrong vertex of largest index changes from then on: such principal pivoting ends
+for every positive definite C (Murty, Opsearch 11 (1974) 123-130). Every answer is checked against all conditions.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from contact.records.validation import BoolArray, FloatArray
 
 # Largest accepted violation of a contact condition, relative to the largest pressure or overlap: roundings are 5e-16.
 TOLERANCE = 1e-9
-# Active sets that are tried; a handful suffice, and principal pivoting takes as many as there are vertices.
+# Active sets that are tried; a handful suffice, and principal pivoting usually takes as many as there are vertices.
 MOST_SETS = 1000
 # Coefficients, highest power first, of the polynomial that maps the ratio of the last two pressures to the distance
 # [cells] from the last pressed vertex to the contact edge; it errs by 0.06 cells.
@@ -27,12 +28,12 @@ EDGE_POLYNOMIAL = (0.11, 1.0, 0.04)
 
 
 class Complementary(NamedTuple):
-    """A checked solution.
+    """A checked solution, arrays of shape (n,).
 
     Attributes:
         pressure: p.
         gap: g.
-        active: where p > 0 was allowed.
+        active: where p > 0 was allowed and g = 0 was required.
     """
 
     pressure: FloatArray
@@ -47,8 +48,8 @@ def solve_complementarity(
 
     Args:
         compliance: C, shape (n, n), symmetric positive definite.
-        approach: b, shape (n,): how far the free surface would be overlapped.
-        start: first guess of the active set; overlap where omitted.
+        approach: b, shape (n,): overlap of the indenter with the surface as it is without pressure.
+        start: first guess of the active set; where b > 0 if omitted.
 
     Raises:
         NotConvergedError: a condition is violated (C is not positive definite, or not finite).
@@ -59,6 +60,7 @@ def solve_complementarity(
     returns = False
     for _ in range(MOST_SETS):
         pressure = _pressure(compliance, approach, active)
+        # p_i > g_i / C_ii: on the active set g = 0, and off it p = 0.
         following = diagonal * pressure > np.where(active, 0.0, compliance @ pressure - approach)
         wrong = np.flatnonzero(following != active)
         if not len(wrong):
@@ -98,12 +100,16 @@ def _checked(compliance: FloatArray, approach: FloatArray, pressure: FloatArray,
 
 
 def edge_radius(radii: FloatArray, pressure: FloatArray) -> float:
-    """Contact radius from the last two pressures that press, to a few hundredths of a cell.
+    """Contact radius from the outermost two positive pressures, to a few hundredths of a cell; zero without pressure.
 
-    Next to its edge every smooth contact is the same problem of the half-plane, p = K sqrt(a - r). Solved on equal
-    cells, the distance from the last pressed vertex to the true edge is one function of the ratio of the last two
-    pressures, whatever K: `EDGE_POLYNOMIAL`. A last pressure above its neighbour belongs to a sharp edge, where the
+    Next to its edge every smooth contact is the same problem of the half-plane, with p proportional to sqrt(a - r).
+    Solved on equal cells, the distance from the last pressed vertex to the true edge depends on the ratio of the last
+    two pressures only: `EDGE_POLYNOMIAL`. A last pressure above its neighbour belongs to a sharp edge, where the
     contact ends.
+
+    Args:
+        radii: of the vertices, equidistant at the edge, shape (n,).
+        pressure: at the vertices, shape (n,).
     """
     pressed = np.flatnonzero(pressure > 0)
     if not len(pressed):

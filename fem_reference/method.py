@@ -53,6 +53,7 @@ from fem_reference.settings import Discretisation
 from fem_reference.stated import path_with_errors, settings_for, solve_to_accuracy
 
 Answer: TypeAlias = ContactPath | DetachmentPath | ImpactHistory | HistoryPath
+# Loadings over time.
 MOTIONS = Impact, DepthHistory, ForceHistory
 
 
@@ -68,7 +69,7 @@ class Fem:
         pressure_accuracy: the same for the pressure of contacts that do not move, besides an accuracy of the numbers.
         order: degree k of the displacement, 2, 3 or 4.
         edge_cell: cell at the contact edge, relative to the smallest length there.
-        growth: growth of cells per distance, and largest cell per thickness.
+        growth: increase of the cell size per distance from the contact edge; also largest cell over thickness.
         truncation: relative change of the stiffness allowed to the outer edge of the mesh.
         half_space_thickness: thickness, in contact radii, of the layer that stands for a half-space; an elastic base
             below a stack is meshed to its power of 0.8.
@@ -87,7 +88,7 @@ class Fem:
     outer_distance: float | None = None
 
     def __post_init__(self) -> None:
-        """Refuse settings outside their ranges."""
+        """Raise InvalidInput for settings outside their ranges."""
         for name in ("accuracy", "pressure_accuracy"):
             wanted = getattr(self, name)
             if wanted is not None and not 1e-9 <= wanted <= 0.1:
@@ -98,7 +99,7 @@ class Fem:
 
     @property
     def discretisation(self) -> Discretisation:
-        """The settings that make meshes."""
+        """The settings of the mesh and its elements, chosen from ``accuracy`` where that is given."""
         if self.accuracy is not None:
             return settings_for(self.accuracy)
         written = asdict(self)
@@ -162,9 +163,9 @@ class Fem:
         )
 
     def _attempt(self, scene: Scene, log: StageLog) -> Callable[[Discretisation], Answer]:
-        """Function that solves the scene with settings, and with coarser ones for its errors.
+        """Function that solves the scene with given settings, and with coarser ones for its errors.
 
-        Modules of effects are loaded for their scenes only.
+        Modules of effects are imported for their scenes only.
         """
         written, in_time = asdict(self), isinstance(scene.loading, MOTIONS)
         if scene.effect(Friction) is not None and not isinstance(scene.indenter, FlatPunch):
@@ -184,7 +185,7 @@ class Fem:
     def _at_rest(
         self, scene: Scene, search: Callable[[float], float], log: StageLog, settings: Discretisation
     ) -> ContactPath:
-        """Equilibria at prescribed radii, depths or forces."""
+        """Path of equilibria at prescribed radii, depths or forces; ``search`` is `searched_radius`, cached."""
         modulus, sticks = contact_modulus(scene.layer), scene.effect(Friction) is not None
         coarser, states = (self._states(scene, each, search, log) for each in (settings.coarser(), settings))
         on_top = FemFields(states, modulus, coarser)
@@ -219,7 +220,7 @@ class Fem:
     def refined(self) -> Self:
         """A copy with cells half as large; the edge cell shrinks by 2^(2k), so that errors fall at the formal order 2k.
 
-        With ``accuracy`` set, that is divided by 2^(2k).
+        Where ``accuracy`` is given, it is divided by 2^(2k) instead.
         """
         if self.accuracy is not None:
             return replace(self, accuracy=max(self.accuracy / 4**self.order, 1e-9))

@@ -1,7 +1,7 @@
 """Heights and slopes of indenters, derived from the parameters of the scene, and an indenter scaled by its contact.
 
 These formulas are typed independently of `contact.scene.profiles`, which the other methods use: a mistake in a shared
-formula would not appear as a difference between two methods.
+formula would not appear as a difference between two methods. Hence `pchip_slopes` instead of scipy's PchipInterpolator.
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ from contact import (
 )
 from contact.records.validation import FloatArray
 
-# A slope whose growth per radius at 1e-6 of the contact exceeds that at 1e-3 by this factor has a sharp tip. Exponents
-# of 2 - 0.007 and above count as smooth; half of the excess grades meshes for nearly parabolic tips, too.
+# A tip is sharp if f'/r at 1e-6 contact radii exceeds f'/r at 1e-3 by this factor. Power laws with exponents above
+# 2 - 0.007 count as smooth. Half of the excess grades meshes for nearly parabolic tips, too.
 SHARP_TIP = 1.05
 
 
@@ -40,7 +40,7 @@ class Shape:
 
 
 def shape(profile: Profile, radius: FloatArray) -> Shape:  # noqa: PLR0911 - one formula per profile
-    """Height and slope of a profile at radii [m].
+    """Height and slope of a profile at radii [m]; infinite beyond its end. Eq. (35): Machines 11 (2023) 474.
 
     Raises:
         UnsupportedSceneError: for a profile without a formula here.
@@ -75,7 +75,7 @@ def shape(profile: Profile, radius: FloatArray) -> Shape:  # noqa: PLR0911 - one
 
 
 def _spheroconical(profile: Spheroconical, radius: FloatArray) -> Shape:
-    # sin(theta) and cos(theta) of the flank, at the circle's point of tangency.
+    # sin(theta) and cos(theta) of the cone with slope tan(theta), which touches the sphere at r = R sin(theta).
     steep, level = profile.slope / np.hypot(1.0, profile.slope), 1.0 / np.hypot(1.0, profile.slope)
     join = profile.radius * steep
     cap = shape(Sphere(radius=profile.radius), np.minimum(radius, join))
@@ -85,7 +85,10 @@ def _spheroconical(profile: Spheroconical, radius: FloatArray) -> Shape:
 
 
 def cubics(x: FloatArray, y: FloatArray, at: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Values and slopes of the shape-preserving cubics through points, at places within them."""
+    """Values and slopes of the shape-preserving Hermite cubics through points (x, y), at abscissas within them.
+
+    Per interval y = y_i + s (start + s (tilt + s bend)), s = at - x_i.
+    """
     i = np.clip(np.searchsorted(x, at, side="right") - 1, 0, len(x) - 2)
     width, slopes = np.diff(x)[i], pchip_slopes(x, y)
     secant, start = (y[i + 1] - y[i]) / width, slopes[i]
@@ -115,6 +118,7 @@ def pchip_slopes(x: FloatArray, y: FloatArray) -> FloatArray:
 
 
 def _end_slope(near: float, far: float, first: float, second: float) -> float:
+    """Slope at an end, from the widths of the two intervals next to it and their secants."""
     slope = ((2.0 * near + far) * first - near * second) / (near + far)
     if slope * first <= 0.0:
         return 0.0
@@ -164,7 +168,7 @@ class ScaledIndenter:
 
     @property
     def last_kink(self) -> float:
-        """Radius / a of the outermost kink; zero without one."""
+        """Radius / a of the outermost kink inside the contact; zero without one."""
         return max(self.kinks, default=0.0)
 
     @property
@@ -176,6 +180,6 @@ class ScaledIndenter:
 
     @property
     def has_sharp_tip(self) -> bool:
-        """Whether the curvature grows without bound at the axis, as that of a cone does and, slowly, that of r^1.98."""
+        """Whether f'/r grows without bound at the axis, as for a cone and, slowly, for r^1.98."""
         near, far = self.slope(np.array([1e-6, 1e-3])) / [1e-6, 1e-3]
         return bool(near > SHARP_TIP * far)

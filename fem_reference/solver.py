@@ -1,8 +1,10 @@
-"""Sparse direct solutions with prescribed unknowns: inner unknowns condensed, an order without pivoting, checked.
+"""Sparse direct solutions with prescribed unknowns.
 
-With o for the unknowns that a triangle shares with others and i for those inside it, ``K_ii u_i + K_io u_o = f_i``
-leaves ``S u_o = f_o - K_oi K_ii^-1 f_i`` with ``S = K_oo - K_oi K_ii^-1 K_io`` (E. L. Wilson, Int. J. Numer. Meth.
-Engng 8 (1974) 198-203). The pressure inside a triangle is condensed with the displacements there, at every nu.
+Unknowns inside triangles are condensed, the rest is factorised in an order that needs no pivoting, and every solution
+is checked by its backward error. With o for the unknowns that a triangle shares with others and i for those inside it,
+``K_ii u_i + K_io u_o = f_i`` leaves ``S u_o = f_o - K_oi K_ii^-1 f_i`` with ``S = K_oo - K_oi K_ii^-1 K_io``
+(E. L. Wilson, Int. J. Numer. Meth. Engng 8 (1974) 198-203). The pressure inside a triangle is condensed with the
+displacements there, which keep K_ii regular at nu = 1/2.
 """
 
 from __future__ import annotations
@@ -35,7 +37,7 @@ class RestrictedSolver:
     Args:
         space: the unknowns.
         elements: matrix of each triangle, shape (triangle, n, n).
-        springs: a matrix of all unknowns that is added, or None.
+        springs: a matrix of all unknowns that is added, or None; without entries inside triangles.
         held: prescribed unknowns, none of them inside a triangle.
 
     Attributes:
@@ -114,7 +116,7 @@ class RestrictedSolver:
         )
 
     def _solved(self, rhs: FloatArray) -> FloatArray:
-        """Solution at the free unknowns, shape (free, m), by partial pivoting where diagonal pivots lose digits.
+        """Solution at the free unknowns, shape (free, m), refactorised with pivoting where diagonal pivots lose digits.
 
         Raises:
             NotConvergedError: the backward error stays above `BACKWARD_ERROR`.
@@ -128,7 +130,10 @@ class RestrictedSolver:
         return solution
 
     def _refined(self, rhs: FloatArray) -> tuple[FloatArray, float]:
-        """Solution after iterative refinement, with the largest ``|r_i| / (|A| |x| + |b|)_i`` (Oettli, Prager 1964)."""
+        """Solution after iterative refinement, with its componentwise backward error.
+
+        That is the largest ``|b - A x|_i / (|A| |x| + |b|)_i`` (Oettli and Prager, Numer. Math. 6 (1964) 405-409).
+        """
         solution = np.zeros_like(rhs)
         for _ in range(5):
             solution = solution + self._factors.solve(rhs - self._square @ solution)
@@ -150,15 +155,19 @@ def physical_memory() -> float:
 
 
 def minimum_degree(space: Space) -> IntArray:
-    """All unknowns in an order of elimination that needs no pivoting and little fill.
+    """All unknowns in an order of elimination that needs no pivoting and little fill, shape (size,).
 
     Unknowns of the same triangles (of one vertex, one edge or one interior) form one node, and the node with the fewest
-    neighbours left is eliminated next (George and Liu, SIAM Review 31 (1989) 1-19). Inside every node the displacements
-    precede the pressures: by the inf-sup condition each pressure pivot is then the (negative) Schur complement of
-    displacements already eliminated, so the symmetric indefinite matrix factors without row exchanges.
+    neighbours left is eliminated next (George and Liu, SIAM Review 31 (1989) 1-19).
+
+    For nu < 1/2 the matrix ``[[A, B^T], [B, -C]]`` is quasidefinite, which factors without row exchanges in any order
+    (Vanderbei, SIAM J. Optim. 5 (1995) 100-113). At nu = 1/2, where C = 0, the pivot of a pressure is minus the Schur
+    complement of the displacements before it, and would vanish without these. Therefore displacements precede the
+    pressures of their node. The inf-sup condition bounds the complement of all unknowns, not each pivot:
+    `RestrictedSolver` checks every solution, and pivots where digits were lost.
     """
     unknowns = space.element_unknowns
-    # The sum of random numbers of its triangles identifies the node of an unknown.
+    # One random number per triangle: their sum over the triangles of an unknown identifies its node.
     numbers = np.random.default_rng(0).random(len(unknowns))[:, None] + np.zeros(unknowns.shape[1])
     tags, node = np.unique(np.bincount(unknowns.ravel(), numbers.ravel(), space.size), return_inverse=True)
     ends = unknowns.shape[1] * np.arange(len(unknowns) + 1)

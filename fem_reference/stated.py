@@ -66,7 +66,7 @@ PRESCRIBED = {
 
 
 def exact_names(scene: Scene) -> set[str]:
-    """Quantities that are input."""
+    """Names of the quantities that loading or geometry prescribes; their stated error is zero."""
     names = {PRESCRIBED[type(scene.loading)]} if type(scene.loading) in PRESCRIBED else set()
     return names | ({"contact_radius", "peak_contact_radius"} if isinstance(scene.indenter, FlatPunch) else set())
 
@@ -77,7 +77,14 @@ def path_with_errors(
     states: Sequence[FemEquilibrium],
     coarser: Sequence[FemEquilibrium],
 ) -> ContactPath:
-    """The path with its stated errors; the states are those of both paths."""
+    """The path with its stated errors, relative, one per state.
+
+    Args:
+        answer: path of the answer.
+        companion: the same path on coarser cells.
+        states: equilibria of the answer.
+        coarser: equilibria of the companion.
+    """
     changes = {name: _with_neighbours(relative_change(answer, companion, name)) for name in answer.ARRAYS}
     exact = set() if answer.scene.effect(Adhesion) is not None else exact_names(answer.scene)
     least = LEAST_SHARE * np.max([changes[name] for name in answer.ARRAYS if name != "contact_radius"], axis=0)
@@ -89,9 +96,9 @@ def path_with_errors(
     }
     pairs = list(zip(states, coarser, strict=True))
     pressures = np.array([pressure_change(*pair) for pair in pairs])
-    moved = np.array([change_beside(*pair) for pair in pairs]) / answer.scale("indentation_depth")
+    displacements = np.array([change_beside(*pair) for pair in pairs]) / answer.scale("indentation_depth")
     errors["pressure"] = SAFETY * pressures + FLOOR
-    errors["surface_displacement"] = np.maximum(SAFETY * moved + FLOOR, errors["indentation_depth"])
+    errors["surface_displacement"] = np.maximum(SAFETY * displacements + FLOOR, errors["indentation_depth"])
     return replace(answer, error_estimate={**answer.error_estimate, **errors})
 
 
@@ -108,10 +115,10 @@ def relative_change(answer: Solution, companion: Solution, name: str) -> FloatAr
 
 
 def pressure_change(state: FemEquilibrium, other: FemEquilibrium) -> float:
-    """Distance of two pressures over the norm of the first: L2 with the weight ``2 pi r``, each by its own radius.
+    """L2 distance of two pressures over the norm of the first, weight ``2 pi r``; both as functions of r / a.
 
-    A pressure that is singular at the edge, under flat punches and with adhesion, takes the weight
-    ``2 pi r (1 - r^2 / a^2)``.
+    Under flat punches and with adhesion p grows like ``(a - r)^(-1/2)`` at the edge, and p^2 is not integrable. There
+    the weight is ``2 pi r (1 - r^2 / a^2)``.
     """
     contact, a, b = state.contact, state.contact_radius, other.contact_radius
     radius, weight = (values.ravel() for values in contact.contact_trace.gauss(contact.layer.pair.degree + 2))
@@ -137,10 +144,10 @@ def settings_for(accuracy: float) -> Discretisation:
 def solve_to_accuracy(
     attempt: Callable[[Discretisation], S], accuracy: float, pressure_accuracy: float | None, *, moves: bool
 ) -> S:
-    """Refine until no stated error is above what is wanted.
+    """The first answer none of whose stated errors is above what is wanted.
 
     Args:
-        attempt: solves with settings.
+        attempt: solves the scene with given settings.
         accuracy: relative accuracy of the numbers.
         pressure_accuracy: relative accuracy of the pressure, if any.
         moves: whether the scene is a motion, whose errors fall slowly.
@@ -156,7 +163,7 @@ def solve_to_accuracy(
         try:
             answer = attempt(settings)
         except NotConvergedError:
-            # On coarse meshes the radius of a load near a flat end may not settle.
+            # On coarse meshes the radius of a load near a flat end may not settle. An excess of 1e3 halves the growth.
             in_vain += 1
             if not left or in_vain == IN_VAIN:
                 raise
@@ -181,7 +188,14 @@ def solve_to_accuracy(
 
 
 def _finer(settings: Discretisation, numbers: float, pressure: float) -> Discretisation:
-    """Settings for the next attempt, from errors over what is wanted; zero where nothing is above."""
+    """Settings for the next attempt.
+
+    Args:
+        settings: of the last attempt.
+        numbers: largest stated error of a number over the accuracy; zero if all are below.
+        pressure: the same of the pressure.
+    """
+    # Near the edge the error of the pressure falls like the root of the edge cell.
     factor = min(max(numbers, 1.0) ** (-1 / ERROR_ORDER), max(pressure, 1.0) ** (-1 / PRESSURE_ORDER))
     edge = min(0.25, max(pressure, 1.0) ** -2)
     return replace(

@@ -1,12 +1,14 @@
 """Functions on the top, and the layer condensed to it: contact problems of a few hundred unknowns.
 
 Tractions are continuous and piecewise linear on a strip of equal cells, with hat functions phi_i; displacements are of
-fourth degree, so that the mesh errs less than the contact set, which is found to a cell. For pressures p and tangential
-tractions q (positive outward) the moments ``int phi_i (u_z, u_r) 2 pi r dr`` are
+fourth degree, so that the mesh errs less than the contact set, which is found to a cell. For nodal pressures p
+(positive into the layer) and tangential tractions q (positive outward) the moments ``int phi_i (u_z, u_r) 2 pi r dr``
+are
 
     C (p, q),    C = [[Z_p, Z_q], [Z_q^T, R_q]],
 
-symmetric by reciprocity. Units: lengths by the strip's radius, stresses by E*.
+symmetric by Betti's reciprocity. Since the same phi_i weight displacements and expand tractions, C is the discrete
+compliance of `contact_set`, positive definite. Units: lengths by the strip's radius, stresses by E*.
 """
 
 from __future__ import annotations
@@ -45,7 +47,9 @@ def _gauss_rule(points: int) -> tuple[FloatArray, FloatArray]:
 
 @dataclass(frozen=True)
 class TraceSpace:
-    """Continuous piecewise polynomials of ``degree`` along the top.
+    """Continuous piecewise polynomials of ``degree`` along the top, with nodal bases as on the triangles' sides.
+
+    scikit-fem's line elements above degree 2 are hierarchical: their unknowns are no nodal values.
 
     Attributes:
         radii: r of all nodes, increasing; each cell has ``degree + 1`` equispaced nodes and shares its end nodes.
@@ -70,6 +74,7 @@ class TraceSpace:
 
     def _values(self, cell: IntArray, t: FloatArray) -> sparse.csr_array:
         """Values of all functions at local coordinates t of cells, shape (n, node)."""
+        # Every row has the degree + 1 functions of one cell.
         nodes, ends = cell[:, None] * self.degree + np.arange(self.degree + 1), np.arange(len(t) + 1)
         entries = self.basis(t).ravel(), nodes.ravel(), (self.degree + 1) * ends
         return sparse.csr_array(entries, shape=(len(t), len(self.radii)))
@@ -82,20 +87,20 @@ class TraceSpace:
         return np.where((radius >= vertices[0]) & (radius <= vertices[-1]), self._values(cell, t) @ values, 0.0)
 
     def gauss(self, points: int) -> tuple[FloatArray, FloatArray]:
-        """Radii (cell, point) and weights ``2 pi r dr`` of a Gauss rule on every cell."""
+        """Radii and weights ``2 pi r dr`` of a Gauss rule on every cell, both of shape (cell, point)."""
         x, w = _gauss_rule(points)
         length = np.diff(self.vertices)[:, None]
         radius = self.vertices[:-1, None] + length * (x + 1) / 2
         return radius, 2 * np.pi * radius * length * w / 2
 
     def at_gauss(self, points: int, parts: int = 1) -> sparse.csr_array:
-        """Values of all functions at a Gauss rule on each of some equal parts of every cell, shape (n, node)."""
+        """Values of all functions at a Gauss rule on each of ``parts`` equal parts of every cell, shape (n, node)."""
         part = np.repeat(np.arange(parts * (len(self.vertices) - 1)), points)
         x = np.resize((_gauss_rule(points)[0] + 1) / 2, len(part))
         return self._values(part // parts, (part % parts + x) / parts)
 
     def moments(self, function_values: FloatArray, points: int) -> FloatArray:
-        """``int f v 2 pi r dr`` for every basis function v, f given at ``gauss(points)``."""
+        """``int f v 2 pi r dr`` for every basis function v, shape (node,), f given at ``gauss(points)``."""
         return np.asarray(self.at_gauss(points).T @ (self.gauss(points)[1] * function_values).ravel())
 
     def hat_moments(self, stride: int) -> FloatArray:
@@ -108,7 +113,10 @@ class TraceSpace:
         return np.asarray((self.at_gauss(points, self.degree // stride).T @ weighted).toarray())
 
     def mass_bands(self) -> FloatArray:
-        """``int u v 2 pi r dr``, its diagonals from the first one down, shape (degree + 1, node)."""
+        """Mass matrix ``int u v 2 pi r dr``: the main diagonal and those below it, shape (degree + 1, node).
+
+        That is the lower form of `scipy.linalg.solveh_banded`. The Gauss rule is exact.
+        """
         values, weights = self.at_gauss(self.degree + 2), self.gauss(self.degree + 2)[1].reshape(-1, 1)
         mass = values.T @ values.multiply(weights)
         return np.array([np.append(mass.diagonal(-k), np.zeros(k)) for k in range(self.degree + 1)])
@@ -176,10 +184,19 @@ def strip_section(
     outside: float = 1.0,
     stride: int = STRIDE,
 ) -> tuple[Parts, Section]:
-    """A section with ``cells`` equal traction cells on the strip of ``radius`` [m], lengths by that radius.
+    """A section with ``cells`` equal traction cells on the strip, lengths by its radius.
 
-    Away from the strip the mesh errs like growth^7, the contact set like 1 / cells^2: both shrink alike. The growth of
-    120 cells is ``outside``; ``stride`` counts displacement nodes from one traction vertex to the next.
+    Away from the strip the mesh errs like growth^7, the contact set like 1 / cells^2. With growth proportional to
+    cells^(-1/3) both fall alike.
+
+    Args:
+        layer: layer of the scene.
+        radius: of the strip [m].
+        cells: of the tractions; a mesh cell covers ``STRIP_ORDER / stride`` of them.
+        kinks: radii [m] that become vertices.
+        settings: numerical settings; their growth is replaced.
+        outside: growth for `STRIP_CELLS` cells.
+        stride: displacement nodes from one traction vertex to the next.
     """
     cell = STRIP_ORDER / stride / cells
     points = (*((r / radius, cell) for r in kinks if NEAREST_KINK * cell * radius <= r < radius), (1.0, cell))
@@ -189,7 +206,10 @@ def strip_section(
 
 
 def strip_loads(layer: DiscreteLayer, stride: int, *, tangential: bool = False) -> tuple[FloatArray, TraceSpace]:
-    """Loads of the hat functions, first as pressures, then as tangential tractions, shape (size, m); their space."""
+    """Nodal forces of each hat function, first as pressures, then as tangential tractions, and the space of the hats.
+
+    The forces have shape (size, n), or (size, 2 n) with tangential tractions.
+    """
     nodes = layer.top_nodes(1.0)
     radii = layer.space.positions[0, nodes]
     moments = TraceSpace(radii, layer.pair.degree).hat_moments(stride)
@@ -209,7 +229,7 @@ def condense(
     stride: int = STRIDE,
     tangential: bool = False,
 ) -> Surface:
-    """Factorise the layer once and load it by every traction of the strip of radius one."""
+    """Compliance of the strip of radius one: one factorisation, one solution per hat function."""
     layer = DiscreteLayer(section, taylor_hood(STRIP_ORDER), parts)
     with log.stage("assemble"):
         log.hold(layer.elements.nbytes)

@@ -1,16 +1,18 @@
 """Problems that need no other method: whether elements solve their equations at their orders, and are stable.
 
-Manufactured solutions. At nu = 1/2 u = (-r^3 cos z, 4 r^2 sin z) has no divergence, and p = cos r cos z
-is free. For nu < 1/2 grad phi with phi = (r^4/4) sin z is added, whose divergence is D = (4 r^2 - r^4/4) sin z, and the
-material law requires p = -K D. The body force is f = -mu (Lap u + grad D/3) + grad p.
+Manufactured solutions. At nu = 1/2 u = (-r^3 cos z, 4 r^2 sin z) has no divergence, and p is independent of it: here
+p = cos r cos z. For nu < 1/2 grad phi with phi = (r^4/4) sin z is added, whose divergence is
+D = (4 r^2 - r^4/4) sin z, and the material law requires p = -K D. The body force is
+f = -mu (Lap u + grad D/3) + grad p, with the Laplacian of a vector: (Lap u)_r = Lap(u_r) - u_r/r^2.
 
 Inf-sup constant, the measure of how well displacements control the pressure as meshes refine:
 
     beta = min_q max_v  int q div v / (|v|_1 |q|_0),
 
-the square root of the smallest eigenvalue of ``B H^-1 B^T q = beta^2 M q``, with H the product of displacement
-gradients and M the pressure mass. A stable pair keeps beta bounded below. For nu < 1/2 compressibility controls the
-pressure, too: the constant of the mixed form is then sqrt(beta^2 + mu/K).
+the square root of the smallest eigenvalue of ``B H^-1 B^T q = beta^2 M q``, with B, H and M the matrices of
+`weak_forms.constraint`, `displacement_gradient` and `pressure_mass`. A stable pair keeps beta bounded below.
+For nu < 1/2 compressibility controls the pressure, too: with mu H as the shear form, ``B H^-1 B^T + (mu/K) M`` takes
+the place of ``B H^-1 B^T``, and sqrt(beta^2 + mu/K) that of beta.
 """
 
 from __future__ import annotations
@@ -42,17 +44,17 @@ def uniform_layer(section: Section, pair: ElementPair, poissons_ratio: float, *,
 
 
 def plain_section(mesh: MeshTri) -> Section:
-    """A section of one part from its triangles."""
+    """A section of one part, with named boundaries, from the triangles of a rectangle."""
     return named_section(mesh.p, mesh.t, np.zeros(mesh.t.shape[1], dtype=np.int64), uniform(0.5))
 
 
 def uniform_mesh(cells: int) -> MeshTri:
-    """A bonded section one thick and two wide, with so many cells across its thickness."""
+    """Regular mesh of 0 < r < 2, 0 < z < 1 with named boundaries and ``cells`` cells across its thickness."""
     return plain_section(MeshTri.init_tensor(np.linspace(0, 2, 2 * cells + 1), np.linspace(0, 1, cells + 1))).mesh
 
 
 def irregular_section(cells: int) -> Section:
-    """The unit square with so many cells along each side, by halving an irregular mesh of four again and again."""
+    """The unit square with ``cells`` = 4, 8, 16, .. cells along each side: an irregular mesh, refined uniformly."""
     side = np.linspace(0, 1, COARSEST + 1)
     square = MeshTri.init_tensor(side, side)
     inner, places = square.interior_nodes(), square.p.copy()
@@ -61,7 +63,7 @@ def irregular_section(cells: int) -> Section:
 
 
 def inf_sup_constant(pair: ElementPair, mesh: MeshTri) -> float:
-    """Inf-sup constant beta on a mesh whose axis and base are named."""
+    """Inf-sup constant beta of a pair on a mesh with named axis (u_r = 0) and base (u = 0), other sides free."""
     displacement = Basis(mesh, ElementVector(pair.displacement))
     pressure = displacement.with_element(pair.pressure)
     axis = displacement.get_dofs("axis").all(["u^1"])
@@ -146,8 +148,8 @@ class ManufacturedProblem:
             # The level of the pressure has the pointwise error at the vertex that holds it.
             difference -= np.sum(difference * weight) / weight.sum()
         pairs = ((np.asarray(field) - exact[0], exact[0]), (difference, exact[1]))
-        moved, pressed = (float(np.sqrt(np.sum(d**2 * weight) / np.sum(e**2 * weight))) for d, e in pairs)
-        return moved, pressed
+        u_error, p_error = (float(np.sqrt(np.sum(d**2 * weight) / np.sum(e**2 * weight))) for d, e in pairs)
+        return u_error, p_error
 
     def _solution(self, basis: Basis) -> FloatArray:
         """All unknowns, with the exact displacement on the boundary."""
@@ -169,10 +171,10 @@ class ManufacturedProblem:
         return np.asarray(solver.solve_displaced(values[:, None]) + solver.solve_loaded(loads))[:, 0]
 
     def _with_pressure_level(self, held: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """The level of the pressure is free: hold it at the first vertex, and conserve volume.
+        """Held unknowns and values, with the exact pressure at the first vertex and boundary values without net flux.
 
-        The interpolated boundary values let a little flux through, which would leave the layer as a source at that
-        vertex, with an error of the pressure of order h^3.
+        With u given on the whole boundary the level of the pressure is free. The interpolated boundary values have a
+        little net flux, which would enter as a source at that vertex, with an error of the pressure of order h^3.
         """
         first = self.layer.space.displacement_count
         held = np.append(held, first)
