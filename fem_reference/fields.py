@@ -57,7 +57,9 @@ CORNERS_AND_MIDDLES = np.array([[0, 1, 0, 0.5, 0.5, 0], [0, 0, 1, 0, 0.5, 0.5]])
 
 @dataclass(frozen=True)
 class MeridianSection:
-    """Fields of one solution at one depth, lengths by the contact radius and stresses by E*, in the order of `NAMES`.
+    """Fields of one solution at one depth, in the order of `NAMES`; lengths over contact radius a, stresses over E*.
+
+    Stresses are positive in tension, the pressure ``p = -K div u`` in compression; z points into the layer.
 
     Attributes:
         contact: the discrete answer at contact radius one.
@@ -75,7 +77,7 @@ class MeridianSection:
 
     @property
     def local_nodes(self) -> FloatArray:
-        """Places of a triangle's nodes in the reference triangle, shape (2, basis)."""
+        """Coordinates in the reference triangle of the nodes of the displacement, shape (2, basis)."""
         return np.asarray(self.contact.layer.pair.displacement.doflocs.T)
 
     def units(self, modulus: float) -> FloatArray:
@@ -91,7 +93,7 @@ class MeridianSection:
         total = np.zeros((space.positions.shape[1], len(NAMES)))
         np.add.at(total, numbers, local)
         total /= np.bincount(numbers.ravel())[:, None]
-        # On the axis half of the triangles that meet at a node are mirror images, in which these are opposite.
+        # Mirrored at the axis these fields change sign: the mean over both sides is zero.
         total[np.ix_(space.positions[0] == 0.0, ODD)] = 0.0
         return np.asarray(total[numbers])
 
@@ -102,7 +104,10 @@ class MeridianSection:
 
     @cached_property
     def by_triangle(self) -> FloatArray:
-        """Values of each triangle alone at its nodes, shape (triangle, basis, 9)."""
+        """Values of each triangle alone at its nodes, shape (triangle, basis, 9).
+
+        ``sigma = 2 mu (eps - tr(eps) / 3) - p`` on the diagonal, ``sigma_rz = mu (u_r,z + u_z,r)``.
+        """
         layer = self.contact.layer
         space, unknowns = layer.space, self.contact.solutions @ [self.depth, 1.0]
         at_nodes = self.local_nodes, np.ones(self.local_nodes.shape[1])
@@ -120,8 +125,9 @@ class MeridianSection:
         return np.moveaxis(np.array([*u, *stress, tangential, p, *pressed.grad]), 0, -1)
 
     def places_of(self, points: FloatArray) -> tuple[IntArray, FloatArray]:
-        """Triangles of points (2, n), and the points in the reference triangle: where the least barycentric is largest.
+        """Triangle (n,) of each of n points (2, n), and the place (2, n) of the point in the reference triangle.
 
+        A point belongs to the triangle in which its smallest barycentric coordinate is largest: inside it is positive.
         The triangles with the nearest centres are tried first, then all.
         """
         from scipy.spatial import cKDTree  # noqa: PLC0415 - takes 0.1 s to import, and only fields inside need it
@@ -135,7 +141,7 @@ class MeridianSection:
         return found, local
 
     def _best(self, points: FloatArray, triangles: IntArray) -> tuple[IntArray, FloatArray, FloatArray]:
-        """Of k triangles (n, k) of each point the one with the largest least barycentric, the place in it, and that."""
+        """Best of k triangles (n, k) for each point, the place in it, and the smallest barycentric coordinate there."""
         repeated = np.repeat(points, triangles.shape[1], axis=1)[:, :, None]
         mapping = self.contact.layer.section.mesh.mapping()
         local = mapping.invF(repeated, tind=triangles.ravel()).reshape(2, *triangles.shape)
@@ -173,7 +179,11 @@ class FemInterior:
         )
 
     def _within_mesh(self, points: FloatArray) -> FloatArray:
-        """Points (2, n) of the mesh; rounding does not move them out of it."""
+        """Points (r, z) / a, shape (2, n), with a depth that exceeds the thickness by rounding set to the thickness.
+
+        Raises:
+            InvalidInput: a point lies beyond the mesh.
+        """
         mesh, scale, (r, z) = self.section.contact.layer.section, self.section.contact.contact_radius, points
         rounded = np.where(z <= mesh.thickness * (1 + 1e-14), np.minimum(z, mesh.thickness), z)
         beyond = (r > mesh.outer_radius) | (rounded > mesh.thickness)
@@ -186,7 +196,7 @@ class FemInterior:
         return np.array([r, rounded])
 
     def _changes(self, triangles: IntArray) -> FloatArray:
-        """Largest change of each field [SI] in the triangles of n points by the coarser cells, shape (n, 9)."""
+        """Largest difference [SI] of each field from the coarser mesh, in the triangle of each of n points, (n, 9)."""
         fine, coarse = self.section, self.coarser
         chosen, back = np.unique(triangles, return_inverse=True)
         local = fine.local_nodes + INWARD * (1 / 3 - fine.local_nodes)
@@ -202,7 +212,11 @@ class FemInterior:
         return np.asarray(change.reshape(len(chosen), -1, len(NAMES)).max(axis=1)[back])
 
     def _stated(self, values: FloatArray, error: FloatArray) -> dict[str, float]:
-        """Largest error of each group over its scale: the depth, the largest stress and gradient."""
+        """Largest error of each of `GROUPS` over its scale.
+
+        Scales are the depth, for stresses and pressure the largest of these at the points, and for the gradient the
+        largest gradient there, at least that stress over min(a, thickness).
+        """
         contact, tiny = self.section.contact, np.finfo(float).tiny
         depth = max(abs(self.section.depth) * contact.contact_radius, tiny)
         stress = np.abs(values[:, 2:7]).max(initial=tiny)

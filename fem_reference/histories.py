@@ -43,36 +43,43 @@ from fem_reference.profiles import height
 from fem_reference.settings import Discretisation
 from fem_reference.stated import FLOOR, exact_names, relative_change
 
-# Steps of a pilot in the time that an impact is expected to take; fewer than half as many are repeated. And of each
-# octave of the pilot of a history.
+# Steps of a pilot in the expected contact time of an impact: a pilot of fewer than half as many is repeated with
+# shorter steps. Steps of each octave of the pilot of a history.
 PILOT_STEPS, PILOT_OCTAVE = 60, 4
-# Largest change of velocity in a step of the pilot and in one of two hundred steps, over the first velocity: a strong
-# dashpot stops a body far sooner than the layer throws it back.
+# Largest change of velocity over the first velocity, in a step of the pilot, and in a step of 1/200 of the contact
+# time: a strong dashpot stops a body in a small part of that time, and equal steps must resolve it.
 LARGEST_CHANGE, WANTED_CHANGE = 0.2, 0.05
-# Most steps over those of an impact on an elastic layer.
+# Largest factor on the number of steps of an impact on an elastic layer.
 MOST = 16
-# Least restitution. Below, contact ends after its force has fallen under its roundings.
+# Least coefficient of restitution. Below it contact ends only after its force has fallen below its roundings.
 LEAST_LEFT = 3e-8
-# Share of the peak below which a force may be roundings: the time that contact still lasts is stated of its end.
+# Share of the peak force below which a force may be rounding: the rest of the contact time is its stated error.
 ROUNDING_FORCE = 1e-12
-# A channel counts as near its peak from this share of it on: the largest change there is stated of the peak.
+# A quantity above this share of its peak is near it: the largest change there is the stated error of the peak.
 NEAR_PEAK = 0.9
-# The channel of each peak.
+# The time-dependent quantity of each peak.
 PEAKS = {"peak_force": "normal_force", "peak_depth": "indentation_depth", "peak_contact_radius": "contact_radius"}
-# Share of a cell by which the edge is read from pressures on cells; at a kink, and where layers relax, it is one cell.
+# Error, in cells, of the contact edge extrapolated from pressures. At a kink, and where layers relax, it is one cell.
 EDGE_READING = 0.1
-# Instants of the companion to either side, among which the largest change is stated.
+# The error at an instant is the largest change among so many instants of the companion to either side.
 WINDOW = 6
-# Contact narrower than so many cells states the largest change while it is; the first cells err in every way.
+# While the contact radius is below so many cells, the largest change of all such instants is stated.
 NARROW = 8.0
-# Least stated change over the mean of all instants.
+# This share of the mean change of all instants is added to the change at each instant.
 SHARE_OF_MEAN = 0.5
 
 A = TypeVar("A", ImpactHistory, HistoryPath)
 
 
 def impact(scene: Scene, settings: Discretisation, *, written: Mapping[str, Setting], log: StageLog) -> ImpactHistory:
-    """An impact from first touch to the loss of contact."""
+    """An impact from first touch to the loss of contact, in SI units, with relative errors.
+
+    Args:
+        scene: an `Impact`.
+        settings: of the mesh and, by its growth, of cells and steps.
+        written: settings that the answer reports.
+        log: of the stages.
+    """
     setups = HistorySetup.resolutions(scene, settings, log)
     radius, span = _pilot(setups[0][0])
 
@@ -138,7 +145,9 @@ def history(scene: Scene, settings: Discretisation, *, written: Mapping[str, Set
 
 
 def _pilot(setup: HistorySetup) -> tuple[float, float]:
-    """Radius of the strip [m], and the time in which the answer makes as many steps as its resolution says [s].
+    """Radius of the strip [m], and the time [s] that is divided into `Resolution.steps` steps.
+
+    That is the contact time, or less of it by the factor of steps that a strong dashpot needs.
 
     Raises:
         NotConvergedError: equal steps that follow the stop are too many, or hardly any velocity is left.
@@ -172,18 +181,23 @@ def _pilot(setup: HistorySetup) -> tuple[float, float]:
 
 
 def _scales(scene: Scene) -> tuple[float, float]:
-    """A contact radius [m] with E* r f(r)^2 = kinetic energy, and the time [s] to reach the depth f(r)."""
+    """A contact radius r [m] with E* r f(r)^2 = kinetic energy, and an estimate of the contact time [s].
+
+    The time is 3 f(r) / v_0: Hertz' is 2.94 peak depths over v_0 (Johnson, Contact Mechanics, section 11.4). A flat
+    punch on a half-space, of stiffness 2 E* a, is in contact for half a period, ``pi sqrt(M / (2 E* a))``.
+    """
     indenter, loading, modulus = scene.indenter, scene.loading, contact_modulus(scene.layer)
     assert isinstance(loading, Impact)
     if isinstance(indenter, FlatPunch):
         return indenter.radius, float(np.pi * np.sqrt(loading.mass / (2 * modulus * indenter.radius)))
+    # Kinetic energy / E* [m^3].
     volume = loading.mass * loading.velocity**2 / 2 / modulus
     r = first_radius(indenter, lambda r: r * height(indenter, r) ** 2 >= volume)
     return r, 3 * height(indenter, r) / loading.velocity
 
 
 def _radius_of_load(scene: Scene, largest: float) -> float:
-    """A contact radius [m] for the largest load: f(r) = delta, or 4 E* r f(r) = F."""
+    """First guess of the contact radius [m] at the largest depth or force: f(r) = delta, or 4 E* r f(r) = F."""
     indenter, load = scene.indenter, largest / (4 * contact_modulus(scene.layer))
     if isinstance(indenter, FlatPunch):
         return indenter.radius
@@ -195,7 +209,7 @@ def _radius_of_load(scene: Scene, largest: float) -> float:
 
 
 def _fall(setup: HistorySetup, duration: float, condensed: CondensedLayer) -> list[Sample]:
-    """The impact with time steps of this duration [s]."""
+    """Samples of the impact with time steps of this duration [s], in the units of the condensed layer."""
     loading: Any = setup.scene.loading
     mass = loading.mass / (shear_modulus(setup.scene.layer) * condensed.radius)
     with setup.log.stage("time_steps"):
@@ -205,7 +219,7 @@ def _fall(setup: HistorySetup, duration: float, condensed: CondensedLayer) -> li
 
 
 def _follow(setup: HistorySetup, values: FloatArray, per_octave: int, condensed: CondensedLayer) -> list[Sample]:
-    """The response to depths [m] or forces [N] in the units of the condensed layer."""
+    """Samples of the response to depths [m] or forces [N], in the units of the condensed layer."""
     loading: Any = setup.scene.loading
     by_depth = isinstance(loading, DepthHistory)
     unit = condensed.radius * (1.0 if by_depth else shear_modulus(setup.scene.layer) * condensed.radius)
@@ -217,7 +231,7 @@ def _follow(setup: HistorySetup, values: FloatArray, per_octave: int, condensed:
 
 
 def _channels(setup: HistorySetup, condensed: CondensedLayer, samples: list[Sample]) -> dict[str, Any]:
-    """What both kinds of answers consist of; radii are at least that of a flat end."""
+    """Arguments that `ImpactHistory` and `HistoryPath` share, in SI units; radii are at least that of a flat end."""
     length, found = condensed.radius, columns(samples)
     return {
         "scene": setup.scene,
@@ -272,7 +286,10 @@ def _change(answer: A, companion: A, name: str) -> FloatArray:
 
 
 def _scalar_change(answer: ImpactHistory, companion: ImpactHistory, name: str) -> float:
-    """Relative change of a number; of a peak the largest one of its channel near the peak, where two may agree."""
+    """Relative change of a number. The change of a peak is at least the largest of its quantity near the peak.
+
+    The peaks of two resolutions may agree by accident.
+    """
     change = float(relative_change(answer, companion, name).max())
     if name not in PEAKS:
         return change
@@ -281,7 +298,14 @@ def _scalar_change(answer: ImpactHistory, companion: ImpactHistory, name: str) -
 
 
 def _largest_near(change: FloatArray, companion: HistoryPath, answer: HistoryPath, narrow: float) -> FloatArray:
-    """Largest change at some instants to either side, and of all while contact is narrower than some cells."""
+    """Largest change (n,) near each instant of the answer.
+
+    Args:
+        change: at the companion's instants, shape (m,).
+        companion: the coarser answer.
+        answer: the answer, of n instants.
+        narrow: contact radius [m] below which the largest change of all such narrow contacts is taken.
+    """
     place = np.searchsorted(companion.time, answer.time)
     shifts = range(-WINDOW, WINDOW)
     near: FloatArray = np.max([change[np.clip(place + k, 0, len(change) - 1)] for k in shifts], axis=0)
@@ -290,15 +314,15 @@ def _largest_near(change: FloatArray, companion: HistoryPath, answer: HistoryPat
 
 
 def _energy_lost(answer: ImpactHistory) -> float:
-    """Relative error of the restitution by the energy that motion, layer and dissipation lack in the end together."""
+    """Relative error of the restitution e by the defect dE of the energy balance: de/e = dE / (2 kinetic energy)."""
     if isinstance(answer.scene.effect(Viscoelasticity), KelvinVoigt):
-        return 0.0  # a dashpot's dissipation is summed to first order in the steps
+        return 0.0  # the dissipation of a dashpot is summed to first order in the step only, and shows no error
     total = answer.kinetic_energy + answer.stored_energy + answer.dissipated_energy
     return float(abs(total[-1] - total[0]) / (2.0 * answer.kinetic_energy[-1]))
 
 
 def _end_by_roundings(answer: ImpactHistory) -> float:
-    """Share of the contact time in which the force is roundings: a strong dashpot lets it fade like e^-st."""
+    """Last share of the contact time, in which the force is rounding: a strong dashpot lets it decay exponentially."""
     presses = np.flatnonzero(answer.normal_force > ROUNDING_FORCE * answer.peak_force)
     return float(1.0 - answer.time[min(presses[-1] + 1, len(answer) - 1)] / answer.time[-1])
 

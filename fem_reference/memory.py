@@ -1,20 +1,34 @@
-"""The top of a relaxing layer and its memory, for every Poisson's ratio, in modes of the condensed layer.
+"""A relaxing layer condensed to a strip of its surface, and its memory, at every Poisson's ratio.
+
+The layer is a generalised Maxwell solid in shear with a constant bulk modulus:
 
     u = M x,   (K + D G*) x = M^T p,   G* x = G_inf x + sum_j s_j + eta x',   s_j' = G_j x' - s_j / tau_j
 
-M (n, r) are displacement moments of the modes.  K and D are their stiffnesses against changes of volume and of shape.
-Where all moduli relax in proportion (incompressible, or elastic) K = 0, D = 1 and M M^T is the compliance at unit shear
-modulus.  Else the modes span the answers to every pressure at a few effective shear moduli.
+The pressures p (n,) are nodal values of the hat functions phi_i. The moments ``u_i = int phi_i u_z 2 pi r dr`` (n,)
+make p . u their work. The columns of M (n, r) are the moments of r displacement modes of the whole layer with
+amplitudes x. K and D (r,) are diagonals: the stiffness of each mode against changes of volume, and of shape at unit
+shear modulus. G_inf, G_j and tau_j are those of `ShearRelaxation`, eta is the viscosity of its parallel dashpot, and
+s_j (r,) are the contributions of the branches to G* x.
 
-In a step dt in which x is linear in time each branch is exact, with alpha = exp(-dt/tau_j),
+Where all moduli relax in proportion (incompressible, or elastic) K = 0, D = 1 and M M^T is the compliance at unit shear
+modulus. Else the modes span the responses to every pressure at a few effective shear moduli.
+
+In a step dt from x_0 to x_1 in which x is linear in time each branch is exact, with alpha = exp(-dt/tau_j),
 
     s_1 = alpha s_0 + beta (x_1 - x_0),    beta = G_j (tau_j/dt) (1 - alpha),
 
-and the dashpot takes the backward difference of second order for unequal steps, q = dt/dt_before,
+and the dashpot takes the backward difference of second order for unequal steps (BDF2), q = dt/dt_before,
 
     dt x'_1 = (1 + 2q)/(1 + q) x_1 - (1 + q) x_0 + q^2/(1 + q) x_(-1).
 
-Units: lengths by the strip's radius, stresses by the instantaneous shear modulus, times in seconds.
+Both are linear in x_1, so that ``G* x_1 = G_step x_1 + memory``, with the effective shear modulus of the step
+
+    G_step = G_inf + sum_j beta_j + (eta/dt) (1 + 2q)/(1 + q)
+
+and a memory of known amplitudes and branches. A step hence is an elastic problem, ``u = A p + o`` (`Top.begin`).
+
+Units: lengths by the strip's radius L, stresses by the instantaneous shear modulus G_0 = G_inf + sum_j G_j, times in
+seconds.
 """
 
 from __future__ import annotations
@@ -31,23 +45,23 @@ from fem_reference.materials import Parts, ShearRelaxation, uniform
 from fem_reference.mesh import Section
 from fem_reference.surface import STRIDE, STRIP_ORDER, strip_loads
 
-# Effective shear moduli whose answers span those at all others.  Five leave 3e-5 of the compliance between 0.02 and
-# 1e4, and less than 2e-7 below nu = 0.4; ten take twice the time.
+# Effective shear moduli over G_0 whose responses span those at all others. With five the compliance errs by 3e-5 at
+# moduli between 0.02 and 1e4, and by less than 2e-7 below nu = 0.4. Ten take twice the time.
 SPANNING_MODULI = (1e-2, 1e-1, 1.0, 10.0, 1e3)
-# Least energy of a mode over the largest; below, roundings decide.
+# Least energy of a mode over the largest. Modes below it are roundings, and dropped.
 LEAST_MODE = 1e-13
 
 
 class Modes(NamedTuple):
-    """A layer condensed to its top.
+    """A layer condensed to a strip of its surface, without memory; the symbols are those of the module.
 
     Attributes:
-        displacements: M, shape (n, r).
-        volume: K, shape (r,).
-        shear: D, shape (r,).
-        resultants: force per pressure unknown, shape (n,).
-        radii: vertices of the pressures, shape (n,).
-        unknowns: size of the condensed system.
+        displacements: M, moments of u_z per amplitude, shape (n, r).
+        volume: diagonal of K, shape (r,).
+        shear: diagonal of D, shape (r,).
+        resultants: ``w_i = int phi_i 2 pi r dr``, the force is F = w . p, shape (n,).
+        radii: vertices of the pressures over L, shape (n,).
+        unknowns: size of the linear system before condensation.
     """
 
     displacements: FloatArray
@@ -59,17 +73,20 @@ class Modes(NamedTuple):
 
 
 class Top:
-    """Modes x and branch stresses s_j of a layer that is at rest at first; it has a memory and serves one history.
+    """Amplitudes x and branches s_j of a layer that is at rest at first; it has a memory and serves one history.
+
+    Each step is a call of `begin`, then of `accept`. Without `accept` a step has no effect and may be begun anew.
 
     Args:
         modes: of the condensed layer.
         relaxation: of shear; branches without modulus are left out.
 
     Attributes:
-        resultants: force per pressure unknown, shape (n,).
-        viscosity: eta over the instantaneous modulus [s].
-        dissipated_energy: energy lost so far.
-        dashpot_force: share of the dashpot in the force after the last step, ``eta v . D x'`` with ``M v = w``.
+        resultants: w, force per nodal pressure, shape (n,).
+        viscosity: eta / G_0 [s].
+        dissipated_energy: energy lost so far, over G_0 L^3.
+        dashpot_force: share of the dashpot in the force after the last step, ``eta v . D (x_1 - x_0)/dt``: with
+            ``M v = w`` the force is ``F = w . p = v . M^T p = v . (K + D G*) x``. Exact after Euler steps only.
     """
 
     def __init__(self, modes: Modes, relaxation: ShearRelaxation) -> None:
@@ -86,15 +103,22 @@ class Top:
         self._modulus, self._unit = np.nan, modes.displacements @ modes.displacements.T
 
     def restart(self) -> None:
-        """The rates jump: the dashpot's next step is an implicit Euler step."""
+        """Start the next step after a jump of the rate x': q = 0 makes it an implicit Euler step of the dashpot.
+
+        The difference of second order would mix the rates before and after the jump.
+        """
         self._last = 0.0
 
     def begin(self, duration: float) -> tuple[FloatArray, FloatArray]:
-        """Matrix A and offset o of the displacement moments ``A p + o`` after a step [s], for end pressures p."""
+        """Matrix A and offset o of the moments ``u = A p + o`` at the end of a step [s], for the pressures p there.
+
+        ``A = M (K + D G_step)^-1 M^T`` (n, n), ``o = -M (K + D G_step)^-1 D memory`` (n,).
+        """
         ratio = duration / self._times
         self._duration = duration
         self._alpha, self._beta = np.exp(-ratio), -self._moduli * np.expm1(-ratio) / ratio
         q = duration / self._last if self._last else 0.0
+        # Coefficients of x_1 and x_(-1) in eta x'_1. That of -x_0 is their sum: (1 + q)^2/(1 + q).
         per_time = self.viscosity / duration
         following, before = per_time * (1 + 2 * q) / (1 + q), per_time * q * q / (1 + q)
         tangent = float(self._beta.sum())
@@ -117,16 +141,22 @@ class Top:
 
     @property
     def stored_energy(self) -> float:
-        """(K x^2 + G_inf D x^2 + sum_j D s_j^2 / G_j) / 2, that of the free surface that still relaxes included."""
+        """Energy ``(x . K x + G_inf x . D x + sum_j s_j . D s_j / G_j) / 2`` over G_0 L^3.
+
+        It does not vanish when contact is lost: the free surface still relaxes.
+        """
         energy = (self._volume + self._long_term * self._shear) @ self._now**2
         return float(energy + (self._branches**2 @ self._shear) @ (1 / self._moduli)) / 2
 
     def _dissipation(self, change: FloatArray) -> float:
-        """Energy lost in the branches and the dashpot during a step of constant rate."""
+        """Energy / (G_0 L^3) lost in a step of constant rate: ``int sum_j s_j.D s_j / (G_j tau_j) + eta x'.D x' dt``.
+
+        The integrals over the branches are exact.
+        """
         rate, duration = change / self._duration, self._duration
         lost = self.viscosity * duration * float(rate @ (self._shear * rate))
         for s, modulus, time, alpha in zip(self._branches, self._moduli, self._times, self._alpha, strict=True):
-            # s(t) = steady + transient exp(-t / tau).
+            # s(t) = steady + transient exp(-t / tau) solves s' = G x' - s / tau, from s_0 at t = 0.
             steady = modulus * time * rate
             transient = s - steady
             integral = duration * steady + 2 * time * (1 - alpha) * transient
@@ -137,7 +167,14 @@ class Top:
 
 
 def proportional_modes(compliance: FloatArray, resultants: FloatArray, radii: FloatArray, unknowns: int) -> Modes:
-    """Of a layer whose moduli relax in proportion; compliance at unit shear modulus, shape (n, n)."""
+    """Modes of a layer whose moduli relax in proportion: K = 0, D = 1, and M the Cholesky factor of the compliance.
+
+    Args:
+        compliance: M M^T, moments of u_z per nodal pressure at unit shear modulus, shape (n, n).
+        resultants: w, shape (n,).
+        radii: vertices of the pressures over L, shape (n,).
+        unknowns: size of the linear system before condensation.
+    """
     ones = np.ones_like(resultants)
     factor = np.asarray(np.linalg.cholesky(compliance), dtype=float)
     return Modes(factor, 0.0 * ones, ones, resultants, radii, unknowns)
@@ -146,8 +183,11 @@ def proportional_modes(compliance: FloatArray, resultants: FloatArray, radii: Fl
 def compressible_modes(parts: Parts, section: Section) -> Modes:
     """Modes of a uniform layer with a constant bulk modulus, on a section with a strip of radius one.
 
-    A layer of effective shear modulus G* and bulk modulus K has the matrix ``K_v + G* D``. It is solved as a layer of
-    contact modulus one and scaled.
+    In an elastic layer of shear modulus G and bulk modulus K_b (in units of G_0) the displacements under nodal loads f
+    solve ``(K_v + G D_v) u = f``: K_v is the stiffness against changes of volume, D_v against those of shape at unit
+    shear modulus. Solutions at `SPANNING_MODULI` are the basis of the modes, and K_v u = f - G D_v u needs no inverse
+    of the pressure's matrix. Each is solved as a layer of contact modulus one and of the ratio
+    ``nu = (3 K_b - 2 G) / (2 (3 K_b + G))``, and scaled.
     """
     nu = parts.poissons_ratio
     bulk = 2 * (1 + nu) / (3 * (1 - 2 * nu))
@@ -170,7 +210,10 @@ def compressible_modes(parts: Parts, section: Section) -> Modes:
 
 
 def _energy_modes(u: FloatArray, volume: FloatArray, shear: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Combinations of the columns of ``u`` that diagonalise both energies, whose sum is one for every mode."""
+    """Coefficients (m, r) of the columns of ``u`` in modes that diagonalise both energies, and their K and D (r,).
+
+    Modes are normalised to K + D = 1. ``volume`` and ``shear`` (m, m) are the energies ``u^T K_v u`` and ``u^T D_v u``.
+    """
     volume, shear = (volume + volume.T) / 2, (shear + shear.T) / 2
     energy, vectors = np.linalg.eigh(volume + shear)
     keep = energy > LEAST_MODE * energy[-1]

@@ -1,11 +1,18 @@
 r"""Motions of a rigid body on a (visco)elastic layer, the contact set solved in every step.
 
-Prescribed depths or forces are linear between the given instants.  In an impact the trapezoidal rule for the body makes
-kinetic energy and work balance exactly.  It gives
-``delta_1 = delta_0 + dt v_0 - dt^2 (F_0 + F_1) / (4 M)``, linear in F_1 = w . p_1; inserted into the contact conditions
-the depth disappears, and a step is one complementarity problem with the matrix
+At the end of a step the displacement moments are u = A p + o (`memory`). With the moments f of the profile and w of the
+constant one, contact at depth delta is the complementarity problem
 
-    A + kappa w w^T,      kappa = dt^2 / (4 M).
+    p >= 0,   g = A p - (delta w - f - o) >= 0,   p . g = 0.
+
+Prescribed depths or forces are linear between the given instants. In an impact the body, of mass M, moves by the
+trapezoidal rule, hence its kinetic energy changes exactly by the work of the force. The rule gives
+``delta_1 = delta_0 + dt v_0 - dt^2 (F_0 + F_1) / (4 M)``, linear in F_1 = w . p_1. Inserted above, it eliminates the
+depth: a step is one complementarity problem with the matrix
+
+    A + kappa w w^T,      kappa = dt^2 / (4 M),
+
+and ``delta_0 + dt v_0 - kappa F_0`` in place of delta.
 """
 
 from __future__ import annotations
@@ -30,16 +37,17 @@ from fem_reference.profiles import ScaledIndenter, shape
 from fem_reference.settings import Discretisation, contact_section
 from fem_reference.surface import TraceSpace, condense, strip_section
 
-# Steps after which a body counts as held by the layer: five hundred times what an impact at the default settings takes.
+# Steps of an impact after which the body is reported not to come off: five hundred times what an impact at the default
+# settings takes.
 MAX_STEPS = 200_000
-# The step in which a load that acts from the first instant is reached, over the step after it.
+# Duration of the step for a load that jumps at the first instant, over that of the next step.
 INSTANT = 1e-7
-# Fewest touches in a segment whose dashpot's force is smoothed.
+# Fewest events (a vertex touches or leaves) in a segment whose dashpot force is smoothed.
 FEWEST_TOUCHES = 4
-# Share of a step in which a vertex touches at once.
+# An event within this share of a step counts as at its start.
 SLIGHTLY = 1e-6
-# Octaves of steps in a segment, the fewest and the most, and those that all segments share: every time scale after a
-# bend has its own steps.
+# Octaves of steps in a segment, the fewest and the most, and the number that all segments of a history share. Steps
+# double from octave to octave: after a kink of the load the layer relaxes on every time scale.
 FEWEST, MOST, SHARED = 3, 12, 48
 # Growth of cells away from a strip of 120 cells. With a growth of one the mesh outside changes peak depths by 5e-5.
 OUTSIDE = 0.6
@@ -47,8 +55,8 @@ OUTSIDE = 0.6
 TRUNCATION = 1e-7
 # Cells of the strip of pilot simulations.
 PILOT_CELLS = 30
-# Share of a pilot's strip that a contact may fill, and from which on it fits; the strip of the answer is larger than
-# the contact by the last factor.
+# A strip fits if the largest contact fills between FITTING and FULL of its radius. The strip of the answer is SPARE
+# times the largest contact.
 FULL, FITTING, SPARE = 0.9, 0.3, 1.25
 
 
@@ -60,10 +68,11 @@ class CondensedLayer:
 
     Attributes:
         surface: the layer; it has a memory, so a condensed layer serves one history.
-        radii: vertices of the pressures, shape (n,); one entry for a flat punch.
+        radii: vertices of the pressures over L, shape (n,); one entry for a flat punch, unless a compressible layer
+            relaxes.
         profile: moments ``int phi_i f 2 pi r dr`` of the indenter's profile, shape (n,).
         radius: L [m].
-        unknowns: size of the condensed system.
+        unknowns: size of the linear system before condensation.
     """
 
     surface: Top
@@ -75,7 +84,7 @@ class CondensedLayer:
     def sample(
         self, time: float, depth: float, velocity: float, pressure: FloatArray, *, dashpot: float = 0.0
     ) -> Sample:
-        """The instant with these pressures at the vertices."""
+        """The sample at a time [s]: contact radius and force of the pressures (n,), and the layer's energies."""
         top, edge = self.surface, edge_radius(self.radii, pressure)
         force = float(top.resultants @ pressure)
         return Sample(time, depth, velocity, force, edge, top.stored_energy, top.dissipated_energy, dashpot)
@@ -85,14 +94,14 @@ class Sample(NamedTuple):
     """One instant of a motion, in the units of its condensed layer.
 
     Attributes:
-        time: t.
-        depth: delta.
-        velocity: of a falling body.
-        force: F.
-        radius: of the contact.
-        stored: energy of the layer.
-        dissipated: energy lost so far.
-        dashpot: share of the dashpot in the force.
+        time: t [s].
+        depth: delta / L.
+        velocity: v / L [1/s], of the body of an impact; zero in a prescribed history.
+        force: F / (G_0 L^2).
+        radius: a / L.
+        stored: energy of the layer over G_0 L^3.
+        dissipated: energy lost so far over G_0 L^3.
+        dashpot: share of the dashpot in the force, see `Top.dashpot_force`.
     """
 
     time: float
@@ -111,7 +120,7 @@ def columns(samples: Sequence[Sample]) -> dict[str, FloatArray]:
 
 
 def simulate_impact(condensed: CondensedLayer, mass: float, velocity: float, duration: float) -> list[Sample]:
-    """Steps of ``duration`` [s] from first touch to the loss of contact.
+    """Samples of an impact in equal steps, from first touch to the loss of contact.
 
     Args:
         condensed: the layer at rest and its indenter.
@@ -135,6 +144,7 @@ def simulate_impact(condensed: CondensedLayer, mass: float, velocity: float, dur
         following, overlaps = float(w @ state.pressure), (*overlaps[1:], float((approach / w).max()))
         mean, active = (force + following) / 2, state.active
         is_free = following == 0 and velocity - duration * mean / mass < 0
+        # In the last step depth and velocity are interpolated to the instant of release.
         part = duration * (_release_fraction(*overlaps) if is_free else 1.0)
         depth += part * velocity - part * duration * mean / (2 * mass)
         velocity -= part * mean / mass
@@ -146,7 +156,10 @@ def simulate_impact(condensed: CondensedLayer, mass: float, velocity: float, dur
 
 
 def _touch(condensed: CondensedLayer, velocity: float, instant: float) -> FloatArray:
-    """Pressures at first touch: those of the dashpot under the part of the profile that is flat."""
+    """Pressures (n,) at first touch: a dashpot reacts to the first velocity under the flat part of the profile.
+
+    Without a dashpot there is no force at depth zero. With one it is proportional to the velocity.
+    """
     surface = condensed.surface
     if surface.viscosity == 0:
         return np.zeros_like(condensed.profile)
@@ -158,11 +171,17 @@ def _touch(condensed: CondensedLayer, velocity: float, instant: float) -> FloatA
 
 
 def _release_fraction(earlier: float, before: float, after: float) -> float:
-    """Part of the last step after which contact is lost, from the overlap at its ends and one step earlier.
+    """Part of the last step after which contact is lost.
 
-    The overlap of the indenter with the surface as it would be without pressure passes zero there, and smoothly, while
-    the force of a round indenter vanishes like its power 3/2. The zero is that of the parabola through the three: a
-    straight line would err by the second order of the step times a factor that moves with the place of the zero.
+    The overlap is the largest of ``(delta w - f - o) / w``, of the indenter with the surface as it would be without
+    pressure. It passes zero smoothly at release, while the force of a round indenter vanishes like its power 3/2. The
+    zero of the parabola through three overlaps is taken: the error of a straight line, of second order in the step,
+    would depend on where in the step the zero lies, and disturb the comparison of two step sizes.
+
+    Args:
+        earlier: overlap one step before the last step.
+        before: overlap at its start.
+        after: overlap at its end.
     """
     if not before > 0 > after:
         return 1.0
@@ -173,11 +192,15 @@ def _release_fraction(earlier: float, before: float, after: float) -> float:
 def segments(time: FloatArray, per_octave: int) -> list[FloatArray]:
     """Ends of the steps of each segment between given instants [s].
 
-    M equal steps are followed by M twice as long, and so on. With half of M they are every other one of these.
+    M equal steps are followed by M twice as long, and so on. With M/2 the ends are every other one of these, so that a
+    companion with half the steps is compared at common instants.
 
     Args:
         time: given instants [s].
-        per_octave: M, even in an answer and half of that in its companion.
+        per_octave: M, even in an answer, and M/2 in its companion.
+
+    Returns:
+        An array of instants [s] for each segment, without its start and with its end.
     """
     octaves = int(np.clip(SHARED // (len(time) - 1), FEWEST, MOST))
     steps = np.repeat(2.0 ** np.arange(octaves), per_octave)
@@ -207,7 +230,7 @@ def simulate_prescribed(
     active: BoolArray | None = None
 
     def advance(duration: float, load: float) -> FloatArray:
-        """Pressures at the end of a step to this load; the memory and the depth move on."""
+        """Pressures (n,) at the end of a step [s] to this load; memory, depth and active set are updated."""
         nonlocal depth, active
         matrix, offset = surface.begin(duration)
         gap = condensed.profile + offset
@@ -243,13 +266,14 @@ def simulate_prescribed(
 
 
 def smooth_dashpot(samples: list[Sample], marks: Sequence[tuple[float, float]]) -> list[Sample]:
-    """Samples of a segment, the dashpot's force linear between the middles of the intervals from touch to touch.
+    """Samples of a segment, the dashpot's share of the force made piecewise linear in time.
 
-    It is constant in each interval, and right in its middle.
+    Between two events (a vertex touches or leaves) the computed share is constant and correct in the middle of the
+    interval. These values are interpolated, and replace the computed ones.
 
     Args:
         samples: of the segment.
-        marks: instants of touches in the segment, with the dashpot's force in the interval before each.
+        marks: the instant [s] of each event in the segment, and the dashpot's force in the interval before it.
     """
     if len(marks) < FEWEST_TOUCHES:
         return samples
@@ -267,8 +291,10 @@ def touch_to_touch(
 ) -> tuple[FloatArray, BoolArray, list[tuple[float, float]]]:
     """A step under a growing depth in parts that end where a vertex touches or leaves, for a layer with a dashpot.
 
-    While the set of pressed vertices is fixed, the surface is linear in the depth, and rates by Euler steps are exact.
-    At other instants a dashpot's force errs like the cell: the stiffness of a contact on cells is a staircase.
+    While the set of pressed vertices is fixed, pressures and displacements are linear in the depth, as in a flat punch.
+    The force of a dashpot is proportional to the rate of the depth and to the stiffness dF/d(delta), which on cells is
+    a staircase: it jumps where a vertex touches. Steps across a jump would give the force an error of the order of the
+    cell.
 
     Args:
         condensed: the layer, whose memory moves on, and its indenter.
@@ -278,20 +304,23 @@ def touch_to_touch(
         duration: of the step [s].
 
     Returns:
-        Pressures and pressed vertices at the end, and each touch: the time since the start [s], and the dashpot's
-        force before it.
+        Pressures (n,) and pressed vertices (n,) at the end, and for each event the time since the start of the step [s]
+        and the dashpot's force before it.
     """
     touches: list[tuple[float, float]] = []
     surface, elapsed, active = condensed.surface, 0.0, active.copy()
 
     def problem(part: float) -> tuple[FloatArray, FloatArray]:
-        """Compliance and approach of the contact after a part, with an Euler step of the dashpot."""
+        """Compliance A and approach delta w - f - o after a part [s], one Euler step of the dashpot."""
         surface.restart()
         matrix, offset = surface.begin(part)
         return matrix, (depth + rate * (elapsed + part)) * surface.resultants - condensed.profile - offset
 
     def held(part: float) -> tuple[FloatArray, FloatArray]:
-        """Pressures with a fixed set after a part, and what must not be negative, plus roundings."""
+        """Pressures with the active set fixed after a part [s], and slacks (n,), negative where the set is wrong.
+
+        The slack is p_i A_ii at a pressed vertex and the gap g_i at a free one; a margin for roundings is added.
+        """
         matrix, approach = problem(part)
         pressure = np.zeros_like(approach)
         if active.any():
@@ -300,6 +329,7 @@ def touch_to_touch(
         return pressure, slack + 1e-11 * np.abs(approach).max()
 
     def least(part: float) -> float:
+        """Smallest slack: its zero is the next event."""
         return float(held(part)[1].min())
 
     for _ in range(2 * len(active)):
@@ -308,7 +338,7 @@ def touch_to_touch(
         if slack.min() >= 0.0:
             surface.accept(pressure)
             return np.maximum(pressure, 0.0), active, touches
-        # Zero where a vertex touches or leaves at once.
+        # A part of zero where a vertex touches or leaves at the start.
         first = SLIGHTLY * left
         part = 0.0 if least(first) < 0.0 else float(brentq(least, first, left, xtol=0.1 * first, rtol=1e-7))
         wrong = held(min(left, part + first))[1] < 0.0
@@ -317,7 +347,7 @@ def touch_to_touch(
             elapsed += part
             touches.append((elapsed, surface.dashpot_force))
         active ^= wrong
-    # Vertices touch and leave again and again.
+    # Too many events: the rest of the step is one complementarity problem.
     state = solve_complementarity(*problem(duration - elapsed), active)
     surface.accept(state.pressure)
     return state.pressure, state.active, touches
@@ -326,7 +356,21 @@ def touch_to_touch(
 def _depth_of_force(
     matrix: FloatArray, w: FloatArray, gap: FloatArray, force: float, depth: float
 ) -> tuple[Complementary, float]:
-    """Contact with a given resultant: Newton's method on the convex, piecewise linear F(delta)."""
+    """Contact under a given force F, and its depth: Newton's method on the convex, piecewise linear F(delta).
+
+    On the active vertices A p = delta w - gap, hence dF/d(delta) = w . A^-1 w. Without force the indenter stays at its
+    last depth, unless the recovering surface lifts it.
+
+    Args:
+        matrix: A, shape (n, n).
+        w: moments of one, shape (n,).
+        gap: f + o, moments of the profile and of the surface without pressure, shape (n,).
+        force: F.
+        depth: first guess.
+
+    Raises:
+        NotConvergedError: no depth carries the force.
+    """
     # The depth of first touch.
     least = float(np.min(gap / w))
     if force == 0:
@@ -335,7 +379,7 @@ def _depth_of_force(
     for _ in range(60):
         state = solve_complementarity(matrix, depth * w - gap)
         defect = force - float(w @ state.pressure)
-        # A force far below the layer's own stresses has the rounding of its depth.
+        # A small force cannot be met better than its depth is rounded, where o is large.
         if abs(defect) <= 1e-10 * force or abs(change) <= 1e-14 * abs(depth):
             return state, depth
         act = state.active if state.active.any() else gap / w <= depth + 1e-12
@@ -373,9 +417,10 @@ class HistorySetup:
     def resolutions(
         cls, scene: Scene, settings: Discretisation, log: StageLog
     ) -> list[tuple[HistorySetup, Resolution]]:
-        """Setups and resolutions with half the cells and steps, with half the cells, and of the answer.
+        """Setups with resolutions of half the cells and half the steps, of half the cells only, and of the answer.
 
-        Of a history half the steps end at every other instant.
+        In a history half the steps end at every other instant of the full ones, see `segments`. The two differences
+        measure the errors of the cells and of the steps apart from each other.
         """
         coarser, setup = (cls(scene, each, log) for each in (settings.coarser(), settings))
         cells, steps, octave = (max(a, round(b / settings.growth)) for a, b in ((10, 30), (20, 100), (2, 4)))
@@ -395,12 +440,13 @@ class HistorySetup:
         return CondensedLayer(Top(modes, self.relaxation), modes.radii, profile, radius, modes.unknowns)
 
     def _condensed_modes(self, radius: float, cells: int) -> Modes:
+        """Modes of a strip of ``radius`` [m]; a factor G/E* turns compliances at E* = 1 into those at G = 1."""
         per_shear = (1 - self.scene.layer.poissons_ratio) / 2  # E* = 2 G / (1 - nu)
         if self._needs_field:
             with self.log.stage("factor"):
                 return compressible_modes(*self._mesh(radius, cells))
         if isinstance(self.scene.indenter, FlatPunch):
-            # It moves as one: its force is the only unknown, 1 / k_N its compliance.
+            # All points have the same depth: F is the only unknown, and 1 / k_N its compliance.
             contact = solve_contact(self.scene, radius, self._settings, self.log)
             compliance = np.array([[per_shear / contact.stiffness]])
             return proportional_modes(compliance, np.ones(1), np.ones(1), contact.unknowns)
@@ -418,7 +464,11 @@ class HistorySetup:
     def fitted_radius(
         self, guess: float, simulate: Callable[[CondensedLayer], list[Sample]]
     ) -> tuple[float, list[Sample]]:
-        """A strip a quarter larger than the largest contact, and the record of the pilot simulation on it.
+        """Radius [m] of a strip a quarter larger than the largest contact, and the samples of the last pilot.
+
+        Args:
+            guess: first radius of a strip [m].
+            simulate: samples of the motion on a condensed layer.
 
         Raises:
             InvalidInput: contact reaches the end of the profile.

@@ -30,7 +30,7 @@ from fem_reference.friction.step import RubbedContact, RubbedState, followed, st
 from fem_reference.materials import contact_modulus
 from fem_reference.settings import Discretisation
 
-# A strip is used for contacts down to this share of its largest.
+# One pair of strips serves contacts with radii down to this share of its largest.
 SERVED = 0.5
 # Names of the numbers of a state in an answer.
 QUANTITIES = {
@@ -47,13 +47,13 @@ EDGE_UNCERTAIN = 0.1
 
 @dataclass(frozen=True)
 class Blend:
-    """A state between two touching points; between them everything is linear in the depth.
+    """A state between two touching points, linear in the depth: exact while the set of sliding nodes does not change.
 
     Attributes:
         contact: the strip.
         before: the touching point before it.
         after: the one after it.
-        share: of the way from one to the other.
+        share: (depth - depth before) / (depth after - depth before).
         modulus: E* [Pa].
     """
 
@@ -65,19 +65,19 @@ class Blend:
 
     @classmethod
     def at(cls, growing: Growing, depth: float, modulus: float) -> Blend:
-        """The state at a depth [m]; beyond the last touching point in the proportion of the last two."""
+        """The state at a depth [m], linearly extrapolated before the first and beyond the last touching point."""
         place = int(np.clip(np.searchsorted(growing.depth, depth), 1, len(growing.depth) - 1))
         low, high = growing.depth[place - 1], growing.depth[place]
         share = float((depth - low) / (high - low))
         return cls(growing.contact, growing.states[place - 1], growing.states[place], share, modulus)
 
     def nodal(self, name: str) -> FloatArray:
-        """A nodal quantity of the state."""
+        """Interpolated values of an array of `RubbedState`, shape (n,)."""
         before, after = getattr(self.before, name), getattr(self.after, name)
         return np.asarray(before + self.share * (after - before))
 
     def tractions(self) -> FloatArray:
-        """Pressures and tangential tractions at the nodes, shape (2 n,)."""
+        """Pressures and radial tractions over E* at the nodes, shape (2 n,)."""
         return np.concatenate([self.nodal("pressure"), self.nodal("shear")])
 
     def at_radii(self, values: FloatArray, radius: FloatArray) -> FloatArray:
@@ -102,7 +102,10 @@ class RubbedFields:
         return blend.modulus * blend.at_radii(blend.nodal("shear"), radius)
 
     def slip(self, radius: FloatArray, step: int) -> FloatArray:
-        """Outward displacement of the surface since it touched [m], zero outside."""
+        """Outward displacement of the surface since it touched [m], zero outside.
+
+        A moment over w_i is the mean of u_r, weighted by phi_i: it stands for the value at the node.
+        """
         blend = self.blends[step]
         moved = (blend.nodal("radial") - blend.nodal("touched")) / blend.contact.surface.resultants
         moved[0] = 0.0
@@ -158,7 +161,7 @@ def rubbed_path(
 
 
 def _traction_errors(fine: Blend, coarse: Blend) -> dict[str, float]:
-    """Changes of both tractions on half the cells: root mean square over the contact, relative to that of p."""
+    """Changes of p and q on half the cells: root mean square with weight 2 pi r, relative to that of p."""
     radius, weight = (values.ravel() for values in fine.contact.surface.tractions.gauss(2))
     both = [
         [each.contact.surface.tractions.evaluate(each.nodal(name), radius) for name in ("pressure", "shear")]
@@ -170,7 +173,7 @@ def _traction_errors(fine: Blend, coarse: Blend) -> dict[str, float]:
 
 
 def base_force_defect(blend: Blend) -> float:
-    """Force on the base over the force of the indenter, less one."""
+    """|F_base / F - 1|, of the force on the base and that of the indenter: a check of equilibrium."""
     surface = blend.contact.surface
     return abs(
         float(surface.base_forces @ blend.tractions()) / float(surface.resultants @ blend.nodal("pressure")) - 1.0
@@ -180,7 +183,10 @@ def base_force_defect(blend: Blend) -> float:
 def rubbed_history(
     scene: Scene, settings: Discretisation, *, written: Mapping[str, Setting], log: StageLog
 ) -> FrictionHistory:
-    """A history at its own instants, from the undeformed layer; Coulomb friction does not depend on the rate.
+    """Depths or forces in time, from the undeformed layer, solved at the given instants only.
+
+    Coulomb friction does not depend on the rate. Between two instants the load is monotonic, and `followed` makes the
+    steps.
 
     Raises:
         InvalidInput: a force pulls, or nothing is ever pressed.
@@ -198,7 +204,7 @@ def rubbed_history(
         numbers, coarser = (_numbers(*each, modulus) for each in zip(contacts, both, strict=True))
     fine, states = contacts[0], both[0]
     cell = fine.radius * fine.surface.radii[1] / numbers["contact_radius"].max()
-    # Radii are read from cells.
+    # Error of radii by the cells they are read from, relative to the largest contact radius.
     reading = {"contact_radius": EDGE_UNCERTAIN * cell, "stick_radius": cell}
     errors = {}
     for name, values in numbers.items():
@@ -225,6 +231,7 @@ def rubbed_history(
 
 
 def _states(contact: RubbedContact, targets: FloatArray, modulus: float, *, by_depth: bool) -> list[RubbedState]:
+    """States at depths [m] or forces [N]; depths above the surface, which are negative, mean no contact."""
     unit = contact.radius if by_depth else modulus * contact.radius**2
     return followed(contact, [max(0.0, float(target)) / unit for target in targets], by_depth=by_depth)
 
@@ -242,7 +249,10 @@ def _numbers(contact: RubbedContact, states: list[RubbedState], modulus: float) 
 
 
 def _checks(contact: RubbedContact, states: list[RubbedState]) -> dict[str, FloatArray]:
-    """Work that is neither stored nor heat, heat that is given back, and force that the base misses, relative."""
+    """Checks (n,) at the instants, relative to the largest work and force: energy balance, heat, and force on the base.
+
+    They are |work - stored energy - heat|, any decrease of the heat, and |F_base - F|.
+    """
     work, heat, force = (np.array([getattr(s, name) for s in states]) for name in ("work", "dissipated", "force"))
     stored = np.array([contact.stored_energy(state) for state in states])
     base = np.array([contact.surface.base_forces @ np.concatenate([s.pressure, s.shear]) for s in states])

@@ -1,8 +1,9 @@
-"""A contact with friction that grows, on two strips: its numbers at any depth, freed of the cells' leading error.
+"""A contact with friction that grows, on two strips: its numbers at any depth, by Richardson extrapolation in the cell.
 
-At touching points depth, force and radius err by ``c h^p`` in the cell h, smoothly. A polynomial through some of them
-interpolates their values between. Two strips of cells h and 2 h give the next order, ``F_h + (F_h - F_2h)/(2^p - 1)``.
-The change against the finer strip is stated as the error.
+A touching point is a state in which a node just touches. There depth, force and radius have a smooth error ``c h^p`` in
+the cell h; elsewhere it depends on the place of the edge in its cell. Hence a polynomial through touching points
+interpolates. Two strips of cells h and 2 h give the next order, ``F_h + (F_h - F_2h)/(2^p - 1)``. The difference from
+the finer strip is the error estimate.
 """
 
 from __future__ import annotations
@@ -27,24 +28,26 @@ from fem_reference.surface import RUBBED_STRIDE, STRIP_CELLS, condense, strip_se
 
 # Share of its strip that the largest contact fills: a few nodes beyond it are needed to follow its growth.
 FILLED = 0.9
-# Fewest and most cells of a strip: fewer make two strips differ by accident, the time grows like the cube.
+# A quarter of the fewest cells of the finer strip, and its most cells. With fewer the difference of two strips is
+# accidental; the time grows like the cube.
 FEWEST_CELLS, MOST_CELLS = 20, 480
 # Share of a profile whose heights are used: at its very end a sphere's slope has no bound.
 INSIDE = 0.999
-# Growth of the cells away from a strip of STRIP_CELLS cells, and growth of the settings that make so many.
+# Growth of the mesh outside a strip of STRIP_CELLS cells, and the `Discretisation.growth` at which a strip has so many.
 AWAY, USUAL_GROWTH = 0.5, 0.5
 # A touching node lies this share of a cell inside the contact's edge where the edge slides.
 EDGE_SHARE = 0.028
-# Where the edge sticks, the share is less by so much times eps^2, eps = ln(3 - 4 nu)/(2 pi).
+# Where the edge sticks, the share is less by this times eps^2, with eps = ln(3 - 4 nu)/(2 pi) of the oscillating
+# singularity at the edge of a rigid punch that sticks.
 LESS_BY_STICK = 0.25
-# Error of that share; twice what measured contacts leave.
+# Error of EDGE_SHARE in cells: twice the largest measured.
 EDGE_UNCERTAIN = 0.0015
-# One touching point on either side for so many of a strip, and two at least, make the interpolating polynomial of this
+# One touching point on either side per so many of the strip, and at least two, are fitted by a polynomial of this
 # degree in the logarithm of the depth.
 PER_NEIGHBOUR, DEGREE = 15, 3
-# Power of the cell with which the heat errs: slip begins at the edge, where the pressure goes like a root.
+# Order of the heat's error in the cell: slip begins at the edge, where the pressure vanishes like sqrt(a - r).
 HEAT_ORDER = 1.5
-# Fewest cells of the finer strip that stick, and that slide, for an extrapolated stick radius.
+# The stick radius is extrapolated if the stick region and the slip region each have so many cells of the finer strip.
 FEWEST_STUCK = 8
 # Error of an extrapolated stick radius, in cells.
 STICK_UNCERTAIN = 0.2
@@ -56,7 +59,7 @@ class StripMaker:
 
     Attributes:
         scene: with one effect, friction.
-        settings: decide how many cells there are.
+        settings: whose growth determines the number of cells.
         log: of stages.
     """
 
@@ -66,7 +69,7 @@ class StripMaker:
 
     @property
     def cells(self) -> int:
-        """Cells of the finest strip: an even number, more where the growth of cells is less.
+        """Cells of the finer strip: a multiple of four, inversely proportional to the growth of the settings.
 
         Raises:
             NotConvergedError: too many.
@@ -103,7 +106,7 @@ class StripMaker:
 
 
 def _heights(profile: Profile, radius: FloatArray) -> FloatArray:
-    """Height f [m]; beyond the end of a profile straight on, since a strip reaches farther than its contact."""
+    """Height f [m] at radii [m], continued by its tangent beyond the end: a strip is wider than its contact."""
     end = INSIDE * profile.max_radius
     if float(radius.max()) <= end:
         return shape(profile, radius).height
@@ -113,11 +116,11 @@ def _heights(profile: Profile, radius: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True)
 class Growing:
-    """One strip; lengths in metres, forces over E*.
+    """A growing contact on one strip, at its touching points; lengths in metres, forces over E* in m^2.
 
     Attributes:
         contact: the strip.
-        states: in which each node touches.
+        states: the k touching points; in the first, node 1 just touches.
     """
 
     contact: RubbedContact
@@ -125,50 +128,50 @@ class Growing:
 
     @cached_property
     def depth(self) -> FloatArray:
-        """Depth delta [m] at touching points."""
+        """Depth delta [m] at touching points, shape (k,)."""
         return np.asarray(self.contact.radius * np.array([state.depth for state in self.states]))
 
     @cached_property
     def force(self) -> FloatArray:
-        """Force F/E* [m^2]."""
+        """Force F/E* [m^2], shape (k,)."""
         return np.asarray(self.contact.radius**2 * np.array([state.force for state in self.states]))
 
     @cached_property
     def radius(self) -> FloatArray:
-        """Contact radius a [m]."""
+        """Contact radius a [m], shape (k,): the touching node and `EDGE_SHARE` of a cell."""
         radii, touching = self.contact.surface.radii, self.contact.surface.radii[1 : len(self.states) + 1]
         share = EDGE_SHARE - np.where(self.stick == 1.0, self.less_by_stick, 0.0)
         return np.asarray(self.contact.radius * (touching + share * radii[1]))
 
     def radius_of(self, name: str, value: float) -> float:
-        """Contact radius [m] at a radius, depth or force, to a cell."""
+        """Contact radius [m] at a radius [m], depth [m] or force/E* [m^2], linear between touching points."""
         return float(np.interp(value, getattr(self, name), self.radius))
 
     @property
     def less_by_stick(self) -> float:
-        """Share of a cell by which an edge that sticks lies farther in than one that slides."""
+        """Distance, in cells, by which an edge that sticks lies farther in than one that slides."""
         return LESS_BY_STICK * (math.log(3.0 - 4.0 * self.contact.surface.poissons_ratio) / (2.0 * math.pi)) ** 2
 
     @property
     def edge_error(self) -> float:
-        """Error of the edge in cells: it may slide or stick within a cell."""
+        """Error of the edge in cells. With finite friction slip may be narrower than a cell, and not be resolved."""
         return EDGE_UNCERTAIN + (self.less_by_stick if math.isfinite(self.contact.coefficient) else 0.0)
 
     @cached_property
     def stick(self) -> FloatArray:
-        """Stick radius over a."""
+        """Stick radius over a, shape (k,)."""
         radii, touching = self.contact.surface.radii, self.contact.surface.radii[1 : len(self.states) + 1]
         inner = np.array([stick_radius(self.contact, state) for state in self.states])
         return np.asarray(np.where(inner == touching, 1.0, inner / (touching + EDGE_SHARE * radii[1])))
 
     @cached_property
     def heat(self) -> FloatArray:
-        """Dissipated energy over force times depth."""
+        """Dissipated energy over force times depth, shape (k,): this ratio changes little as the contact grows."""
         heat = self.contact.radius**3 * np.array([state.dissipated for state in self.states])
         return np.asarray(heat / (self.force * self.depth))
 
     def local(self, values: FloatArray, depth: float) -> tuple[float, float]:
-        """Value and slope in ln(depth) of a quantity at a depth, by the polynomial through its neighbours."""
+        """Value and d/d ln(depth) at a depth [m] of a quantity (k,), by a polynomial fitted to nearby points."""
         log = np.log(self.depth)
         middle, aside = int(np.searchsorted(log, np.log(depth))), max(2, len(log) // PER_NEIGHBOUR)
         first = max(0, min(middle - aside, len(log) - 2 * aside))
@@ -177,11 +180,11 @@ class Growing:
         return float(fit(np.log(depth))), float(fit.deriv()(np.log(depth)))
 
     def at(self, name: str, depth: float) -> float:
-        """Force, radius, stiffness, heat or stick at a depth [m]."""
+        """Force, radius, stiffness, heat or stick at a depth [m], in the units of these; stiffness/E* [m]."""
         if name in ("heat", "stick"):
             return self.local(getattr(self, name), depth)[0]
         if name == "stiffness":
-            # dF/d delta, which is k_N, too: at the edge the pressure vanishes.
+            # k_N = dF/d(delta) = (F/delta) dlnF/dln(delta): without pressure at the edge dF/da = 0 at given depth.
             log_force, exponent = self.local(np.log(self.force), depth)
             return math.exp(log_force) / depth * exponent
         return math.exp(self.local(np.log(getattr(self, name)), depth)[0])
@@ -189,14 +192,19 @@ class Growing:
 
 @dataclass(frozen=True)
 class GrowthRecord:
-    """The contact on two strips."""
+    """The growing contact on two strips.
+
+    Attributes:
+        fine: on cells h.
+        coarse: on cells 2 h, of the same strip.
+    """
 
     fine: Growing
     coarse: Growing
 
     @classmethod
     def of(cls, fine: RubbedContact, coarse: RubbedContact) -> GrowthRecord:
-        """Let it grow on each."""
+        """The contact grown on each of two strips."""
         return cls(Growing(fine, grown(fine)), Growing(coarse, grown(coarse)))
 
     def numbers(self, name: str, value: float, *, extrapolated: bool = True) -> dict[str, float]:
@@ -216,7 +224,7 @@ class GrowthRecord:
         """The depth [m] at which radius [m] or force/E* [m^2] has a value."""
 
         def missing(log_depth: float) -> float:
-            """Relative difference from the value at a depth."""
+            """Relative difference of the quantity from ``value`` at a depth."""
             return self._at(name, math.exp(log_depth), extrapolated) / value - 1.0
 
         reached = np.log(self.fine.depth)
@@ -229,7 +237,11 @@ class GrowthRecord:
         return fine + change / float(2.0**order - 1.0)
 
     def _stick(self, depth: float, radius: float, extrapolated: bool) -> float:
-        """Stick radius over a. With too few nodes that stick, or that slide, that of the finer strip."""
+        """Stick radius over a.
+
+        With too few cells that stick, or that slide, it is that of the finer strip, and without extrapolation that of
+        the coarser one, so that `errors` still compares two strips.
+        """
         fine, coarse = (float(np.interp(depth, strip.depth, strip.stick)) for strip in (self.fine, self.coarse))
         if min(fine, coarse) == 1.0:
             return 1.0
@@ -244,16 +256,17 @@ class GrowthRecord:
         return self.fine.contact.radius * float(self.fine.contact.surface.radii[1])
 
     def errors(self, name: str, value: float) -> dict[str, float]:
-        """Relative errors of `numbers`: changes against the finer strip, and what is read from its cells.
+        """Relative errors of `numbers`: the changes by the extrapolation, and the uncertain edges within a cell.
 
-        One change may vanish by accident: each is at least a share of the largest.
+        One change may vanish by accident: each is at least `LEAST_SHARE` of the largest of depth, force and stiffness.
         """
         found, other = self.numbers(name, value), self.numbers(name, value, extrapolated=False)
         change = {each: abs(other[each] / v - 1.0) if v else 0.0 for each, v in found.items() if each != name}
         least = LEAST_SHARE * max(change[each] for each in change if each not in ("heat", "stick", "radius"))
         cell = self.cell / found["radius"]
         error = {each: SAFETY * max(moved, least) for each, moved in change.items()} | {name: 0.0}
-        # The edge may slide or stick within a cell, and dF/F = (k delta/F) d delta/delta.
+        # The radius errs by the edge. At a prescribed radius it shifts the depth by d ln(delta)/d ln(a) times as much,
+        # and dF/F = (k_N delta/F) d(delta)/delta. The stiffness grows more slowly than the force.
         exponent = found["stiffness"] * found["depth"] / found["force"]
         edge = self.fine.edge_error * cell
         if name == "radius":

@@ -1,12 +1,20 @@
-"""One step of a contact with friction: which points slide, and which way, at the end of it.
+"""One step of a contact with friction: which nodes slide, and in which direction, at the end of the step.
 
-At the end of a step, on the contact: u_z = delta - f; |q| <= mu p; where |q| < mu p the surface keeps the u_r that it
-had at the end of the last step; elsewhere it has slid against q. q > 0 pushes the layer outward. Points that touch
-anew keep the u_r they had when they touched: a step ends where the next point touches. Semismooth Newton's method finds
-who slides: a point does if the traction that would hold it, ``q - (u_r - u_r before)/C``, exceeds mu p.
+Pressure p and radial traction q are piecewise linear on the strip, q > 0 pushes the layer outward, mu is Coulomb's
+coefficient. At the end of a step, in the contact:
 
-Between two touching points the set of pressed nodes does not change. A contact is followed, forwards and backwards, in
-steps that end where the next node touches or the last one leaves, or where a depth or force is met before that.
+    u_z = delta - f,    |q| <= mu p,    stick |q| < mu p: Du_r = 0,    slip |q| = mu p: q Du_r <= 0,
+
+with the change Du_r of the radial displacement in the step. A node that touches anew keeps the u_r of that instant: a
+step ends where the next node touches. Displacements are imposed as moments ``int phi_i u 2 pi r dr``:
+
+    Z_p p + Z_q q = delta w - f,    u_r = Z_q^T p + R_q q,
+
+with the compliances of `Surface`; Z_q^T is reciprocity. A semismooth Newton method finds the sliding nodes: a node
+slides if the traction that would keep it, ``q - Du_r / R_ii`` with the diagonal of R_q, exceeds mu p.
+
+Between two touching points the set of pressed nodes does not change. A contact is followed, loading and unloading, in
+steps that end where the next node touches, where the last one leaves, or where a depth or force is met before that.
 """
 
 from __future__ import annotations
@@ -27,25 +35,26 @@ from fem_reference.surface import Surface
 TOLERANCE = 1e-9
 # Fewer nodes do not resolve a pressure that is least on the axis, like that under r^4: such contacts are not checked.
 RESOLVED = 12
-# A node within so much of its limit of friction stays as it is, so that rounding does not decide where slip turns.
+# A node whose traction differs from mu p by less than this share keeps its state: rounding must not decide where the
+# slip reverses.
 TIE = 1e-9
 # Sets of sliding points that are tried in one step; two to six suffice for contacts that grow.
 MOST_SETS = 400
 # Nodes at the end of the strip that the contact does not reach: the last hat function is only half of one.
 SPARE = 2
-# A wanted value this close to a touching point, relative, lies before it.
+# A prescribed load that exceeds that of a touching point by less than this share counts as not exceeding it.
 CLOSE = 1e-12
 
 
 @dataclass(frozen=True)
 class RubbedContact:
-    """What is pressed together, in units of the strip's radius [m] and of E*.
+    """The condensed layer and the indenter, lengths over the strip's radius L, stresses over E*.
 
     Attributes:
         surface: the condensed layer.
         profile: moments ``int phi_i f 2 pi r dr`` of the indenter's profile, shape (n,).
         coefficient: mu; infinity for full stick.
-        radius: of the strip [m].
+        radius: L [m].
     """
 
     surface: Surface
@@ -54,31 +63,31 @@ class RubbedContact:
     radius: float
 
     def displacement(self, pressure: FloatArray, shear: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Moments of u_z and u_r."""
+        """Moments of u_z and u_r, shape (n,) each, under pressures (n,) and radial tractions (n,)."""
         s = self.surface
         return s.pressed @ pressure + s.coupled @ shear, pressure @ s.coupled + s.rubbed @ shear
 
     def stored_energy(self, state: RubbedState) -> float:
-        """Half the work of the tractions on the displacements that they make."""
+        """Elastic energy (p . u_z + q . u_r) / 2 over E* L^3, with moments u_z and u_r."""
         normal, radial = self.displacement(state.pressure, state.shear)
         return float(state.pressure @ normal + state.shear @ radial) / 2.0
 
 
 @dataclass(frozen=True)
 class RubbedState:
-    """One equilibrium.
+    """One equilibrium at the end of a step, in the units of `RubbedContact`.
 
     Attributes:
-        depth: delta.
+        depth: delta / L.
         pressure: p at the nodes, shape (n,).
         shear: q at the nodes, shape (n,).
         radial: moments of u_r, shape (n,).
-        touched: their values where and when each node touched, shape (n,).
+        touched: moments of u_r at the instant when each node touched, shape (n,); for free nodes the present ones.
         sliding: 0 where a node sticks, else the sign of q, shape (n,).
-        active: how many nodes carry pressure.
-        force: F.
-        work: done by the indenter.
-        dissipated: energy turned into heat.
+        active: number of pressed nodes, the first ones from the axis.
+        force: F / (E* L^2).
+        work: done by the indenter so far, over E* L^3.
+        dissipated: heat of friction so far, over E* L^3.
     """
 
     depth: float
@@ -94,30 +103,34 @@ class RubbedState:
 
 
 def at_rest(contact: RubbedContact) -> RubbedState:
-    """Nothing is pressed yet."""
+    """The state without contact: zero tractions and displacements."""
     zero = np.zeros(len(contact.profile))
     return RubbedState(0.0, zero, zero, zero, zero, np.zeros(len(zero), dtype=np.int64), 0)
 
 
-# The last equation of a step: a row for the pressures of the active nodes and the depth, one for all shears, a value.
+# The equation that determines the end of a step: coefficients of the active pressures and the depth (active + 1,), of
+# all shears (n,), and the right-hand side.
 Equation: TypeAlias = tuple[FloatArray, FloatArray, float]
 Control: TypeAlias = Callable[[RubbedContact, int], Equation]
 
 
 def touching(contact: RubbedContact, active: int) -> Equation:
-    """The step ends where the first node that is not pressed touches."""
+    """The step ends where the first node that is not pressed touches: u_z = delta - f there, without pressure.
+
+    In unloading the same equation, with one node less, is the instant at which the last pressed node leaves.
+    """
     s = contact.surface
     row = np.append(s.pressed[active, :active], -s.resultants[active])
     return row, s.coupled[active], -float(contact.profile[active])
 
 
 def at_depth(depth: float) -> Control:
-    """The step ends at a depth."""
+    """The step ends at a depth over L."""
     return lambda contact, active: (np.append(np.zeros(active), 1.0), np.zeros(len(contact.profile)), depth)
 
 
 def at_force(force: float) -> Control:
-    """The step ends at a force."""
+    """The step ends at a force over E* L^2: w . p = F."""
     return lambda contact, active: (
         np.append(contact.surface.resultants[:active], 0.0),
         np.zeros(len(contact.profile)),
@@ -153,7 +166,7 @@ def _one_changed(sliding: IntArray, found: IntArray) -> IntArray:
 
 
 def _first_guess(before: RubbedState, active: int, coefficient: float) -> IntArray:
-    """As before the step; new nodes slide as their neighbour does."""
+    """First guess (n,) of the sliding nodes: those before the step; new nodes slide as their inner neighbour does."""
     sliding = before.sliding.copy()
     if active > before.active > 0 and math.isfinite(coefficient):
         sliding[before.active : active] = sliding[before.active - 1]
@@ -164,7 +177,12 @@ def _first_guess(before: RubbedState, active: int, coefficient: float) -> IntArr
 def _equilibrium(
     contact: RubbedContact, before: RubbedState, sliding: IntArray, active: int, control: Control
 ) -> tuple[FloatArray, FloatArray, float]:
-    """Pressure, shear and depth with a given set of sliding nodes; the axis does not move and has no shear."""
+    """Pressure (n,), shear (n,) and depth with a given set of sliding nodes; the axis does not move and has no shear.
+
+    Unknowns are the pressures of active nodes, the depth and the shears of sticking nodes; at the others q = s mu p
+    with s = ``sliding``. The rows are, in this order, ``Z_p p + Z_q q - delta w = -f`` at active nodes, the equation of
+    ``control``, and ``Z_q^T p + R_q q = u_r before`` at sticking nodes.
+    """
     s, own = contact.surface, slice(0, active)
     slides = sliding[own] != 0
     stuck = np.flatnonzero(~slides)
@@ -193,7 +211,15 @@ def _equilibrium(
 def _sliding(
     contact: RubbedContact, pressure: FloatArray, shear: FloatArray, moved: FloatArray, sliding: IntArray
 ) -> IntArray:
-    """Which nodes friction does not hold, by the sign of the traction that would; at a tie what ``sliding`` says."""
+    """Nodes that slide (n,), as in `RubbedState`: sign of the traction that would keep them, where it exceeds mu p.
+
+    Args:
+        contact: layer and indenter.
+        pressure: p at the nodes, shape (n,).
+        shear: q at the nodes, shape (n,).
+        moved: change of the moments of u_r in the step, shape (n,).
+        sliding: state with which these were solved, which stays where the traction equals mu p to rounding.
+    """
     if not math.isfinite(contact.coefficient):
         return np.zeros_like(sliding)
     holding = shear - moved / contact.surface.rubbed.diagonal()
@@ -205,10 +231,11 @@ def _sliding(
 
 
 def _accounted(contact: RubbedContact, before: RubbedState, after: RubbedState) -> RubbedState:
-    """With force and energies, after all conditions of contact were checked.
+    """The state with its force, work and heat, after the conditions of contact were checked.
 
-    What slid the same way before and after the step did so under the mean of both tractions, what just began to slide
-    under the last one; neither gives energy back.
+    The heat is -sum q_i Du_i over sliding nodes, with the changes Du of the moments of u_r. A node that slid in the
+    same direction before the step slides under the mean of both tractions, one that began to slide in it under the
+    last. Neither is negative.
     """
     _refuse_rings(contact, after)
     moved = after.radial - before.radial
@@ -227,6 +254,7 @@ def _accounted(contact: RubbedContact, before: RubbedState, after: RubbedState) 
 
 
 def _refuse_rings(contact: RubbedContact, state: RubbedState) -> None:
+    """Refuse a negative pressure in the contact, and an overlap u_z < delta - f anywhere on the strip."""
     if state.active < RESOLVED:
         return
     gap = contact.displacement(state.pressure, state.shear)[0] - (
@@ -242,7 +270,7 @@ def _refuse_rings(contact: RubbedContact, state: RubbedState) -> None:
 
 
 def grown(contact: RubbedContact) -> list[RubbedState]:
-    """The states in which each node of the strip touches, as the contact grows."""
+    """The states at touching points, in which node 1, 2, .. of the strip just touches, as the contact grows."""
     state, states = at_rest(contact), []
     for active in range(1, len(contact.profile) - SPARE):
         state = advance(contact, state, active, touching)
@@ -251,7 +279,7 @@ def grown(contact: RubbedContact) -> list[RubbedState]:
 
 
 def followed(contact: RubbedContact, targets: Sequence[float], *, by_depth: bool) -> list[RubbedState]:
-    """The states at depths or forces that are reached one after the other, from the first touch on.
+    """The states at depths over L or forces over E* L^2 that are reached one after the other, from the first touch on.
 
     Raises:
         InvalidInput: the contact reaches the end of the strip.
@@ -267,7 +295,15 @@ def followed(contact: RubbedContact, targets: Sequence[float], *, by_depth: bool
 def _towards(
     contact: RubbedContact, state: RubbedState, active: int, target: float, control: Callable[[float], Control]
 ) -> tuple[RubbedState, int]:
-    """On to one target; ``active`` is how many nodes are pressed just before it."""
+    """The state at one target, and the number of nodes that are pressed just before it is reached.
+
+    Args:
+        contact: layer and indenter.
+        state: the state at the last target.
+        active: number of nodes pressed just before that.
+        target: depth or force.
+        control: `at_depth` or `at_force`.
+    """
 
     def measure(state: RubbedState) -> float:
         return state.depth if control is at_depth else state.force
@@ -290,24 +326,24 @@ def _towards(
 
 
 def at_rest_again(contact: RubbedContact, state: RubbedState) -> RubbedState:
-    """The contact is lost; what was dissipated stays."""
+    """The state after the contact is lost; work and heat so far stay."""
     rest = at_rest(contact)
     return type(rest)(**{**vars(rest), "work": state.work, "dissipated": state.dissipated})
 
 
 def stick_radius(contact: RubbedContact, state: RubbedState) -> float:
-    """Radius, over the strip's, of the outermost point that sticks.
+    """Stick radius c over L.
 
-    Inside the end c of the stick ``1 - |q|/(mu p)`` falls to zero like ``(c - r)^(3/2)`` where the stick spreads and
-    like ``(c - r)^(1/2)`` where it shrinks: of the two laws, the one that makes the straighter line of three nodes. The
-    last node that sticks does not count, since it slid for a part of its step.
+    Towards c ``y = 1 - |q|/(mu p)`` falls to zero like ``(c - r)^(3/2)`` where the stick region grows and like
+    ``(c - r)^(1/2)`` where it shrinks. Hence y^(2/3) or y^2 is linear: the straighter one of these at three nodes is
+    extrapolated to zero. The last sticking node is left out, since it slid during a part of its step.
     """
     radii: FloatArray = contact.surface.radii
     stuck = [i for i in range(state.active) if state.sliding[i] == 0]
     last = stuck[-1] if stuck else 0
     if last == state.active - 1:
         return float(radii[state.active])
-    # Three nodes off the axis are left beside the last one.
+    # Fewer than three nodes off the axis are left without the last one.
     if last < 4:
         return float(radii[last])
     near = slice(last - 3, last)
@@ -317,7 +353,7 @@ def stick_radius(contact: RubbedContact, state: RubbedState) -> float:
 
 
 def _bend_and_root(values: FloatArray) -> tuple[float, float]:
-    """How much three values at equal distances bend, and how many distances beyond the last the line is zero."""
+    """Curvature over slope of three equidistant values, and the distance beyond the last to the zero of their line."""
     before, middle, last = values
     if not middle > last:
         return math.inf, 1.0
