@@ -1,8 +1,10 @@
-"""Equilibria without adhesion at prescribed radii, depths or forces at one resolution, and the path they make.
+"""Equilibria without adhesion at prescribed radii, depths or forces at one resolution, and the path of these states.
 
-A depth or force is carried by a contact of unknown radius. Newton's method with coarse solutions finds the radius; a
-full solution there is corrected to first order where its load differs by little, else repeated. At smooth contact
-dF/da = 0 at given depth, so ``F(delta) = F_0 + k_N (delta - delta_0)`` errs only in the square of the difference.
+The load is a depth or a force. The contact radius that belongs to it is unknown. Newton's method on coarse meshes
+(`quick_solution`) finds it. A full solution at that radius is corrected to first order if its load differs by little,
+else the radius is corrected and the solution repeated. At smooth contact dF/da = 0 at fixed depth, so that
+``F = F_0 + k_N (delta - delta_0)`` at the solved radius, F_0 its force of smooth contact, errs only in the square of
+delta - delta_0.
 """
 
 from __future__ import annotations
@@ -34,23 +36,24 @@ from fem_reference.prescribed_contact import ContactSolver, PrescribedContact, q
 from fem_reference.profiles import height
 from fem_reference.settings import NARROWEST, narrowest_radius
 
-# Relative load that is left to the first-order correction, whose error is its square.
+# Largest relative defect of the load that is left to the first-order correction, whose error is its square.
 LEFT_OVER = 1e-4
-# Full solutions of one load: on coarse meshes each radius has a mesh that misses the load by its own error.
+# Most full solutions of one load: on coarse meshes each radius has a mesh that misses the load by its own error.
 ATTEMPTS = 3
-# Relative load that the last of them may still leave to the correction.
+# Largest relative defect of the load that the last of them may leave to the correction.
 MOST_LEFT = 0.03
-# Width of a ring, over flat radius and thickness, below which its load grows like the root of the width and steps of
-# the search are not limited. With half of it searches take more steps, with twice of it they may overshoot.
+# Width of a ring, over the smaller of flat radius and thickness, below which its load grows like the root of the width
+# and steps of the search are not limited. With half of it searches take more steps, with twice they may overshoot.
 NARROW = 0.1
 # Steps of the search for a radius by quick solutions; five usually suffice.
 STEPS = 16
 # Relative error of the depth in a quick solution: about three times the largest, that of tabulated profiles.
 QUICK_ERROR = 2e-4
 # Error of the pressure of a cell over its change on coarser cells, and the same at points of a flat punch, where
-# pressures oscillate. With a tenth, contacts with a little tension are answered.
+# pressures oscillate. Tension below it counts as error. With larger shares contacts with a little tension are accepted,
+# with smaller ones contacts without tension may be refused.
 FINE_SHARE, POINT_SHARE = 0.1, 0.5
-# Radii over the contact's at which displacements of two meshes are compared, down to the cell at the edge.
+# Radii over the contact radius at which displacements of two meshes are compared, the nearest 6e-8 from the edge.
 BESIDE = 1.0 + 2.0 ** np.arange(-24.0, 3.0)
 
 
@@ -61,7 +64,7 @@ class FemEquilibrium:
     Attributes:
         contact: the solved contact.
         depth: delta / a.
-        radius_factor: contact radius over that of the mesh, one up to a last correction.
+        radius_factor: contact radius over that of the mesh: one, but for the last correction and `narrowed` rings.
     """
 
     contact: PrescribedContact
@@ -80,7 +83,10 @@ class FemEquilibrium:
 
     @property
     def stiffness(self) -> float:
-        """k_N / (E* a) at the corrected radius, by its power of the radius here: one where h >> a, two to four else."""
+        """k_N / (E* a), a of the mesh, continued to the corrected radius by k_N ~ a^n, n = a k_N' / k_N.
+
+        n is one on a half-space, two on a thin compressible layer and four on a thin incompressible bonded one.
+        """
         contact = self.contact
         power = contact.stiffness_slope * contact.radius / contact.stiffness
         return float(contact.stiffness * (self.radius_factor / contact.radius) ** power)
@@ -96,12 +102,12 @@ class FemEquilibrium:
 
 
 def held_equilibrium(contact: PrescribedContact, depth: float) -> FemEquilibrium:
-    """Contact held at its radius, at depth / a."""
+    """The state with the contact's radius at a depth / a, whatever the stress at its edge."""
     return FemEquilibrium(contact=contact, depth=depth, radius_factor=contact.radius)
 
 
 def smooth_equilibrium(contact: PrescribedContact) -> FemEquilibrium:
-    """The state in which the pressure vanishes at the contact edge."""
+    """The state at depth delta_0, in which the pressure vanishes at the contact edge."""
     return held_equilibrium(contact, contact.smooth_depth)
 
 
@@ -116,7 +122,7 @@ def targets_of(scene: Scene) -> tuple[FloatArray, bool]:
 
 
 def flat_punch_equilibria(scene: Scene, solve: ContactSolver) -> list[FemEquilibrium]:
-    """A flat punch at prescribed depths or forces: one solution, scaled."""
+    """States of a flat punch at prescribed depths or forces: one solution, scaled by the depth."""
     targets, by_depth = targets_of(scene)
     radius = scene.indenter.flat_radius
     contact = solve(radius)
@@ -132,8 +138,8 @@ def elastic_equilibria(
     Args:
         scene: the scene.
         solve: contact of a given radius [m].
-        coarsening: of the companion's cells, see `Discretisation`.
-        search: radius [m] near which a load is carried, see `searched_radius`.
+        coarsening: growth of cells over that of the answer, see `Discretisation`.
+        search: radius [m] of a load, approximately; see `searched_radius`.
     """
     if isinstance(scene.loading, ContactRadii):
         return [smooth_equilibrium(solve(float(a))) for a in scene.loading.values]
@@ -141,7 +147,7 @@ def elastic_equilibria(
         return flat_punch_equilibria(scene, solve)
     targets, by_depth = targets_of(scene)
     narrowest = narrowest_radius(scene.layer, scene.indenter, coarsening)
-    # A companion may miss the load by any error, which then is stated of the answer.
+    # A companion may leave any defect to the correction: its error then adds to the stated error of the answer.
     most_left = MOST_LEFT if coarsening == 1.0 else np.inf
     states = []
     for target in map(float, targets):
@@ -149,7 +155,7 @@ def elastic_equilibria(
         try:
             states.append(state_at_load(scene, target, start, narrowest, solve, by_depth=by_depth, most_left=most_left))
         except NotConvergedError:
-            # The load of contacts with tension inside may depend on their radius in any way.
+            # With tension inside the contact the load need not grow with the radius: then that is the reason to state.
             state = smooth_equilibrium(quick_solution(scene, start, StageLog()))
             _refuse_pulled(scene, state, state)
             raise
@@ -166,19 +172,19 @@ def state_at_load(
     by_depth: bool,
     most_left: float = MOST_LEFT,
 ) -> FemEquilibrium:
-    """The state at a prescribed load, by full solutions.
+    """The state at a prescribed load, from full solutions at corrected radii.
 
     Args:
         scene: the scene.
         target: a depth [m] or a force / E* [m^2].
-        start: radius [m] near which the load is carried.
+        start: first radius [m], close to that of the load.
         narrowest: smallest radius [m] that is meshed.
         solve: contact of a given radius [m].
         by_depth: whether the target is a depth.
-        most_left: relative load that the last solution may leave to the correction.
+        most_left: relative defect of the load that the last solution may leave to the correction.
 
     Raises:
-        NotConvergedError: the radius does not settle.
+        NotConvergedError: the defect is above ``most_left`` after `ATTEMPTS` solutions.
     """
     radius, flat = start, scene.indenter.flat_radius
     for attempt in range(ATTEMPTS):
@@ -186,20 +192,20 @@ def state_at_load(
         scaled = target / contact.contact_radius ** (1 if by_depth else 2)
         defect = _load(contact, by_depth) / scaled
         if radius <= narrowest and defect > 1:
-            contact = contact.narrowed(1 / defect)
+            contact = contact.narrowed(1 / defect)  # load ~ delta_0 to leading order
             defect = _load(contact, by_depth) / scaled
         exponent = grows_like(contact, flat / contact.contact_radius, by_depth=by_depth)
         corrected = flat + (contact.radius * contact.contact_radius - flat) * defect ** (-1 / exponent)
         if abs(defect - 1) <= (LEFT_OVER if attempt < ATTEMPTS - 1 else most_left):
-            moved = 0.0 if by_depth else (scaled - contact.smooth_force) / contact.stiffness
-            depth = scaled if by_depth else contact.smooth_depth + moved
+            correction = 0.0 if by_depth else (scaled - contact.smooth_force) / contact.stiffness
+            depth = scaled if by_depth else contact.smooth_depth + correction
             return FemEquilibrium(contact=contact, depth=depth, radius_factor=corrected / contact.contact_radius)
         radius = min(corrected, scene.indenter.max_radius)
     raise NotConvergedError("the contact radius does not settle", {"load_defect": abs(defect - 1)})
 
 
 def searched_radius(scene: Scene, log: StageLog, target: float) -> float:
-    """Radius [m] of a depth [m] or a force / E* [m^2], to about 1e-5, by quick solutions.
+    """Radius [m] of smooth contact at a depth [m] or a force / E* [m^2], to about 1e-5, by quick solutions.
 
     Raises:
         InvalidInput: contact would reach the end of the profile.
@@ -212,41 +218,42 @@ def searched_radius(scene: Scene, log: StageLog, target: float) -> float:
         load = _load(contact, by_depth) * radius ** (1 if by_depth else 2)
         return load / target, grows_like(contact, flat / radius, by_depth=by_depth)
 
-    # Half the load: of several contacts the narrowest is found, as it is when the load grows.
+    # Estimates f(r) for the depth and 4 E* r f(r) for the force. The search starts at half the load, so that of several
+    # contacts at one load it finds the narrowest, which a growing load reaches first.
     start = first_radius(indenter, lambda r: height(indenter, r) * (1.0 if by_depth else 4.0 * r) >= target / 2)
     return radius_of_load(load_at, start, flat, indenter.max_radius, narrowest_radius(scene.layer, indenter))
 
 
 def _load(contact: PrescribedContact, by_depth: bool) -> float:
-    """Depth / a or force / (E* a^2) of smooth contact."""
+    """Depth / a or force / (E* a^2) of smooth contact, a the radius of the mesh."""
     return contact.smooth_depth if by_depth else contact.smooth_force
 
 
 def grows_like(contact: PrescribedContact, flat: float, *, by_depth: bool) -> float:
-    """d ln(load) / d ln(a - flat) of one solution, lengths by its radius, within [0.2, 1e6].
+    """d ln(load) / d ln(a - flat) of one solution, lengths by the radius of its mesh, clipped to [0.2, 1e6].
 
-    The depth grows by its slope, the force by k_N times that. Differences of neighbouring radii, each with a mesh of
-    its own, are useless where the errors of the meshes are as large.
+    Along smooth contacts d(depth)/da = delta_0' and dF/da = k_N delta_0'. Differences of two solutions at neighbouring
+    radii would be dominated by the errors of their meshes.
     """
     slope = contact.smooth_depth_slope
-    grows = slope / contact.smooth_depth if by_depth else contact.stiffness * slope / contact.smooth_force
-    return float(np.clip(grows * (contact.radius - flat), 0.2, 1e6))
+    rate = slope / contact.smooth_depth if by_depth else contact.stiffness * slope / contact.smooth_force
+    return float(np.clip(rate * (contact.radius - flat), 0.2, 1e6))
 
 
 def radius_of_load(
     load_at: Callable[[float], tuple[float, float]], start: float, flat: float, end: float, narrowest: float = 0.0
 ) -> float:
-    """Radius a at which a load ratio is one: Newton's method in logarithms, or bisection.
+    """Radius a at which a load ratio is one: Newton's method for ln(ratio) over ln(a - flat), else bisection.
 
-    Near a flat end the load grows like a power of a - flat, elsewhere like a power of a. In narrow rings that power is
-    a half, whatever the layer: there steps may be long.
+    The load grows like a power of a - flat, of which this method finds the root in one step. In narrow rings the power
+    is a half, whatever the layer, and steps are not limited there. Elsewhere ln(a - flat) changes by one at most.
 
     Args:
-        load_at: load ratio at a radius, and its power of a - flat.
+        load_at: load over the wanted load at a radius, and d ln(load) / d ln(a - flat).
         start: first radius.
         flat: radius of the flat end.
         end: radius where the profile ends.
-        narrowest: smallest radius, which is returned where even that carries more.
+        narrowest: smallest radius, which is returned where the load is exceeded even there.
 
     Raises:
         InvalidInput: contact would reach the end of the profile.
@@ -257,11 +264,11 @@ def radius_of_load(
     x, low, high = min(float(np.log(max(start - flat, narrowest - flat))), last), -np.inf, np.inf
     for _ in range(STEPS):
         ratio, growth = load_at(flat + float(np.exp(x)))
-        # Where contact presses nowhere, a larger one may.
+        # A load that is not positive counts as too small: a larger contact may press.
         y = float(np.log(ratio)) if ratio > 0 else -1.0
         if x == least and y > 0:
             return narrowest
-        # A last step leaves about the square of this.
+        # One more step leaves an error of about y^2.
         if y**2 < LEFT_OVER:
             return flat + float(np.exp(np.clip(x - y / growth, least, last)))
         if x == last and y < 0:
@@ -276,11 +283,11 @@ def radius_of_load(
 
 
 def refuse_other_contacts(scene: Scene, states: Sequence[FemEquilibrium], coarser: Sequence[FemEquilibrium]) -> None:
-    """Refuse contacts that only tension would close, and those that the indenter touches outside the circle.
+    """Refuse contacts with tension inside without adhesion, and those that the indenter touches outside the circle.
 
     Raises:
         UnsupportedSceneError: with the contact radius and the first place where the surface would be pulled or touched.
-        InvalidInput: a convex profile presses nowhere, since its slope is not positive yet.
+        InvalidInput: depth or force is not positive, since the slope of the profile is not positive yet.
     """
     pairs = list(zip(states, coarser, strict=True))
     if not scene.effects:
@@ -304,10 +311,10 @@ def _refuse_pulled(scene: Scene, state: FemEquilibrium, other: FemEquilibrium) -
 
 
 def pulled_radius(state: FemEquilibrium, other: FemEquilibrium) -> float | None:
-    """Radius [m] of the first cell that is pulled in smooth contact by more than its change on coarser cells.
+    """Radius [m] of the first cell under tension that exceeds a share of the change on coarser cells; None without one.
 
-    Where a slope falls suddenly the pressure is minus infinity, like a logarithm: the means of cells count.
-    Under a flat punch points count, since a dip may be narrower than a cell.
+    In smooth contact the mean over a cell counts, since at a kink where the slope falls the pressure goes to minus
+    infinity like a logarithm. Under a flat punch points count, too, since a dip may be narrower than a cell.
     """
     contact, is_punch = state.contact, state.contact.smooth_depth == 0
     radius, weight = contact.contact_trace.gauss(contact.layer.pair.degree + 1)
@@ -324,19 +331,22 @@ def pulled_radius(state: FemEquilibrium, other: FemEquilibrium) -> float | None:
 
 
 def change_beside(state: FemEquilibrium, other: FemEquilibrium) -> float:
-    """Largest change of the surface outside the contact between two meshes [m]."""
+    """Largest change of the surface displacement outside the contact between two meshes [m], at the radii `BESIDE`."""
     radii = state.contact_radius * BESIDE
     return float(np.abs(state.surface_displacement(radii) - other.surface_displacement(radii)).max())
 
 
 def _circle(state: FemEquilibrium, error: float) -> Circle:
-    """The contact in SI units. Pressed deeper than smooth contact by the last correction, its edge overlaps as much."""
+    """The contact as a circle in SI units, with the error of its surface.
+
+    The last correction may press it deeper than smooth contact. Its edge then overlaps by as much, which is no touch.
+    """
     a, deeper = state.contact.contact_radius, max(state.depth - state.contact.smooth_depth, 0.0)
     return Circle(a, a * state.depth, state.surface_displacement, error + a * deeper)
 
 
 def refuse_touching_at(scene: Scene, radius: float, log: StageLog) -> None:
-    """Refuse a motion whose largest contact [m] is no single circle, as if the layer were elastic.
+    """Refuse a motion whose largest contact radius [m] belongs to no single circle, judged on the elastic layer.
 
     Raises:
         UnsupportedSceneError: with the contact radius and the radius of the deepest overlap.
@@ -350,7 +360,7 @@ def refuse_touching_at(scene: Scene, radius: float, log: StageLog) -> None:
 def contact_path(
     scene: Scene, states: Sequence[FemEquilibrium], fields: Fields, settings: Mapping[str, Setting], log: StageLog
 ) -> ContactPath:
-    """The path in SI units at one resolution; it states no errors yet, only the residuals of its own checks."""
+    """The path in SI units at one resolution. It has the residuals of its checks only; `stated` adds the errors."""
     modulus = contact_modulus(scene.layer)
     mesh_radius = np.array([state.contact.contact_radius for state in states])
     radius = np.array([state.contact_radius for state in states])

@@ -1,4 +1,4 @@
-"""The discrete layer: its matrix, its supports, and the unknowns on its top."""
+"""The discrete layer: its matrix, its supports, the unknowns on its top, and the derivative by the contact radius."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from fem_reference.mesh import Section
 from fem_reference.solver import RestrictedSolver
 from fem_reference.weak_forms import membrane
 
-# The radial strain s of the patch test, any number of the size of the volume strain 1 - 2 nu: with
-# c = (1 - 2 nu) - 2 s the pressure is finite at nu = 1/2.
+# Radial strain s of the patch test u_r = s r, u_z = c z. With c = (1 - 2 nu) - 2 s the volume strain is 1 - 2 nu, so
+# that p = -K (1 - 2 nu) is finite at nu = 1/2. Any s of this order serves: the test is linear.
 STRETCH = 0.1
 
 
@@ -29,7 +29,7 @@ class DiscreteLayer:
         section: the mesh.
         pair: elements.
         parts: material over depth, and how the base is held.
-        sticks: whether the top within radius one is held in the radial direction.
+        sticks: whether u_r = 0 on the top within radius one, as under a flat punch with full stick.
     """
 
     section: Section
@@ -44,7 +44,7 @@ class DiscreteLayer:
 
     @cached_property
     def corners(self) -> FloatArray:
-        """(r, z) of the corners of triangles, shape (triangle, 3, 2)."""
+        """(r, z) of the three corners of each triangle, shape (triangle, 3, 2)."""
         return np.ascontiguousarray(self.section.mesh.p[:, self.section.mesh.t].transpose(2, 1, 0))
 
     @cached_property
@@ -54,7 +54,7 @@ class DiscreteLayer:
 
     @cached_property
     def elements(self) -> FloatArray:
-        """Matrix of each triangle, in the order of `Space.element_unknowns`."""
+        """Matrix of each triangle, shape (triangle, n, n), in the order of `Space.element_unknowns`."""
         return element_matrices(self.pair, self.corners, self.moduli)
 
     @cached_property
@@ -74,7 +74,11 @@ class DiscreteLayer:
 
     @cached_property
     def supported_unknowns(self) -> IntArray:
-        """Displacements that axis, base and a sticking indenter hold at zero, and those below a face."""
+        """Unknowns that are prescribed as zero: u_r on the axis, what the base holds, u_r under a sticking punch.
+
+        Displacements just below a face that those above represent (`Space.owner`) occur in no equation. They are
+        prescribed, too, so that the matrix of the others is regular.
+        """
         base = self.nodes_on("base")
         held = [2 * self.nodes_on("axis"), 2 * base + 1]
         if self.parts.bonded:
@@ -85,25 +89,27 @@ class DiscreteLayer:
         return np.unique(np.concatenate([*held, np.flatnonzero(owner != np.arange(len(owner)))]))
 
     def top_nodes(self, radius: float) -> IntArray:
-        """Scalar displacement unknowns of the top cells within ``radius``, in the order of increasing r."""
+        """Scalar displacement unknowns of the top cells that end within ``radius``, in the order of increasing r."""
         mesh = self.section.mesh
         facets = mesh.boundaries["top"]
         inside = mesh.p[0, mesh.facets[:, facets]].max(axis=0) <= radius * (1 + 1e-14)
         return self.space.nodes_on(facets[inside])
 
     def solver(self, held: IntArray) -> RestrictedSolver:
-        """Factorise once with these unknowns prescribed."""
+        """The factorised layer with the unknowns ``held`` prescribed."""
         return RestrictedSolver(self.space, self.elements, self.edge, held)
 
     def derivative_by_radius(self, solutions: FloatArray, eta: FloatArray) -> FloatArray:
         """A'(u_i, u_j), the derivative of ``u_i . K u_j`` when vertices move by ``(eta, 0)`` and carry the unknowns.
 
-        It is the exact derivative of the discrete energy (G-theta), hence as accurate as the energy itself. A complex
-        step, ``K' = Im K(r + i h eta) / h``, has no rounding from differences.
+        With eta = 1 at the contact edge this is the derivative by the contact radius at fixed thickness. It is the
+        exact derivative of the discrete energy (the G-theta method of fracture mechanics). Moduli depend on the depth
+        only, so a radial motion does not change them. A complex step, ``K' = Im K(r + i h eta) / h``, has no rounding
+        from differences.
 
         Args:
             solutions: all unknowns of m solutions, shape (size, m).
-            eta: motion of the vertices, shape (vertex,).
+            eta: radial motion of the vertices, shape (vertex,), zero on the outer edge.
 
         Returns:
             Shape (m, m).
@@ -119,11 +125,11 @@ class DiscreteLayer:
 
     @property
     def patch_defect(self) -> float:
-        """Residual of a constant strain over the sum of its terms' magnitudes, the largest of all inner equations.
+        """Patch test: largest residual of a constant strain in inner equations, over the sum of its terms' magnitudes.
 
         Nodal values of ``u_r = s r, u_z = c z`` with their constant pressure are inserted into the assembled equations
         of the surface's material (form A of Taylor, Simo, Zienkiewicz and Chan, Int. J. Numer. Meth. Engng 22 (1986)
-        39-62). A residual off the boundary is an error of assembly: geometry, quadrature, hoop strain or coupling.
+        39-62). A residual inside is an error of assembly: geometry, quadrature, hoop strain or coupling.
         """
         space, nu, (r, z) = self.space, self.parts.poissons_ratio, self.space.positions
         surface = self.parts.at(np.zeros_like(self.section.part), np.zeros_like(self.moduli.shear))

@@ -1,9 +1,10 @@
 """Elastic constants over depth, and shear relaxation over time, derived from the parameters of the scene.
 
-Every layer is a sequence of parts between mesh lines, with moduli that are functions of depth: a uniform layer is one
-part, a half-space one very thick part. Lengths are divided by the contact radius, stresses by E* = E / (1 - nu^2) of
-the surface. The formulas are typed independently of `contact`, whose formulas the other methods use: a mistake in a
-shared formula would not appear as a difference between two methods.
+Every layer is a sequence of parts. A part lies between two mesh lines, which are lines of constant depth along which
+triangles end, and its moduli are smooth functions of depth. A uniform layer is one part, a half-space one very thick
+part. A face is the line where two parts meet. Lengths are divided by the contact radius, stresses by
+E* = E / (1 - nu^2) of the surface. The formulas are written independently of `contact`, whose formulas the other
+methods use: a mistake in a shared formula would not appear as a difference between two methods.
 """
 
 from __future__ import annotations
@@ -40,15 +41,15 @@ from fem_reference.profiles import cubics
 # Largest change of ln E between two mesh lines of a graded layer. Twice of it errs ten times as much, half of it makes
 # twice as many lines.
 LARGEST_CHANGE = 1.0
-# Depths between two breakpoints at which the change of ln E is summed. Half of them move mesh lines by a per cent.
+# Depths between two breakpoints at which the change of ln E is summed. With half of them mesh lines shift by 1 %.
 SAMPLES = 400
 # More parts than this are refused: each adds a mesh line through the whole section.
 MOST_PARTS = 60
-# An elastic base below a stack is meshed to this power of a half-space's thickness. With 1 the fields at its end fall
+# The thickness of an elastic base below a layer is that of a half-space to this power. With 1 the fields at its end are
 # below roundings under films that slide, with 0.6 depths err by 3e-6.
 BASE_POWER = 0.8
 
-# A function of the depth z / a.
+# A function of the depth z / a, a the contact radius.
 OfDepth: TypeAlias = Callable[[FloatArray], FloatArray]
 
 
@@ -70,7 +71,7 @@ class PointModuli(NamedTuple):
 
 
 def moduli(youngs_modulus: FloatArray, poissons_ratio: FloatArray) -> PointModuli:
-    """Moduli ``mu = E / (2 (1 + nu))`` and ``1/K = 3 (1 - 2 nu) / E``."""
+    """Moduli ``mu = E / (2 (1 + nu))`` and ``1/K = 3 (1 - 2 nu) / E``, in the unit of E."""
     return PointModuli(youngs_modulus / (2 * (1 + poissons_ratio)), 3 * (1 - 2 * poissons_ratio) / youngs_modulus)
 
 
@@ -81,8 +82,8 @@ class Part:
     Attributes:
         top: depth of its upper face / a.
         thickness: distance from there to its lower face / a.
-        youngs_modulus: E / E* at depths / a below the surface.
-        poissons_ratio: nu at these depths.
+        youngs_modulus: E / E* as a function of z / a, z from the surface of the layer.
+        poissons_ratio: nu as a function of z / a.
         slips: whether its lower face slides on the part below.
     """
 
@@ -98,9 +99,9 @@ class Parts:
     """A layer as parts, from the surface down.
 
     Attributes:
-        parts: the last is the elastic base or the half-space, if there is one, as thick as it is meshed.
-        bonded: whether the lowest part sticks to what holds it.
-        has_base: whether the last part stands for a half-space.
+        parts: from the surface down; an elastic base or a half-space is the last one, with its meshed thickness.
+        bonded: whether u_r = 0 at the bottom of the lowest part; u_z = 0 there always.
+        has_base: whether the last part stands for a half-space, be it an elastic base or the layer itself.
     """
 
     parts: tuple[Part, ...]
@@ -119,17 +120,17 @@ class Parts:
 
     @property
     def finite(self) -> FloatArray:
-        """Thicknesses of the parts above an elastic base / a; empty for a half-space."""
+        """Thicknesses / a of the parts above an elastic base; empty for a half-space."""
         return self.thicknesses[: len(self.parts) - self.has_base]
 
     @property
     def slides(self) -> bool:
-        """Whether some face slides."""
+        """Whether some face or the bottom slides without friction."""
         return not self.bonded or any(part.slips for part in self.parts)
 
     @property
     def contrast(self) -> float:
-        """Largest over smallest Young's modulus."""
+        """Largest over smallest Young's modulus at the upper and lower faces of all parts."""
         ends = [part.youngs_modulus(part.top + np.array([0.0, part.thickness])) for part in self.parts]
         return float(np.max(ends) / np.min(ends))
 
@@ -139,7 +140,7 @@ class Parts:
         return float(self.parts[0].poissons_ratio(np.zeros(1))[0])
 
     def at(self, part: IntArray, depth: FloatArray) -> PointModuli:
-        """Moduli at depths (n, ...) / a in the parts (n,)."""
+        """Moduli at depths z / a, shape (n, ...), in the parts of these indices, shape (n,)."""
         found = np.empty((2, *depth.shape))
         for index, each in enumerate(self.parts):
             here = part == index
@@ -148,7 +149,7 @@ class Parts:
 
 
 def uniform(poissons_ratio: float, thickness: float = 1.0, *, bonded: bool = True, has_base: bool = False) -> Parts:
-    """A uniform layer of contact modulus one: E = 1 - nu^2."""
+    """A uniform layer of contact modulus E* = 1, hence E = 1 - nu^2."""
     nu = poissons_ratio
     return Parts((Part(0.0, thickness, _constant((1 - nu) * (1 + nu)), _constant(nu)),), bonded, has_base)
 
@@ -159,10 +160,11 @@ def parts_of(layer: ElasticLayer, contact_radius: float, half_space_thickness: f
     Args:
         layer: layer of the scene.
         contact_radius: a [m].
-        half_space_thickness: thickness of the part that stands for a half-space, by contact radius or layer.
+        half_space_thickness: thickness / a of a half-space. An elastic base has it to the power `BASE_POWER`, times
+            the thickness of the layer above it where that exceeds a.
 
     Raises:
-        UnsupportedSceneError: another kind of layer, or more parts than meshes bear.
+        UnsupportedSceneError: another kind of layer, or more than `MOST_PARTS` parts.
     """
     a, unit = contact_radius, contact_modulus(layer)
     match layer:
@@ -236,7 +238,7 @@ def graded_lines(layer: GradedLayer) -> FloatArray:
 
 
 def at_depths(function: object, depth: FloatArray, thickness: float) -> FloatArray:
-    """Values of a constant over depth at depths z [m] in a layer of this thickness [m].
+    """Values of an elastic constant, uniform or a function of depth, at depths z [m] in a layer of a thickness [m].
 
     Raises:
         UnsupportedSceneError: for a function without a formula here.
@@ -258,7 +260,7 @@ def at_depths(function: object, depth: FloatArray, thickness: float) -> FloatArr
 
 @dataclass(frozen=True)
 class ShearRelaxation:
-    """G(t) = G_inf + sum_j G_j exp(-t/tau_j), and a dashpot eta in parallel.
+    """Shear relaxation ``G(t) = G_inf + sum_j G_j exp(-t/tau_j)``, and a dashpot eta in parallel.
 
     Attributes:
         long_term_modulus: G_inf [Pa].
@@ -274,7 +276,7 @@ class ShearRelaxation:
 
     @property
     def at_once(self) -> float:
-        """G(0) without the dashpot [Pa]."""
+        """Instantaneous modulus ``G(0) = G_inf + sum_j G_j`` without the dashpot [Pa]."""
         return self.long_term_modulus + math.fsum(self.moduli)
 
 

@@ -2,11 +2,15 @@
 
 The section is 0 <= r <= outer radius, 0 <= z <= thickness with z into the layer. Its boundaries have names: ``axis``
 (r = 0), ``top`` (z = 0), ``base`` (z = thickness), ``outer`` (r = outer radius). A mesh line runs along every face
-between two parts; each part has vertices of its own there.
+between two parts (`materials`). Each part has vertices of its own there, so that layers may slide.
 
-Cells grow with the distance from the contact edge, and gmsh makes triangles as high as they are wide. In a part that is
-thin for its distance from the edge they would be as many as the part is long, although fields change slowly along it.
-Therefore each part is drawn with the thickness ``max(h, slope x distance)``, meshed, and its points are moved back.
+Graded points are vertices on the top with a small cell size: the contact edge, kinks, a sharp tip. Cells grow with the
+distance d from them. A strip, for contacts of unknown radius (`surface`), has equal cells on all of the top up to its
+end.
+
+gmsh makes triangles as high as they are wide. Far from the edge the cell size along a thin part of thickness h could be
+much larger than h, since fields change slowly along it, but triangles would still be limited to h. Therefore each part
+is drawn with the thickness ``max(h, s d)``, s = SLOPE_PER_GROWTH x growth, meshed, and z is scaled back.
 """
 
 from __future__ import annotations
@@ -31,32 +35,34 @@ MISSING_LIBRARIES = (
     "gmsh could not be loaded ({reason}). On Debian or Ubuntu install its system libraries: "
     "apt-get install libglu1-mesa libxcursor1 libxft2 libxinerama1"
 )
-# Longest line over its smallest cell; gmsh takes minutes for longer ones.
+# Length of a line that gmsh divides, over its smallest cell. gmsh takes minutes for longer ones: they are split.
 LONGEST_LINE = 1e10
-# Share of a cell to which gmsh integrates cell sizes along lines. Its own 1e-9 takes three times as long; with 1e-7
-# cells in narrow rings are so uneven that slopes err by 7 %.
+# Accuracy, in cells, to which gmsh integrates 1 / (cell size) along lines. Its own 1e-9 takes three times as long. With
+# 1e-7 cells in narrow rings are so uneven that slopes of delta_0 err by 7 %.
 LINE_PRECISION = 1e-8
-# gmsh's number of the algorithm that bisects Delaunay triangles. Its default, frontal Delaunay, makes 15 % fewer
-# triangles, but one mesh in ten with cells of 1e-10 radii lacks them near the edge: depths then err by 1e-3 to 0.2.
+# gmsh's number of its Delaunay algorithm. The default, frontal Delaunay, makes 15 % fewer triangles, but one mesh in
+# ten with cells of 1e-10 radii lacks them near the edge: depths then err by 1e-3 to 0.2.
 DELAUNAY = 5
 # Smallest cell over its distance from gmsh's origin: gmsh squares coordinates, and cells below 1.5e-8 degenerate.
 RESOLVED = 3e-8
-# Cells within the reach s of a graded point grow by (s/d)^NEARBY_POWER times the growth per distance d, at most by
-# NEARBY_GROWTH times its root: the energy near the edge falls like d. Without it there are 1.4 times as many triangles.
-# Without the root a mesh and its companion are equal at the edge, and two stiffnesses agree by accident.
+# Within the reach s of a graded point the cell size at distance d grows by growth (s/d)^NEARBY_POWER d, at most by
+# NEARBY_GROWTH growth^(1/2) d, since the energy within d of the edge falls like d. Without NEARBY_POWER there are 1.4
+# times as many triangles. With a limit independent of the growth a mesh and its companion are equal at the edge, and
+# two stiffnesses agree by accident.
 NEARBY_POWER, NEARBY_GROWTH = 0.06, 1.1
-# Growth that gmsh is asked for, over that of the cells: Delaunay triangles exceed their size. With one, displacements
-# outside contacts err three times as much, and cells that grow by 1.5 form fans without inner vertices.
+# Growth in gmsh's size function over the wanted growth, since Delaunay triangles exceed the given size. With one,
+# displacements outside contacts err three times as much, and cells that grow by 1.5 form fans without inner vertices.
 PLAIN_SHARE = 0.9
-# Thickness drawn over distance from the edge and growth of cells. Twice of it needs a tenth more unknowns, four times
-# of it errs three times as much.
+# Drawn thickness of a thin part over (growth x distance from the edge). Twice of it needs a tenth more unknowns, with
+# four times of it errors are three times as large.
 SLOPE_PER_GROWTH = 0.25
-# Two changes of the drawn thickness closer than this factor of their distance from the edge are drawn as one.
+# Distances h / s, at which drawn thicknesses begin to grow, that differ by less than this factor are drawn as one.
 LEAST_STEP = 1.5
-# Beyond a thickness from the edge, cells grow with this share of the growth, since waves of the layers continue there.
-# Twice of it errs four times as much on some stacks, half of it doubles the unknowns.
+# Cells stop growing at growth x thickness. Where FAR_GROWTH x growth x distance exceeds this they grow again, with this
+# share of the growth, since oscillations of the layers continue there. Twice of it errs four times as much on some
+# stacks, half of it doubles the unknowns.
 FAR_GROWTH = 0.5
-# Distance from the base, over the last part's thickness, within which a vertex lies on it: above gmsh's roundings.
+# Distance from the base, over the last part's thickness, within which a vertex is put on it: above gmsh's roundings.
 ON_BASE = 1e-9
 
 # (radius, cell size) on the top, increasing.
@@ -65,15 +71,15 @@ Graded = tuple[tuple[float, float], ...]
 
 @dataclass(frozen=True)
 class Section:
-    """A triangle mesh of the parts of a layer; vertices on the face of two parts are there twice.
+    """A triangle mesh of the parts of a layer, lengths by the contact radius; vertices on a face exist twice.
 
     Attributes:
         mesh: points and triangles, with named boundaries.
-        part: index of the part of each triangle.
-        faces: where parts meet.
+        part: index of the part of each triangle, shape (triangle,).
+        faces: facets where two parts meet, from the surface down.
         thickness: depth of the base.
         outer_radius: end of the section.
-        fingerprint: identifies points and triangles.
+        fingerprint: hash of points and triangles.
     """
 
     mesh: MeshTri
@@ -94,27 +100,28 @@ def section_mesh(
         outer_radius: end of the section, beyond every graded point.
         points: radii on the top that become vertices, with the cell size there.
         growth: increase of the cell size per distance.
-        strip: radius within which the top has cells of the last point's size; zero for contacts of known radius.
-        end: radius where the profile ends upright.
+        strip: radius within which the top has cells of the last point's size; zero without a strip.
+        end: radius where the profile ends upright, infinite without such an end; it limits the reach of the edge.
 
     Raises:
         NotConvergedError: a triangle turned over when it was moved back, or has no area.
     """
     drawing = Drawing(parts, outer_radius, points, growth, strip, end)
     drawn, regions = _triangulated(drawing)
-    owned = [np.unique(region) for region in regions]
-    where = np.hstack([_placed(drawing, drawn, owned, index) for index in range(len(owned))])
-    starts = np.cumsum([0, *(len(vertices) for vertices in owned)])
-    each = zip(starts, owned, regions, strict=False)
+    # Vertices of each part, numbered part by part: those on a face then exist twice.
+    vertices_of = [np.unique(region) for region in regions]
+    points_back = np.hstack([_placed(drawing, drawn, vertices_of, index) for index in range(len(vertices_of))])
+    starts = np.cumsum([0, *(len(vertices) for vertices in vertices_of)])
+    each = zip(starts, vertices_of, regions, strict=False)
     corners = np.hstack([start + np.searchsorted(vertices, region) for start, vertices, region in each])
-    if np.any(doubled_area(where, corners) * np.sign(doubled_area(drawn, np.hstack(regions))) <= 0):
+    if np.any(doubled_area(points_back, corners) * np.sign(doubled_area(drawn, np.hstack(regions))) <= 0):
         raise NotConvergedError("a triangle of a thin part turned over or has no area; ask for smaller cells")
-    return named_section(where, corners, np.repeat(np.arange(len(regions)), [r.shape[1] for r in regions]), parts)
+    return named_section(points_back, corners, np.repeat(np.arange(len(regions)), [r.shape[1] for r in regions]), parts)
 
 
 @dataclass(frozen=True)
 class Drawing:
-    """The section as gmsh draws it; arguments of `section_mesh`."""
+    """The section as gmsh draws it, with thickened parts; the attributes are arguments of `section_mesh`."""
 
     parts: Parts
     outer_radius: float
@@ -125,7 +132,7 @@ class Drawing:
 
     @cached_property
     def origin(self) -> float:
-        """Radius that becomes gmsh's x = 0: the last graded point, whose cells need the most digits."""
+        """Radius of gmsh's x = 0: the last graded point, where cells are smallest over their distance from r = 0."""
         return self.points[-1][0]
 
     @cached_property
@@ -135,32 +142,38 @@ class Drawing:
 
     @cached_property
     def cells(self) -> FloatArray:
-        """Cell sizes at the graded points that gmsh resolves so far from its origin."""
+        """Cell sizes at the graded points, enlarged where gmsh would not resolve them so far from its origin."""
         return np.maximum([cell for _, cell in self.points], RESOLVED * np.abs(self.radii - self.origin))
 
     @cached_property
     def stations(self) -> FloatArray:
-        """Radii at which lines may bend or are split."""
+        """Radii at which the drawn mesh lines have points, increasing; between two they are straight.
+
+        ``max(h, s d)`` bends at the distances d = h / s from graded points and halfway between two of them. Far away
+        further points split the lines at every factor of a hundred. Points that are crowded for their distance from
+        the edge are left out.
+        """
         bends: list[float] = []
         for bend in np.sort(self.parts.finite) / (SLOPE_PER_GROWTH * self.growth):
             if not bends or bend > LEAST_STEP * bends[-1]:
                 bends.append(float(bend))
-        fine = self.radii
-        middles = (fine[:-1] + fine[1:])[np.diff(fine) / 2 > min(bends, default=np.inf)] / 2
-        beside = np.concatenate([fine + side * bend for bend in bends for side in (-1.0, 1.0)] or [np.empty(0)])
-        free = np.min(np.abs(beside[:, None] - fine), axis=1) >= 0.999 * np.repeat(bends, 2 * len(fine))
-        hundreds = 1.0 + max([1.0, *bends]) * 100.0 ** np.arange(1, 8)
-        every = np.concatenate([fine, middles, beside[free], hundreds])
+        graded = self.radii
+        middles = (graded[:-1] + graded[1:])[np.diff(graded) / 2 > min(bends, default=np.inf)] / 2
+        at_bends = np.concatenate([graded + side * bend for bend in bends for side in (-1.0, 1.0)] or [np.empty(0)])
+        # Another graded point may be nearer than h / s: the thickness does not bend there.
+        is_nearest = np.min(np.abs(at_bends[:, None] - graded), axis=1) >= 0.999 * np.repeat(bends, 2 * len(graded))
+        far = 1.0 + max([1.0, *bends]) * 100.0 ** np.arange(1, 8)
+        every = np.concatenate([graded, middles, at_bends[is_nearest], far])
         every = np.unique(every[(every > 0) & (every < 0.3 * self.outer_radius)])
         kept = [0.0]
         for radius in (*every, self.outer_radius):
-            crowd = radius - kept[-1] <= 0.2 * float(self.distance(np.array([radius]))[0])
-            if radius in fine or radius == self.outer_radius or not crowd:
+            is_crowded = radius - kept[-1] <= 0.2 * float(self.distance(np.array([radius]))[0])
+            if radius in graded or radius == self.outer_radius or not is_crowded:
                 kept.append(float(radius))
         return np.unique(kept + self._splits(kept))
 
     def _splits(self, stations: list[float]) -> list[float]:
-        """Radii that split lines of more than `LONGEST_LINE` cells of one of their ends."""
+        """Radii that split lines longer than `LONGEST_LINE` cells of one end, at the mean of ln(distance)."""
         cells, splits = dict(zip(self.radii, self.cells, strict=True)), []
         for left, right in pairwise(stations):
             for end, away in ((left, right - left), (right, left - right)):
@@ -169,16 +182,16 @@ class Drawing:
         return splits
 
     def distance(self, radius: FloatArray) -> FloatArray:
-        """Distance from the next graded point, or from the strip."""
+        """Distance along the top of radii (n,) from the nearest graded point, or from the end of the strip."""
         if self.strip:
             return np.asarray(np.maximum(radius - self.strip, 0.0))
         return np.asarray(np.min(np.abs(radius[:, None] - self.radii), axis=1))
 
     @cached_property
     def drawn(self) -> FloatArray:
-        """Drawn thickness of each part at the stations, shape (part, station).
+        """Drawn thickness ``max(h, s d)`` of each part at the stations, shape (part, station).
 
-        The end of an elastic base is straight: bends of the faces far above it are much smaller than its cells.
+        The bottom of an elastic base or half-space is straight: faces far above it bend by much less than its cells.
         """
         wedge = SLOPE_PER_GROWTH * self.growth * self.distance(self.stations)
         drawn = np.maximum(self.parts.finite[:, None], wedge)
@@ -195,7 +208,10 @@ class Drawing:
 
     @property
     def size_expression(self) -> str:
-        """Cell size as a function of gmsh's x = r - origin and y = z."""
+        """Cell size as a function of gmsh's x = r - origin and y = z.
+
+        It is the smallest of the sizes that the graded points, the strip and, by `FAR_GROWTH`, the thickness allow.
+        """
         x = [f"(x{self.origin - r:+.17g})" for r in self.radii]
         distances = [f"Sqrt({each}*{each}+y*y)" for each in x]
         gaps = np.diff([0.0 if self.radii[0] else -np.inf, *self.radii, self.end])
@@ -215,13 +231,13 @@ class Drawing:
         return expression
 
     def _grown(self, away: str, reach: float) -> str:
-        """Increase of the cell size at a distance from a graded point of this reach."""
+        """Increase of the cell size at the distance ``away`` (a gmsh expression) from a graded point."""
         plain, most = PLAIN_SHARE * self.growth, NEARBY_GROWTH * self.growth**0.5
         nearby = f"{self.growth * reach**NEARBY_POWER:.17g}*{away}^{1 - NEARBY_POWER:.17g}"
         return f"Max({plain:.17g}*{away},Min({most:.17g}*{away},{nearby}))"
 
     def moved_back(self, points: FloatArray, part: int) -> FloatArray:
-        """(r, z) of points (2, n) of one part as drawn."""
+        """(r, z) in the layer of points (2, n) of one part as drawn; the share of the depth within the part is kept."""
         x = self.stations - self.origin
         share = (points[1] - np.interp(points[0], x, self.levels[part])) / np.interp(points[0], x, self.drawn[part])
         top, bottom = self.parts.depths[part : part + 2]
@@ -258,7 +274,7 @@ def _gmsh() -> Any:
 
 
 def _triangulated(drawing: Drawing) -> tuple[FloatArray, list[IntArray]]:
-    """Points (2, n) as drawn, and the triangles (3, m) of each part."""
+    """Points (2, n) as drawn, and the triangles (3, m) of each part, as indices of points."""
     gmsh = _gmsh()
     gmsh.model.add("layer")
     try:
@@ -280,7 +296,11 @@ def _triangulated(drawing: Drawing) -> tuple[FloatArray, list[IntArray]]:
 
 
 def _draw(geo: Any, drawing: Drawing) -> list[int]:
-    """One surface between two mesh lines each; the end of a base is one line, and its axis is split in hundreds."""
+    """Draw one surface per part, between its two mesh lines, and return gmsh's numbers of the surfaces.
+
+    The bottom of an elastic base or half-space is one line. The axis of a thick part is split at every factor of a
+    hundred in depth, as the mesh lines are.
+    """
     x, lines = drawing.stations - drawing.origin, []
     for index, level in enumerate(drawing.levels):
         chosen = (
@@ -301,25 +321,25 @@ def _draw(geo: Any, drawing: Drawing) -> list[int]:
     return surfaces
 
 
-def _placed(drawing: Drawing, drawn: FloatArray, owned: list[IntArray], part: int) -> FloatArray:
-    """(r, z) of the vertices of a part; those that it shares with a neighbour, or of an end, exactly on the face."""
-    vertices, (top, bottom) = owned[part], drawing.parts.depths[part : part + 2]
+def _placed(drawing: Drawing, drawn: FloatArray, vertices_of: list[IntArray], part: int) -> FloatArray:
+    """(r, z) of the vertices of a part, those on its faces, on the top and on the base exactly at their depth."""
+    vertices, (top, bottom) = vertices_of[part], drawing.parts.depths[part : part + 2]
     points = drawing.moved_back(drawn[:, vertices], part)
-    on_top = np.isin(vertices, owned[part - 1]) if part else drawn[1, vertices] == 0
-    is_last = part == len(owned) - 1
-    on_bottom = points[1] >= bottom - ON_BASE * (bottom - top) if is_last else np.isin(vertices, owned[part + 1])
+    on_top = np.isin(vertices, vertices_of[part - 1]) if part else drawn[1, vertices] == 0
+    is_last = part == len(vertices_of) - 1
+    on_bottom = points[1] >= bottom - ON_BASE * (bottom - top) if is_last else np.isin(vertices, vertices_of[part + 1])
     points[1, on_top], points[1, on_bottom] = top, bottom
     return points
 
 
 def doubled_area(points: FloatArray, triangles: IntArray) -> FloatArray:
-    """Twice the signed area of triangles (3, m) of points (2, n)."""
+    """Twice the signed area of triangles (3, m) of points (2, n), shape (m,)."""
     (r0, r1, r2), (z0, z1, z2) = points[:, triangles]
     return np.asarray((r1 - r0) * (z2 - z0) - (r2 - r0) * (z1 - z0))
 
 
 def named_section(points: FloatArray, triangles: IntArray, part: IntArray, parts: Parts) -> Section:
-    """Section of points (2, n) and triangles (3, m), with the names of its boundaries and the faces of its parts.
+    """Section of points (2, n) and triangles (3, m) in the parts of indices (m,), with named boundaries and faces.
 
     Raises:
         NotConvergedError: a triangle has no area.

@@ -1,12 +1,15 @@
 """Contact of one given radius: stiffness, its derivative, the depth of smooth contact, forces and surface fields.
 
-Units: lengths by the contact radius, stresses by E*. Two solutions of one factorisation determine everything: u_1, the
-unit depth of a flat punch of that radius, and u_2, the profile -f(r) at depth zero. At depth delta the layer carries
-``F = k_N delta + F_2``, and since the energy release rate is a perfect square in delta,
+Units: lengths by the contact radius a, stresses by E*. Two solutions of one factorisation determine everything: u_1
+with u_z = 1 on the contact, a flat punch at unit depth, and u_2 with u_z = -f(r), the profile f at depth zero. At depth
+delta the solution is delta u_1 + u_2, and the force ``F = k_N delta + F_2``. A prime is the derivative by a at fixed
+depth and layer. From dPi/d(delta) = F the elastic energy Pi(delta, a) obeys d^2 Pi/(da d delta) = k_N' delta + F_2'.
+dPi/da is proportional to the square of the stress intensity at the edge, which is linear in delta. Hence
 
-    dPi/da = k_N' (delta - delta_0)^2 / 2,     delta_0 = -(dF_2/da) / k_N',
+    dPi/da = k_N' (delta - delta_0)^2 / 2,     delta_0 = -F_2' / k_N',     G = (dPi/da) / (2 pi a),
 
-where delta_0 = g(a) is the depth at which the stress at the contact edge vanishes.
+with the energy release rate G. The stress at the contact edge vanishes at the depth delta_0 = g(a) of smooth contact,
+which is the depth without adhesion.
 """
 
 from __future__ import annotations
@@ -28,36 +31,36 @@ from fem_reference.surface import TraceSpace
 # Largest relative difference of the stiffness by energy and by reactions: sound solutions agree to 1e-12, a broken
 # factorisation errs by 1e-2.
 ENERGY_AGREEMENT = 1e-8
-# Largest residual of a constant strain over the size of its terms: a hundred thousand roundings.
+# Largest `DiscreteLayer.patch_defect`: fifty thousand roundings.
 PATCH_AGREEMENT = 1e-11
 # Settings of quick solutions, on which the radius of a load is searched: depth and force err by about 3e-5. With a
 # growth of 0.7 they err by 2e-4, and most loads take two full solutions.
 QUICK = Discretisation(order=3, growth=0.5, edge_cell=3e-5, truncation=1e-5, half_space_thickness=1e6)
-# Width of the widest ring beside the contact's edge in which the slope of delta_0 is read, over the smallest length
-# there, and number of rings. The slope errs by 3e-4 at growth 1/2; from one cell at the edge it errs by any factor.
+# Rings next to the contact edge, inside it, in which the slope of delta_0 is averaged: width of the widest over the
+# smallest length there, and their number. The slope errs by 3e-4 at growth 1/2. From one cell it errs by any factor.
 WIDEST, RINGS = 0.8, 5
 
 
 @dataclass(frozen=True, kw_only=True)
 class PrescribedContact:
-    """Answers of one mesh and element pair at contact radius one.
+    """Solutions u_1, u_2 on one mesh at contact radius one, and the numbers that follow from them.
 
     Attributes:
         layer: the discrete layer.
         indenter: the profile, by the contact radius.
-        stiffness: k_N.
+        stiffness: k_N = dF/d(delta) at fixed radius.
         stiffness_slope: k_N' = dk_N/da.
-        smooth_depth: delta_0, zero for a flat punch.
+        smooth_depth: delta_0, depth at which the stress at the contact edge vanishes; zero for a flat punch.
         smooth_depth_slope: delta_0' = d(delta_0)/da.
-        profile_force: F_2, the force at depth zero (negative: the profile alone would have to be pulled in).
+        profile_force: F_2, the force at depth zero; negative, since there the surface is pulled up to the profile.
         solutions: all unknowns of u_1 and u_2, shape (size, 2).
-        contact_trace: polynomials on the contact.
+        contact_trace: piecewise polynomials on the contact.
         pressures: pressure of u_1 and u_2 at its nodes, shape (node, 2).
-        top_trace: polynomials on the whole top.
+        top_trace: piecewise polynomials on the whole top.
         displacements: u_z of u_1 and u_2 at its nodes, shape (node, 2).
         energy_defect: |energy stiffness / reaction stiffness - 1|.
         patch_defect: see `DiscreteLayer.patch_defect`.
-        radius: contact radius over that of the mesh: below one where the ring around a flat end is too narrow for it.
+        radius: contact radius over that of the mesh, below one after `narrowed` only.
     """
 
     layer: DiscreteLayer
@@ -87,41 +90,41 @@ class PrescribedContact:
         return self.indenter.contact_radius
 
     def force(self, depth: float) -> float:
-        """Normal force F = k_N delta + F_2 at any depth, the contact radius held."""
+        """Normal force F = k_N delta + F_2 at a depth, the contact radius fixed."""
         return self.stiffness * depth + self.profile_force
 
     @property
     def smooth_force(self) -> float:
-        """Normal force at the depth of smooth contact."""
+        """Normal force of smooth contact, k_N delta_0 + F_2."""
         return self.force(self.smooth_depth)
 
     def pressure(self, radius: FloatArray, depth: float) -> FloatArray:
-        """Pressure p(r), zero outside the contact."""
+        """Pressure p(r) at a depth, at radii of shape (n,); zero outside the contact."""
         return self.contact_trace.evaluate(self.pressures @ [depth, 1.0], radius)
 
     def surface_displacement(self, radius: FloatArray, depth: float) -> FloatArray:
-        """Displacement u_z(r) on the top; zero beyond the mesh."""
+        """Displacement u_z(r) on the top at a depth, at radii of shape (n,); zero beyond the mesh."""
         return self.top_trace.evaluate(self.displacements @ [depth, 1.0], radius)
 
     @property
     def shear_traction(self) -> FloatArray:
-        """Traction q of a punch that sticks, at depth one, at the nodes of the contact; zero on the axis.
+        """Radial traction q of a sticking punch at depth one, at the contact nodes, shape (node,); zero on the axis.
 
-        ``int q v 2 pi r dr`` equals the radial reaction for every v that vanishes on the axis.
+        ``int q v 2 pi r dr`` equals the radial reaction to v for every polynomial v that vanishes on the axis.
         """
         reactions = (self.layer.matrix @ self.solutions[:, 0])[2 * self.layer.top_nodes(1.0)]
         bands = self.contact_trace.mass_bands()[:, 1:]
         return np.concatenate([[0.0], solveh_banded(bands, reactions[1:], lower=True, check_finite=False)])
 
     def narrowed(self, share: float) -> PrescribedContact:
-        """The contact of a ring ``share^2`` times as narrow around a flat end, on the same mesh.
+        """The contact whose ring around a flat end has ``share^2`` times the width, derived without a mesh.
 
-        So close to the flat radius the stress at the contact's edge is that of the flat punch and its stiffness is
-        linear in the radius. Smooth depth and fields outside the ring grow like the root of its width w, so that
-        ``F = int k_N d(delta_0)`` leaves ``F_2 ~ w^1.5``.
+        The ring lies between the flat radius b and the contact radius a, of width w = a - b << b. To leading order k_N
+        is linear in a, while delta_0 and the fields of u_2 outside the ring grow like ``w^(1/2)``. From smooth contact,
+        ``k_N delta_0 + F_2 = int k_N d(delta_0)``, follows ``F_2 = -int delta_0 k_N' da ~ w^(3/2)``.
 
         Args:
-            share: factor on the smooth depth.
+            share: factor on delta_0, at most one.
         """
         shares, lost = np.array([1.0, share]), (1.0 - self.indenter.last_kink) * (1 - share**2)
         return replace(
@@ -151,14 +154,15 @@ def solve_contact(
 ) -> PrescribedContact:
     """Mesh the section around a contact radius [m] and solve it.
 
-    The contact of a ring around a flat end that is too narrow for a mesh is derived from the narrowest meshed one.
+    Where the ring around a flat end is narrower than `narrowest_radius` allows, the narrowest meshed contact is solved
+    and `PrescribedContact.narrowed`.
 
     Args:
         scene: layer and indenter.
         radius: contact radius [m].
         settings: numerical settings.
-        log: of the stages.
-        sticks: whether the indenter holds the surface in the radial direction.
+        log: record of time and memory by stage.
+        sticks: whether u_r = 0 under the indenter.
     """
     layer, flat = scene.layer, scene.indenter.flat_radius
     meshed = max(radius, narrowest_radius(layer, scene.indenter, settings.coarsening)) if radius > flat else radius
@@ -170,7 +174,7 @@ def solve_contact(
 
 
 def quick_solution(scene: Scene, radius: float, log: StageLog) -> PrescribedContact:
-    """The contact of a radius [m], solved with few cells, to about 1e-5 or, of tables, 1e-4."""
+    """The contact of a radius [m] on few cells, accurate to about 1e-5, for tabulated profiles 1e-4."""
     return solve_contact(scene, radius, QUICK, log)
 
 
@@ -198,7 +202,10 @@ def solve_prescribed_contact(layer: DiscreteLayer, indenter: ScaledIndenter, log
 
 
 def energy_stiffness(layer: DiscreteLayer, solution: FloatArray) -> float:
-    """Twice the strain energy of a punch of unit depth, ``u . K u`` summed over triangles and the outer edge."""
+    """Stiffness k_N of a punch at unit depth as twice its strain energy: ``u . K u`` by triangles and outer edge.
+
+    In the mixed form the equations of the pressure make ``u . K u = int 2 mu e : e + p^2 / K``, twice the energy.
+    """
     local = solution[layer.space.element_unknowns][..., None]
     energy = float(np.sum(local * (layer.elements @ local)))
     return energy if layer.edge is None else energy + float(solution @ (layer.edge @ solution))
@@ -207,7 +214,7 @@ def energy_stiffness(layer: DiscreteLayer, solution: FloatArray) -> float:
 def _evaluated(
     layer: DiscreteLayer, indenter: ScaledIndenter, solutions: FloatArray, reactions: FloatArray, energy: float
 ) -> PrescribedContact:
-    """All numbers from u_1, u_2 (size, 2) and their reactions on the contact nodes."""
+    """All numbers from u_1, u_2 (size, 2), their reactions at the contact nodes (node, 2) and u_1 . K u_1."""
     stiffness, profile_force = reactions.sum(axis=0)
     defect, patch = abs(energy / stiffness - 1), layer.patch_defect
     if not defect < ENERGY_AGREEMENT:
@@ -216,21 +223,22 @@ def _evaluated(
         raise NotConvergedError("a constant strain is not in equilibrium on this mesh", {"patch_defect": patch})
     positions, top, degree = layer.space.positions[0], layer.top_nodes(np.inf), layer.pair.degree
     trace = TraceSpace(positions[layer.top_nodes(1.0)], degree)
-    scale = min(1.0, layer.parts.parts[0].thickness, 1.0 - indenter.last_kink)
-    derivative = layer.derivative_by_radius(solutions, cut_off(layer.section.mesh.p, 0.6 * scale))
-    # The nodes of the contact move along the profile, whose height there grows by eta f'.
-    edge = cut_off(np.array([trace.vertices, np.zeros_like(trace.vertices)]), 0.6 * scale)
-    moving = np.interp(trace.radii, trace.vertices, edge) * indenter.slope(trace.radii)
-    smooth_depth = float((reactions[:, 0] @ moving - derivative[0, 1]) / derivative[0, 0])
+    nearest = min(1.0, layer.parts.parts[0].thickness, 1.0 - indenter.last_kink)
+    derivative = layer.derivative_by_radius(solutions, cut_off(layer.section.mesh.p, 0.6 * nearest))
+    # F_2 = u_1 . K u_2. Nodes of the contact that move by eta keep u_z = -f, which changes u_2 there by -eta f'. Hence
+    # F_2' = A'(u_1, u_2) - R_1 . (eta f') with the reactions R_1 of u_1; delta_0 = -F_2' / k_N', k_N' = A'(u_1, u_1).
+    eta = cut_off(np.array([trace.vertices, np.zeros_like(trace.vertices)]), 0.6 * nearest)
+    height_change = np.interp(trace.radii, trace.vertices, eta) * indenter.slope(trace.radii)
+    smooth_depth = float((reactions[:, 0] @ height_change - derivative[0, 1]) / derivative[0, 0])
     pressures = trace.recover(reactions)
-    beside = min(scale, 1.0 - max(indenter.breakpoints, default=0.0), indenter.left_to_upright_end)
+    analytic = min(nearest, 1.0 - max(indenter.breakpoints, default=0.0), indenter.left_to_upright_end)
     return PrescribedContact(
         layer=layer,
         indenter=indenter,
         stiffness=float(stiffness),
         stiffness_slope=float(derivative[0, 0]),
         smooth_depth=smooth_depth,
-        smooth_depth_slope=smooth_depth_slope(trace, pressures @ [[1.0, smooth_depth], [0.0, 1.0]], beside),
+        smooth_depth_slope=smooth_depth_slope(trace, pressures @ [[1.0, smooth_depth], [0.0, 1.0]], analytic),
         profile_force=float(profile_force),
         solutions=solutions,
         contact_trace=trace,
@@ -243,26 +251,28 @@ def _evaluated(
 
 
 def cut_off(points: FloatArray, support: float) -> FloatArray:
-    """Motion eta of points (2, n): one within support/6 of the edge (1, 0), zero beyond ``support``, C^1 between."""
+    """Radial motion eta of points (2, n): one within support/6 of the contact edge (1, 0), zero beyond support, C^1."""
     t = np.clip(1.2 * np.hypot(points[0] - 1.0, points[1]) / support - 0.2, 0, 1)
     return np.asarray(1 - t**2 * (3 - 2 * t))
 
 
 def smooth_depth_slope(trace: TraceSpace, pressures: FloatArray, scale: float) -> float:
-    """d(delta_0)/da, from the pressures of flat punch and smooth contact: p / p_1 = 2 (a - r) delta_0' at the edge.
+    """d(delta_0)/da, from the pressures p_1 of the flat punch and p of smooth contact near the edge.
 
-    Both are superpositions of flat punches of radii up to a. Means over rings, each half as wide as the last, are
-    extrapolated to width zero: means average the oscillations of single cells.
+    Smooth contact is a superposition of flat punches, ``p(r) = int_r^a p_1(r; t) delta_0'(t) dt``. Near the edge
+    ``p_1(r; t) = C (t - r)^(-1/2)``, hence ``p / p_1 = 2 (a - r) delta_0'(a)`` for r -> a. Ratios of weighted means
+    over rings, each half as wide as the last, are extrapolated to width zero. Means average the oscillations of single
+    cells.
 
     Args:
-        trace: functions on the contact.
-        pressures: of the flat punch and of smooth contact, in ``trace``, shape (n, 2).
-        scale: distance from the edge within which both pressures are smooth.
+        trace: piecewise polynomials on the contact.
+        pressures: nodal values of p_1 and p in ``trace``, shape (node, 2).
+        scale: distance from the edge within which the ratio p / p_1 is analytic.
     """
     radius, weight = (values.ravel() for values in trace.gauss(trace.degree + 2))
     punch, smooth = (trace.evaluate(values, radius) for values in pressures.T)
     widths = 2.0 ** -np.arange(float(RINGS))
-    # An upright end may be nearer than the last cells, of which the narrowest ring covers as many as there are rings.
+    # Where an upright end is nearer than the last cells, rings are as wide as the narrowest needs to cover RINGS cells.
     widest = max(WIDEST * scale, (1.0 - trace.vertices[-min(1 + RINGS, len(trace.vertices))]) / widths[-1])
     share = (1.0 - radius) / (widest * widths[:, None])
     weight = weight * share * np.maximum(1.0 - share, 0.0) ** 2

@@ -1,4 +1,8 @@
-"""Numerical settings of one solve, and the mesh they make around a contact of radius one."""
+"""Numerical settings of one solve, and the mesh that they define around a contact of radius one.
+
+The companion of an answer is a second solution on coarser cells. The difference of the two gives the stated error
+(`stated`). A graded point is a vertex on the top with a prescribed cell size (`mesh`).
+"""
 
 from __future__ import annotations
 
@@ -21,7 +25,7 @@ COARSER_EDGE = 10.0
 # Narrowest meshed ring over flat radius and thickness; `PrescribedContact.narrowed` replaces narrower ones. In rings of
 # 1e-8 depths err by 2e-6, in those of 1e-7 by 2e-7.
 NARROWEST = 1e-7
-# Smallest cell over the radius: nodes nearer than a thousand roundings coincide.
+# Smallest cell over the contact radius, about 500 roundings. With much less the nodes inside a cell coincide.
 SMALLEST = 1e-13
 
 
@@ -33,11 +37,12 @@ class Discretisation:
         order: polynomial degree k of the displacement, 2, 3 or 4; the pressure has degree k - 1.
         edge_cell: cell size at the contact edge, relative to the smallest of contact radius, thickness and the
             distances from the edge to the next kink and to an upright end.
-        growth: increase of cell size per distance from a graded point; also the largest cell per thickness.
-        truncation: relative change of the stiffness allowed to the outer edge.
+        growth: increase of cell size per distance from a graded point; also cell size over thickness about a
+            thickness away from the edge.
+        truncation: relative change of the stiffness that the finite outer radius may cause.
         half_space_thickness: thickness, in contact radii, of the layer that stands for a half-space.
         outer_distance: from contact edge to outer edge, in thicknesses; None for what ``truncation`` requires.
-        coarsening: growth over that of the answer; one except in a companion.
+        coarsening: growth over that of the answer: one in the answer, `COARSER` in its companion.
     """
 
     order: int = 4
@@ -66,11 +71,11 @@ class Discretisation:
 
     @property
     def pair(self) -> ElementPair:
-        """The element pair of the answer."""
+        """Element pair P_k-P_(k-1) of this order."""
         return taylor_hood(self.order)
 
     def refined(self) -> Self:
-        """Cells half as large; the edge cell shrinks like the error of the others, by 2^(2k)."""
+        """Cells half as large, whose energy errs 2^(2k) times less; the other lengths change by this factor."""
         return replace(
             self,
             growth=max(self.growth / 2, 0.02),
@@ -80,7 +85,7 @@ class Discretisation:
         )
 
     def coarser(self) -> Self:
-        """Settings of the companion: every length and tolerance is coarser, so that each of them contributes."""
+        """Settings of the companion: all are coarser, so that each of them contributes to the stated error."""
         return replace(
             self,
             coarsening=COARSER * self.coarsening,
@@ -92,10 +97,11 @@ class Discretisation:
         )
 
     def outer_radius(self, parts: Parts) -> float:
-        """Radius at which a section ends, by the contact radius.
+        """Radius at which a section ends, over the contact radius.
 
-        Disturbances die out exponentially, those of stiff parts on soft ones within the root of their ratio. A
-        half-space ends as far away as it is thick.
+        In a layer of thickness h disturbances decay like ``exp(-d / (h sqrt(c)))`` with the distance d from the
+        contact, c the ratio of the largest modulus to the smallest: a stiff sheet on a soft one spreads them. The
+        section ends where this is ``truncation``. A half-space ends as far away as it is thick.
         """
         if parts.has_base:
             return float(parts.thicknesses[-1])
@@ -112,10 +118,11 @@ def contact_section(layer: ElasticLayer, indenter: ScaledIndenter, settings: Dis
 
 
 def graded_points(thickness: float, indenter: ScaledIndenter, settings: Discretisation) -> Graded:
-    """(radius, cell size) at the edge, the kinks, a sharp tip, and plain vertices at the other breakpoints.
+    """(radius, cell size) of the graded points: contact edge, kinks, sharp tip, and the other breakpoints.
 
-    At the edge the energy error of the last cell falls like its size; at a kink, where the stress is merely
-    logarithmic, like its square, but the L2 error of the pressure like its root.
+    With the size c of the last cell the energy error falls like c at the edge, where the stress of a flat punch goes
+    like d^(-1/2) with the distance d. At a kink the stress goes like log d: the energy error falls like c^2, but the
+    L2 error of the pressure like c^(1/2). Other breakpoints need no small cells.
     """
     nearest = min(1.0, thickness, 1.0 - indenter.last_kink, indenter.left_to_upright_end)
     edge_cell = max(settings.edge_cell * nearest, SMALLEST)
@@ -130,5 +137,5 @@ def graded_points(thickness: float, indenter: ScaledIndenter, settings: Discreti
 
 def narrowest_radius(layer: ElasticLayer, profile: Profile, coarsening: float = 1.0) -> float:
     """The smallest contact radius [m] beyond a flat end whose ring is meshed; zero for profiles without a flat end."""
-    ring = NARROWEST * coarsening**6  # ten times wider in a companion
+    ring = NARROWEST * coarsening**6  # eleven times wider in a companion
     return profile.flat_radius + ring * min(profile.flat_radius, layer.surface.thickness)

@@ -1,11 +1,13 @@
 r"""The weak forms as they stand on paper, in scikit-fem's words: the definition that `assembly` must equal.
 
 Strain of an axisymmetric displacement (u_r, u_z) at radius r: in-plane ``sym grad u`` and hoop ``u_r / r``.
-With the deviator taken in three dimensions and the pressure p = -K div u as an unknown,
+With e(u) the deviator of this strain in three dimensions, mu the shear modulus, K the bulk modulus and the pressure
+p = -K div u as an unknown, the bilinear form for test functions v and q is
 
-    2 pi int [ 2 mu dev(u) : dev(v) - p div v - q div u - p q / K ] r dr dz,      sigma = 2 mu dev(u) - p I.
+    2 pi int [ 2 mu e(u) : e(v) - p div v - q div u - p q / K ] r dr dz,      sigma = 2 mu e(u) - p I.
 
-1/K = 0 is the incompressible layer; no term is singular for 0 <= nu <= 1/2.
+The terms in q impose div u = -p / K. An incompressible layer has 1/K = 0, and no term is singular for
+0 <= nu <= 1/2.
 """
 
 from __future__ import annotations
@@ -24,7 +26,7 @@ def bilinear(form: Callable[..., Any]) -> BilinearForm:
 
 
 def measure(w: Any) -> Any:
-    """``2 pi r``: the circumference over which an axisymmetric integrand extends."""
+    """``2 pi r``: circumference of the circle at r. With it scikit-fem's integral ``dr dz`` is one over the volume."""
     return 2 * np.pi * w.x[0]
 
 
@@ -40,13 +42,13 @@ def strain_product(u: Any, v: Any, w: Any) -> Any:
 
 @bilinear
 def shear(u: Any, v: Any, w: Any) -> Any:
-    """``2 mu dev(u) : dev(v)``; keyword mu."""
+    """``2 mu e(u) : e(v)``, from ``e(u) : e(v) = eps(u) : eps(v) - div u div v / 3``; keyword mu."""
     return 2 * w.mu * (strain_product(u, v, w) - divergence(u, w) * divergence(v, w) / 3) * measure(w)
 
 
 @bilinear
 def volume(u: Any, v: Any, w: Any) -> Any:
-    """``K div u div v``, of the displacement formulation; keyword bulk."""
+    """``K div u div v``, which replaces the terms in p and q in the displacement formulation; keyword bulk for K."""
     return w.bulk * divergence(u, w) * divergence(v, w) * measure(w)
 
 
@@ -64,15 +66,15 @@ def pressure_mass(p: Any, q: Any, w: Any) -> Any:
 
 @bilinear
 def displacement_gradient(u: Any, v: Any, w: Any) -> Any:
-    """``grad u : grad v + u_r v_r / r^2``: the H1 product in which the inf-sup constant is measured."""
+    """``grad u : grad v + u_r v_r / r^2``: the H1 product for u in the inf-sup constant (`verification`)."""
     return (ddot(grad(u), grad(v)) + (u[0] / w.x[0]) * (v[0] / w.x[0])) * measure(w)
 
 
 @bilinear
 def membrane(u: Any, v: Any, w: Any) -> Any:
-    """``(2 mu / r) u_r v_r`` on the outer edge of layers that slide; keyword mu.
+    """``(2 mu / r) u_r v_r`` on the outer edge of layers with a face that slides; keyword mu.
 
-    Far away each sheet that slides is in plane stress with u_r = C / r, hence sigma_rr = -2 mu u_r / r at every depth
-    and every nu.
+    It stands for the layer beyond the edge. Far away each sliding sheet is in plane stress with u_r = C / r. Hence
+    sigma_rr = E/(1 - nu^2) (u_r,r + nu u_r/r) = -2 mu u_r / r, at every depth and every nu.
     """
     return 2 * w.mu / w.x[0] * u[0] * v[0] * measure(w)
