@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from math import sqrt
 
 import numpy as np
 
@@ -161,14 +162,14 @@ def rubbed_path(
 
 
 def _traction_errors(fine: Blend, coarse: Blend) -> dict[str, float]:
-    """Changes of p and q on half the cells: root mean square with weight 2 pi r, relative to that of p."""
+    """Errors of p and q by half the cells: root mean square with weight 2 pi r, relative to that of p."""
     radius, weight = (values.ravel() for values in fine.contact.surface.tractions.gauss(2))
     both = [
         [each.contact.surface.tractions.evaluate(each.nodal(name), radius) for name in ("pressure", "shear")]
         for each in (fine, coarse)
     ]
     size = float(weight @ both[0][0] ** 2)
-    changes = [float(np.sqrt(weight @ (first - second) ** 2 / size)) for first, second in zip(*both, strict=True)]
+    changes = [SAFETY * sqrt(weight @ (first - second) ** 2 / size) for first, second in zip(*both, strict=True)]
     return dict(zip(("pressure", "tangential_traction"), changes, strict=True))
 
 

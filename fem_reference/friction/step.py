@@ -314,6 +314,8 @@ def _towards(
     loading = target > start
     while True:
         ahead = active if loading else active - 1
+        if not ahead and control is at_force and target > 0:
+            return advance(contact, state, active, control(target)), active
         if not ahead:
             return at_rest_again(contact, state), 1
         if ahead >= len(contact.profile) - SPARE:
@@ -321,7 +323,8 @@ def _towards(
         event = advance(contact, state, ahead, touching)
         short = target - measure(event) if loading else measure(event) - target
         if short <= CLOSE * abs(target):
-            return advance(contact, state, active, control(target)), active
+            reached = advance(contact, state, active, control(target))
+            return (reached, active) if reached.force >= 0 else (at_rest_again(contact, state), 1)
         state, active = event, active + 1 if loading else active - 1
 
 

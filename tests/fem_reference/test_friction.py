@@ -217,6 +217,16 @@ def test_a_history_of_force_is_that_of_its_depths():
     assert again.dissipated_energy == pytest.approx(first.dissipated_energy, rel=2e-2, abs=1e-9)
 
 
+def test_what_is_hardly_pressed_any_more_carries_its_force_and_never_pulls():
+    """Below the force of one cell the contact was lost although a force was prescribed; a depth there was pulled."""
+    time, forces = np.arange(5.0), [0.0, 1e-2, 1e-8, 1e-9, 1e-10]
+    held = COARSE.solve(rubbed(0.3, layer(0.3), ForceHistory(time=time, force=forces)))
+    assert np.all(held.indentation_depth[1:] > 0.0)
+    np.testing.assert_allclose(held.normal_force, forces, rtol=1e-12)
+    depths = held.indentation_depth[1] * np.array([0.0, 1.0, 1e-4, 1e-5, 0.0])
+    assert COARSE.solve(rubbed(0.3, layer(0.3), DepthHistory(time=time, depth=depths))).normal_force.min() == 0.0
+
+
 def followed_strip(cells):
     scene = rubbed(0.2, layer(0.5), ContactRadii([2.0]))
     maker = growth.StripMaker(scene, Fem().discretisation, growth.StageLog())
