@@ -41,7 +41,7 @@ COVERAGE = 2.0
 
 @dataclass(frozen=True, kw_only=True)
 class Study:
-    """What a case asks for beside its scenes: tasks, and verdicts and records of their answers.
+    """What a case needs in addition to its scenes: tasks, and verdicts and records of their answers.
 
     Attributes:
         name: unique within the case.

@@ -343,7 +343,7 @@ def pressure_presses(method: Method, answer: Solution) -> float | None:
     # Its pressure is singular at the edge.
     if isinstance(answer.scene.indenter, FlatPunch):
         return None
-    # Irrational, so that neither the tip of a cone nor a rim is hit.
+    # Irrational, so that neither the tip of a cone nor an edge is hit.
     rho = np.sqrt(np.arange(1, 50) / 50.3)
     p = answer.pressure(float(answer.contact_radius[-1]) * rho, step=len(answer) - 1)
     return float(max(-p.min(), 0.0) / p.max())

@@ -211,7 +211,7 @@ def _elastic_errors(scene: Scene, springs: Springs, state: State, values: Spring
     zero = np.zeros(a.size)
     moved = zero if by_radius or is_punch else depth * _sensitivity(scene, springs, seen)
     of_depth, of_force = force if is_punch else force + depth, force + (depth if by_radius else 0.0)
-    # Between the rim of a flat end and the edge pressures go with a - b.
+    # Between the edge of a flat end and that of the contact pressures go with a - b.
     pressure = whole + moved / np.maximum(1 - flat / a, 1e-12)
     # Outside thin layers w is a small difference of terms of the size of phi, K/a times the depth.
     displacement = (force if is_punch else depth) + moved + EPS * values.K / a

@@ -132,7 +132,7 @@ def _errors(scene: Scene, path: ContactPath, found: Expansion, fields: ShapeFiel
     pressure = path.normal_force / (np.pi * path.contact_radius**2)
 
     def of_pressure() -> FloatArray:
-        """The second order, largest beside the edge, and what truncated harmonics leave."""
+        """The second order, largest near the edge, and the error of truncated harmonics."""
         left = np.array([fields.truncation(step) for step in range(len(path))])
         return np.asarray(SAFETY * (_BESIDE_EDGE * size + left / pressure) + of_mean)
 

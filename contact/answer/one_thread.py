@@ -25,7 +25,7 @@ class OneThread(ContextDecorator):
         self._threads_before: dict[str, tuple[Any, int]] = {}
 
     def __enter__(self) -> None:
-        """Hold every loaded BLAS that is not held yet."""
+        """Set every loaded BLAS to one thread, and store its number of threads before."""
         with self._lock:
             self._inside += 1
             for library in _loaded_libraries("scipy.linalg._flapack" in sys.modules):

@@ -59,7 +59,7 @@ def creep_of(solid: Relaxation) -> tuple[float, FloatArray, FloatArray]:
     """J(t) = J_inf - sum_j r_j exp(-t/lambda_j): J_inf [1/Pa], r_j [1/Pa] and lambda_j [s], each of shape (k,).
 
     With D(s) = G_inf + eta s + sum_j G_j s tau_j/(1 + s tau_j) its transform is 1/(s D), and D(-1/lambda_j) = 0. The
-    zeros are eigenvalues of the equations of the strains in the dashpots. A dashpot eta has no branches beside it.
+    zeros are eigenvalues of the equations of the strains in the dashpots. A dashpot eta allows no branches.
     """
     m, moduli, times = solid.moduli.size, solid.moduli, solid.times
     if solid.viscosity > 0.0:
