@@ -281,7 +281,7 @@ class Equal(PerScene):
         return self._worst(scene, label, answer, others)[0]
 
     def stated(self, scene: CaseScene, answers: list[Answer]) -> dict[str, float]:
-        """Return the stated error of the worst step, and what the inputs leave open."""
+        """Return the stated error of the worst step, and the relative uncertainty by the inputs."""
         answer, *others = answers
         values, q = self.values(scene), answer.quantities[self.quantity]
         step = self._worst(scene, answer.method, answer, others)[1]

@@ -237,7 +237,7 @@ def _panels(middle: FloatArray, pole: FloatArray, fixed: FloatArray) -> tuple[ND
 
 
 def _row_factors(transfer: Transfer, k: FloatArray, material: Material) -> FloatArray:
-    """What multiplies p^ and the Bessel function of each row."""
+    """Factors of p^ times the Bessel function in each row."""
     u, w, q, p = transfer
     _, nu, stiffens, turns, _ = material
     m, share = nu / (1 - nu), (1 + nu) / (3 * (1 - nu))

@@ -68,7 +68,7 @@ def equilibria_on_layers(scenes: Sequence[Scene], sizes: Sizes) -> FloatArray:
 
 
 def _radii(springs: Springs, quantity: Quantity, targets: FloatArray) -> FloatArray:
-    """Contact radii [m] with these depths [m] or forces over E* [m^2]; infinite where the search does not end."""
+    """Contact radii [m] with these depths [m] or forces over E* [m^2]; infinite where the search does not converge."""
     y, search = np.log(targets), RadiusSearch(springs, may_fall=False)
     start = search.scale(_on_half_space(springs, quantity, y))
     slope, before = np.full_like(start, 2.0 if quantity == "force" else 1.0), np.full((2, y.size), np.nan)

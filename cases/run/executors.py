@@ -234,7 +234,7 @@ class Window(Generic[A, T]):
         self.broken: list[A] = []
 
     def results(self, arguments: Iterable[A]) -> Iterator[tuple[A, T]]:
-        """Hand over arguments, taken one by one while there is room, and give each with its result, first come first.
+        """Submit arguments one by one while workers are free, and yield each with its result as soon as it is finished.
 
         Raises:
             Exception: whatever a call raised, but for a process that died: its argument is in `broken`.

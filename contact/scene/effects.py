@@ -96,7 +96,7 @@ class KelvinVoigt(Viscoelasticity):
 
     @property
     def relaxation(self) -> Relaxation:
-        """G for ever, and a bare dashpot eta; no branches."""
+        """G constant in time, and a dashpot eta; no branches."""
         return Relaxation(
             long_term_modulus=self.shear_modulus, moduli=np.empty(0), times=np.empty(0), viscosity=self.viscosity
         )

@@ -103,7 +103,7 @@ def force_of_depth(curve: ForceCurve, solid: Relaxation, time: FloatArray, depth
 
 
 def _withdrawn(solid: Relaxation, time: FloatArray, d: FloatArray, phi: FloatArray, start: int) -> FloatArray:
-    """F/3 [N] from the instant `start` on, with t1 by halving for all instants at once."""
+    """F/3 [N] from the instant `start` on; bisection gives t1 of all instants together."""
     parts, depth_parts = ([convolved(time, values, tau) for tau in solid.times] for values in (phi, d))
     late, n = time[start:], start - 1
 

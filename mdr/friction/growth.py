@@ -194,7 +194,7 @@ class Growth:
 
 
 class _Densities:
-    """Phi and (1 - t^2) Phi' of unit punches of given sizes, each at its own t, from the table."""
+    """Phi and (1 - t^2) Phi' of unit punches of given sizes, each at its own t, `short` = 1 - t, from the table."""
 
     def __init__(self, punches: Punches, size: FloatArray) -> None:
         self.of, self.end, self.size = punches.largest, punches.end, size[:, None]
