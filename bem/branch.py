@@ -1,12 +1,12 @@
-"""Equilibria over the contact radius: folds, stability, what a withdrawal meets, where contact is lost, Eqs. (40)-(46).
+"""Equilibria over the contact radius: folds, stability, path of a withdrawal, loss of contact, Eqs. (40)-(46).
 
 Depth and force are functions of the contact radius a, from springs or from discs of cells. Under a control q - the
 depth, the force or the displacement depth + force/K of a machine of stiffness K - an equilibrium is stable where q
 grows with a. Along a = b + (y - y_b)^2, b the last breakpoint, they are smooth functions of y: the elongation starts
 like sqrt(a), and g starts like sqrt(a - b) behind a kink. Folds are roots of polynomials, all of which are found.
 
-Withdrawn slowly, a contact holds as long as some state of smaller or equal radius bears what is prescribed: from an
-unstable state the front runs inwards to the next stable one. So contact is lost at the smallest q within the start.
+In a slow withdrawal contact persists while some state of smaller or equal radius has the prescribed q: from an unstable
+state the front runs inwards to the next stable one. So contact is lost at the smallest q at radii up to the first.
 """
 
 from __future__ import annotations
@@ -28,15 +28,15 @@ from contact.scene.loading import Controlled
 
 CONTROLS: Final[tuple[Controlled, ...]] = ("displacement", "force", "machine")
 DEPTH, FORCE, MACHINE = range(3)
-# Share of the largest y below which nothing is a fold: closer to the tip all values are roundings.
+# y over its largest value below which folds are ignored: closer to the tip rounding errors dominate.
 TIP: Final = 1e-5
-# Distance in half a panel within which a root may lie outside of it, and two roots are one; a hundredth of it counts
-# roundings where a section begins without slope.
+# Distance over half a panel by which a root may lie outside of it, and below which two roots are one. A hundredth of it
+# counts rounding errors as folds where a section begins with zero slope.
 EDGE: Final = 1e-6
 # Steps of a bracketed inversion; bisection alone needs 53.
 MOST_STEPS: Final = 60
 
-# Depth [m] and force [N], shape (2, n), at radii b + d: b [m] where a section begins, d [m] beyond it, shape (n,).
+# Depth [m] and force [N], shape (2, n), at radii b + d: b [m] at the start of a section, d [m] beyond it, shape (n,).
 Sampler: TypeAlias = Callable[[float, FloatArray], FloatArray]
 
 
@@ -47,8 +47,8 @@ class Branch:
     Attributes:
         functions: Depth [m], force [N] and displacement of the machine [m] over y.
         section_ends: y at zero, at the breakpoints and at the largest radius, shape (sections + 1,).
-        radii: a [m] there.
-        compliance: 1/K [m/N] of a machine; zero if it is rigid, and then nothing controls its displacement.
+        radii: a [m] at `section_ends`.
+        compliance: 1/K [m/N] of a machine; zero without a machine, whose displacement is no control then.
     """
 
     functions: Piecewise
@@ -70,7 +70,7 @@ class Branch:
             compliance: 1/K [m/N] of a machine.
 
         Raises:
-            NotConvergedError: If the samples are rougher than that.
+            NotConvergedError: If the errors of the samples exceed `error`.
         """
 
         def section(start: float, low: float, high: float) -> Piecewise:
@@ -95,11 +95,11 @@ class Branch:
 
     @property
     def controls(self) -> tuple[int, ...]:
-        """All that may be controlled."""
+        """Indices of the quantities that may be controlled."""
         return (DEPTH, FORCE, MACHINE) if self.compliance else (DEPTH, FORCE)
 
     def radius(self, y: FloatArray, flat_radius: float = 0.0) -> FloatArray:
-        """a [m] at y; over a flat end a - b [m] with the digits that a loses beside it."""
+        """a [m] at y; over a flat end of radius b exact a - b [m]."""
         section = np.clip(self.section_ends.searchsorted(y, side="right") - 1, 0, self.radii.size - 2)
         excess = (self.radii[section] - flat_radius) + (y - self.section_ends[section]) ** 2
         return np.asarray(np.minimum(excess, self.radii[-1] - flat_radius))
@@ -114,7 +114,7 @@ class Branch:
         return self.functions(y)[:MACHINE]
 
     def at(self, control: int, y: float) -> float:
-        """q [m, N or m] at y; the tip itself bears nothing, and a kink has the values from inside."""
+        """q [m, N or m] at y: zero at y = 0, at a kink the limit from smaller radii."""
         return float(self.functions(np.array([y]))[control, 0]) if y > 0.0 else 0.0
 
     def state(self, y: float) -> tuple[float, float, float]:
@@ -126,7 +126,7 @@ class Branch:
         return np.asarray(self.functions.slope(y)[control] > 0.0)
 
     def folds(self, control: int) -> list[float]:
-        """All y > 0 where q turns, increasing."""
+        """All y > 0 where dq/dy changes its sign, increasing."""
         return self._folds[control]
 
     def solutions(self, control: int, target: FloatArray) -> FloatArray:
@@ -134,7 +134,7 @@ class Branch:
         found = []
         for low, high in pairwise([0.0, *self.folds(control), self.end]):
             if self.stable(control, np.array([0.5 * (low + high)]))[0]:
-                # What lies in a step of rounded values at a kink is held there.
+                # Rounded values may jump at a kink; targets within the jump have their solution there.
                 ends = self.functions(np.array([low, np.nextafter(low, high), high]))[control]
                 inside = (target >= ends[:2].min()) & (target <= ends[2])
                 found.append(np.full(target.shape, np.nan))
@@ -153,7 +153,7 @@ class Branch:
 
     @property
     def strength(self) -> float:
-        """Largest tension at a fold [N], infinite without a fold: pressing as hard shows all of the way back."""
+        """Largest tension at a fold [N], infinite without a fold."""
         return max((-self.at(FORCE, y) for y in self.folds(FORCE)), default=np.inf)
 
     def loss(self, control: int, start: float) -> float:
@@ -163,7 +163,7 @@ class Branch:
     def largest_tension(self, control: int, start: float) -> float:
         """y of the smallest force on the way to the loss of contact.
 
-        A jump lands under less tension than it left with.
+        A jump of the front ends at a smaller tension than it began with.
         """
         lost = self.loss(control, start)
         if control == FORCE:
@@ -182,7 +182,7 @@ class Branch:
         }
 
     def critical_points(self, start: float, *, pinned: bool) -> tuple[CriticalPoint, ...]:
-        """Where the front sets off, all folds on the way in, and where first touch lands.
+        """The start of the moving front, all folds at smaller radii, and the state after first touch.
 
         Args:
             start: y from which the indenter is withdrawn.
@@ -203,12 +203,12 @@ class Branch:
         return [y for y in self.folds(control) if y < start]
 
     def _is_met(self, control: int, y: float, start: float) -> bool:
-        """Whether a withdrawal comes by: every state farther out has a larger q."""
+        """Whether a withdrawal passes the state at y: every state of larger radius has a larger q."""
         outside = [one for one in (*self._within(control, start), start) if one > y]
         return all(self.at(control, one) >= self.at(control, y) for one in outside)
 
     def _kind(self, control: int, y: float) -> str:
-        """Withdrawing, a fold is met from above: what is stable there loses its stability."""
+        """Kind of a fold: "pull-off" if the states of slightly larger radius are stable, else "snap-in"."""
         return "pull-off" if bool(self.stable(control, np.array([y * (1.0 + EDGE)]))[0]) else "snap-in"
 
     @cached_property
@@ -225,7 +225,7 @@ class Branch:
         return list(points[1:-1][grows[1:] != grows[:-1]].tolist())
 
     def _roots(self, control: int) -> list[FloatArray]:
-        """Roots of the slope on every panel where its mean does not exclude them, and jumps of its sign in between."""
+        """Roots of the slope in panels whose coefficients do not exclude one, and its sign changes between panels."""
         slope, edges = self.functions.slope.series[:, control], self.functions.edges
         before, after = slope.sum(axis=0)[:-1], np.asarray(chebyshev.chebval(-1.0, slope))[1:]
         doubtful: NDArray[np.intp] = np.flatnonzero(np.abs(slope[0]) <= np.abs(slope[1:]).sum(axis=0))

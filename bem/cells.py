@@ -11,7 +11,8 @@ over a unit square. The cell lets go when this pays for the new surface, U = dga
     tau_c = sqrt(E* dgamma/(kappa s)).
 
 Close to its edge a layer responds like the half-space, so the constant serves layers whose cells are small against the
-thickness. At each depth all cells of the rim beyond tau_c let go and the pressure is solved anew, until none is left.
+thickness. At each depth all edge cells whose tension exceeds tau_c are removed and the pressure is solved again, until
+none does.
 """
 
 from __future__ import annotations
@@ -47,7 +48,7 @@ FOLD: Final = 2e-3
 COLLAPSE: Final = 0.7
 # Largest error of the displacement under the contact; ten times it moves pull-off forces by 0.3 %.
 TOLERANCE: Final = 1e-3
-# Cells by which the rim may lag: the floor of stated errors, over the contact radius.
+# Error of the edge in cells; over the contact radius it is the floor of stated errors.
 LAG: Final = 2.0
 NAMES: Final = ("contact_radius", "indentation_depth", "normal_force", "contact_stiffness")
 
@@ -169,7 +170,7 @@ def solve_cells(scene: Scene, points: int, threads: int, settings: dict[str, Any
 
 
 def _path(fine: CellGrid, coarse: CellGrid) -> dict[str, Any]:
-    """Numbers of the contacts at given depths."""
+    """Arguments of `ContactPath` at the given depths, with errors from the coarse grid."""
     depths = fine.scene.loading.values  # type: ignore[attr-defined]
     values, others = (dict(zip(NAMES, grid.followed(depths), strict=True)) for grid in (fine, coarse))
     errors = {name: _errors(values[name], others[name], fine.size / fine.radius) for name in NAMES}

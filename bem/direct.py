@@ -1,4 +1,4 @@
-"""The equation of one contact solved for its profile, point by point: a second route beside `bem.equation`.
+"""The equation of one contact solved for its profile, point by point: an alternative to `bem.equation`.
 
 The pressure's Abel density phi on [0, a] obeys
 

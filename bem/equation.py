@@ -71,7 +71,7 @@ class Sizes(NamedTuple):
     def polynomials(self, octave: int, *, is_graded: bool, kinked: bool) -> int:
         """Number of polynomials for contacts of a/h up to 2^octave.
 
-        On graded layers B has (a - t) ln(a - t) at the edge, and series of kinked profiles converge slowly beside it.
+        On graded layers B has (a - t) ln(a - t) at the edge, and series of kinked profiles converge slowly near it.
         """
         count = self.least + int(self.rate * np.sqrt(2.0**octave))
         return count + int((240 if kinked else 60) * (1 + self.extra / 12)) if is_graded else count

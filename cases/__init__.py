@@ -1,7 +1,7 @@
 """Cases: scenes, methods and claims; answers, verdicts; what accuracy costs and where methods break.
 
 - an *answer* (``answers``): the result of one method on one scene, one line of a file;
-- a *claim* (``claims``, ``convergence``): yields the tasks it needs beside the case's scenes, and judges the answers;
+- a *claim* (``claims``, ``convergence``): yields the tasks it needs besides the case's scenes, and judges the answers;
 - a *verdict* (``verdicts``): a claim on one scene, judged by one rule (``rules``); a whole run is in ``runs``.
 
 ``case`` says how a case is written, ``library`` holds the cases, one file each. ``run`` solves tasks, ``gate`` compares

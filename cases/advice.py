@@ -162,6 +162,7 @@ def without(scene: Scene, parts: Sequence[str]) -> Scene:
 
 
 def _ablation(method: Method, whole: Solution, part: str) -> Effect:
+    """The change of the answer when the scene is solved without a part."""
     from cases.studies import Effect  # noqa: PLC0415 - a single answer needs no records of runs
 
     entry = partial(Effect, case="", scene="", method=method.name, part=part, seconds=_seconds(whole))
@@ -274,7 +275,7 @@ _JKR_HOLDS = 20.0
 _SMALL_INERTIA = 0.1
 # Coefficient of friction between wet soft layers and smooth indenters, as an order of magnitude.
 _TYPICAL_FRICTION = 0.1
-# Relative accuracy of the notes beside an answer: that of careful indentation tests.
+# Relative accuracy of the notes of an answer: that of careful indentation tests.
 _USUAL_ACCURACY = 0.01
 # Shares of the force for which notes state the largest coefficient of friction that changes less.
 _GOOD_TO = (0.01, 0.05)
@@ -320,7 +321,7 @@ def validity_lines(scene: Scene, answer: Solution) -> list[str]:
 
 
 def numbers(scene: Scene, answer: Solution, accuracy: float) -> list[Number]:
-    """The numbers that apply to a solved scene; those of its body of revolution where the indenter is none."""
+    """The dimensionless numbers of a solved scene; an indenter that is not round counts as its round substitute."""
     if isinstance(scene.indenter, Shape):
         scene = scene.replace(indenter=scene.indenter.substitute)
     found = [_thickness(scene, answer, accuracy), _strain(scene, answer), _friction(scene, answer)]

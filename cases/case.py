@@ -18,7 +18,7 @@ SUITES = (*USUAL_SUITES, "referees")
 
 @dataclass(frozen=True, kw_only=True)
 class Sampling:
-    """Fields that a run keeps of an answer beside its quantities.
+    """Fields of an answer that a run records in addition to its quantities.
 
     Attributes:
         ring_edges: the pressure of the last step is kept at the Gauss nodes of the rings between these radii [m];
@@ -116,7 +116,7 @@ class Case:
         question: what a reader learns.
         equations: of the source.
         text: the paper's body: set-up, what to expect and why.
-        suites: "ci" (minutes) and "nightly"; "referees" asks solvers of others.
+        suites: "ci" (minutes) and "nightly"; "referees" runs outside solvers.
         scenes: solved by every method.
         methods: compared methods.
         claims: what must hold and what is measured (`cases.claims.Study`).

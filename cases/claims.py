@@ -41,7 +41,7 @@ COVERAGE = 2.0
 
 @dataclass(frozen=True, kw_only=True)
 class Study:
-    """What a case asks for beside its scenes: tasks, and verdicts and records of their answers.
+    """What a case needs in addition to its scenes: tasks, and verdicts and records of their answers.
 
     Attributes:
         name: unique within the case.
@@ -281,7 +281,7 @@ class Equal(PerScene):
         return self._worst(scene, label, answer, others)[0]
 
     def stated(self, scene: CaseScene, answers: list[Answer]) -> dict[str, float]:
-        """Return the stated error of the worst step, and what the inputs leave open."""
+        """Return the stated error of the worst step, and the relative uncertainty by the inputs."""
         answer, *others = answers
         values, q = self.values(scene), answer.quantities[self.quantity]
         step = self._worst(scene, answer.method, answer, others)[1]

@@ -83,26 +83,26 @@ class Order(Claim):
             yield tuple(_grid(case, scene, replace(use, settings=settings)) for settings in grids)
 
     def _references(self, case: Case, scene: CaseScene) -> Iterator[Task]:
-        """The task whose answer is the reference, if one is."""
+        """The task whose answer is the reference, if the reference is an answer."""
         if isinstance(self.against, MethodUse):
             yield _grid(case, scene, self.against)
         elif self.against:
             yield case.task(scene, case.use(scene, self.against))
 
     def judge(self, case: Case, answers: Table) -> Iterator[Verdict]:
-        """Judge each scene."""
+        """Yield the verdict of each scene whose grids and reference were all run; the first failed answer fails it."""
         for scene, use in self.places(case):
-            own = [answers.get(task.identity) for task in self.needed(case, scene, use)]
-            if None not in own:
-                found = [one for one in own if one is not None]
+            solved = [answers.get(task.identity) for task in self.needed(case, scene, use)]
+            if None not in solved:
+                found = [answer for answer in solved if answer is not None]
                 judged = first_missing(*found) or self._order(self._study(case, scene, use, answers))
                 yield self.verdict(case, scene, use, found[0], judged=judged)
 
     def records(self, case: Case, answers: Table) -> Iterator[Convergence]:
         """Yield the study of each scene whose grids were all solved."""
         for scene, use in self.places(case):
-            own = [answers.get(task.identity) for task in self.needed(case, scene, use)]
-            if all(one is not None and one.solved for one in own):
+            solved = [answers.get(task.identity) for task in self.needed(case, scene, use)]
+            if all(answer is not None and answer.solved for answer in solved):
                 yield self._study(case, scene, use, answers)
 
     def expected(self, scene: CaseScene) -> float | None:
@@ -161,7 +161,7 @@ class Order(Claim):
     def _behaviour(
         self, values: list[float], errors: list[float], lengths: list[float], scale: float, uncertainty: float
     ) -> tuple[str, float | None, float | None]:
-        """Class, order and digits: of the errors where the reference is ten times as exact as the finest grid."""
+        """Class, order, digits: from errors if the least is ten times the uncertainty, else from values."""
         if self.formal_order is None:
             known = errors or [abs(value - values[0]) for value in values[1:]]
             return "spectral", None, digits_per_refinement([error / scale for error in known], self.floor)
@@ -177,7 +177,7 @@ class Order(Claim):
     def _indices(
         self, values: list[float], lengths: list[float], order: float | None, scale: float
     ) -> list[float | None]:
-        """Without a reference the error of each grid by the grid convergence index; None for the coarsest."""
+        """The grid convergence index of each grid, its error estimate without a reference; None for the coarsest."""
         if order is None or self.formal_order is None:
             return [None] * len(values)
         formal = self.formal_order

@@ -58,7 +58,7 @@ class Ablation(Study):
                     yield _unanswered(whole, part, NOTHING_PULLS)
 
     def _wholes(self, case: Case) -> Iterator[Task]:
-        """The scene by each method that is left on it."""
+        """The task of the whole scene for each method of this claim that solves it."""
         scene = case.by_name.get(self.scene)
         for use in case.methods_of(scene) if scene else ():
             if scene and use.label in self.methods:
@@ -66,18 +66,21 @@ class Ablation(Study):
 
 
 def _ablated(whole: Task) -> Iterator[tuple[str, Task]]:
+    """Each part of the scene with the task that solves the scene without it."""
     for part in parts_of(whole.problem):
         if not nothing_left(whole.problem, part):
             yield part, whole.changed(f"without {part}", without(whole.problem, [part]))
 
 
 def _effect(whole: Answer, part: str, less: Answer) -> Effect:
+    """Effect of a part: the changes from the answer to the whole scene to that without the part, and its run time."""
     if not less.solved:
         return _unanswered(whole, part, less.reason)
     return replace(_unanswered(whole, part, ""), seconds_without=less.seconds, changes=dict(_changes(whole, less)))
 
 
 def _unanswered(whole: Answer, part: str, remark: str) -> Effect:
+    """An effect without changes; the remark says why the scene without the part was not solved."""
     return Effect(
         case=whole.case, scene=whole.scene, method=whole.method, part=part, seconds=whole.seconds, remark=remark
     )

@@ -60,7 +60,7 @@ def _disc(radius: float, shallowest: float) -> tuple[FloatArray, FloatArray]:
 
 
 def _force_balance(inside: Inside, radius: float, depths: FloatArray, force: float) -> FloatArray:
-    """Force on top of a cylinder minus the forces on its bottom and side."""
+    """Force on top of a cylinder minus the forces on its bottom and side, over the force, for each depth."""
     r, area = _disc(radius, float(depths[0]))
     bottom = inside.at(r, depths[:, None] * np.ones_like(r)).axial_stress @ area
     side = []
@@ -71,39 +71,39 @@ def _force_balance(inside: Inside, radius: float, depths: FloatArray, force: flo
 
 
 def _dilatation(path: ContactPath, inside: Inside, radius: float, depths: FloatArray) -> FloatArray:
-    """div u = (1 - 2 nu)/E tr sigma, over cylinders between one depth and the next [m^3]."""
+    """Residuals of div u = (1 - 2 nu)/E tr sigma, integrated over cylinders between neighbouring depths [m^3]."""
     material = path.scene.layer.surface
     compliance = 3.0 * (1.0 - 2.0 * material.poissons_ratio) / material.youngs_modulus
     r, area = _disc(radius, float(depths[0]))
-    left = []
+    residuals = []
     for top, bottom in pairwise(depths):
         faces = inside.at(r, np.array([[top], [bottom]])).axial_displacement @ area
         z, w = _rule((top, bottom))
         side = 2.0 * math.pi * radius * float(inside.at(radius, z).radial_displacement @ w)
-        pressed = float(w @ inside.at(r, z[:, None]).hydrostatic_pressure @ area)
-        left.append(faces[1] - faces[0] + side + compliance * pressed)
-    return np.array(left)
+        pressure = float(w @ inside.at(r, z[:, None]).hydrostatic_pressure @ area)
+        residuals.append(faces[1] - faces[0] + side + compliance * pressure)
+    return np.array(residuals)
 
 
 def _gradient_law(inside: Inside, radius: float, depths: FloatArray) -> FloatArray:
-    """The gradient along z adds up to the difference of the pressure [Pa]."""
-    left = []
+    """Residuals p(z2) - p(z1) - int dp/dz dz between neighbouring depths [Pa], at one radius."""
+    residuals = []
     for top, bottom in pairwise(depths):
         z, w = _rule((top, bottom))
         ends = inside.at(radius, np.array([top, bottom])).hydrostatic_pressure
-        left.append(float(ends[1] - ends[0] - inside.at(radius, z).pressure_gradient_axial @ w))
-    return np.array(left)
+        residuals.append(float(ends[1] - ends[0] - inside.at(radius, z).pressure_gradient_axial @ w))
+    return np.array(residuals)
 
 
 def _surface(path: ContactPath, inside: Inside, a: float) -> FloatArray:
-    """sigma_zz = -p just below the surface, sigma_rz = 0 there [Pa]."""
+    """Residuals sigma_zz + p and sigma_rz just below the surface [Pa]."""
     r = a * np.array(BESIDE)
     pressed = inside.at(r, BELOW * a).axial_stress + path.pressure(r, len(path) - 1)
     return np.concatenate([pressed, inside.at(r, 0.0).shear_stress])
 
 
 def _base(path: ContactPath, inside: Inside, a: float, delta: float, mean: float) -> FloatArray:
-    """u = 0 on a bonded base, u_z = 0 and sigma_rz = 0 on an unbonded one."""
+    """u_z and u_r on a bonded base, u_z and sigma_rz on an unbonded one, over depth and mean pressure; all are zero."""
     found = inside.at(a * np.array([0.2, 0.7, 1.2]), path.scene.layer.thickness)
     bonded = path.scene.layer.support == "bonded"
     other = found.radial_displacement / delta if bonded else found.shear_stress / mean

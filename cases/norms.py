@@ -70,7 +70,7 @@ def relative_difference(first: FloatArray, second: FloatArray, rings: RingQuadra
 def ring_load_difference(first: FloatArray, second: FloatArray, rings: RingQuadrature) -> float:
     """Return the largest difference of a ring's load over the total load of the second field.
 
-    Near a sharp rim the maximum norm of a singular pressure never converges; the loads of rings do.
+    Near a sharp edge the maximum norm of a singular pressure never converges; the loads of rings do.
     """
     total = _positive(abs(float(np.sum(rings.loads(second)))), "the total load")
     return float(np.max(np.abs(rings.loads(first) - rings.loads(second)))) / total

@@ -40,7 +40,7 @@ def quantities(solution: Solution, sampling: Sampling) -> dict[str, Values]:
     else:
         names = [*(n for n in solution.ARRAYS if n != "time"), *solution.SCALARS]
     end = slice(-1, None) if isinstance(solution, HistoryPath) else slice(None)
-    # Residuals that the method publishes beside its answer, such as an energy defect.
+    # Residuals that the method returns with its answer, such as an energy defect.
     residual = {
         name: Values(unit="1", scale=1.0, values=_floats(error))
         for name, error in solution.error_estimate.items()
@@ -70,7 +70,7 @@ def _stated(solution: Solution, name: str, size: int) -> tuple[float, ...]:
 
 
 def _of_the_branch(solution: Solution, name: str) -> tuple[float, ...]:
-    """A critical point lies on the branch and is as uncertain as the state of the branch nearest to it."""
+    """Stated error of a critical point: that of the nearest state of the branch; empty for other quantities."""
     branch = _ON_BRANCH.get(name, "")
     if branch not in solution.error_estimate or not isinstance(solution, DetachmentPath):
         return ()

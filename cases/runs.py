@@ -114,7 +114,7 @@ class Run:
 
 
 def write_run(run: Judged, folder: Path) -> None:
-    """Write ``run.json``, whole or not at all; the answers lie beside it already."""
+    """Write ``run.json``, completely or not at all; the answers are in the same folder already."""
     folder.mkdir(parents=True, exist_ok=True)
     write_whole(folder / RUN, _JUDGED.dump_json(run, indent=1, exclude_defaults=True))
 

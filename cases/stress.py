@@ -132,6 +132,7 @@ class Ladder(Study):
 
 
 def _step(value: float, answer: Answer) -> Step:
+    """The step of a stress test with one value of the parameter, from its answer."""
     numbers = {name: q.values[0] for name, q in answer.quantities.items()}
     status = Status.INVALID if answer.status is Status.SKIP else answer.status
     return Step(value=value, status=status, reason=answer.reason, digits=numbers.pop(DIGITS, None), residuals=numbers)
@@ -274,6 +275,7 @@ def nudged(scene: Scene, draw: np.random.Generator) -> Scene:
 
 
 def _one_ulp(name: str, value: Any, draw: np.random.Generator) -> Any:
+    """The value changed at random by -1, 0 or 1 unit in the last place."""
     if isinstance(value, DepthFunction):
         return value
     steps = draw.integers(-1, 2, np.shape(value))
@@ -343,7 +345,7 @@ def pressure_presses(method: Method, answer: Solution) -> float | None:
     # Its pressure is singular at the edge.
     if isinstance(answer.scene.indenter, FlatPunch):
         return None
-    # Irrational, so that neither the tip of a cone nor a rim is hit.
+    # Irrational, so that neither the tip of a cone nor an edge is hit.
     rho = np.sqrt(np.arange(1, 50) / 50.3)
     p = answer.pressure(float(answer.contact_radius[-1]) * rho, step=len(answer) - 1)
     return float(max(-p.min(), 0.0) / p.max())

@@ -78,7 +78,7 @@ class Sweep:
 
 
 def read_range(text: str, scene: Scene, *, with_units: bool = False) -> Swept:
-    """Read "thickness=1um..10um:20"; with `with_units` the ends need units, as they stand beside others that have.
+    """Read "thickness=1um..10um:20"; with `with_units` the ends need units, as the other values have.
 
     Raises:
         InvalidInput: For what is no such text, or no single number of the scene.

@@ -116,7 +116,7 @@ class Origin(StrEnum):
 
 @plain(frozen=True)
 class Why:
-    """Why a claim should hold; it stands beside the claim, before anything is computed.
+    """Why a claim should be true; stated with the claim, before anything is computed.
 
     Attributes:
         origin: of the expected number.

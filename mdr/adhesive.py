@@ -49,13 +49,13 @@ from mdr.spring_bed import Springs
 
 # Contact radius [m], depth [m] and force [N].
 Triple: TypeAlias = tuple[FloatArray, FloatArray, FloatArray]
-# Relative error down to which branches are sampled. A tenth of it meets rounding.
+# Relative error of the interpolated branches. A tenth of it is below rounding.
 _SAMPLED = 2e-14
-# The companion's branch is so much longer, so that its polynomials have other nodes.
+# Length of the finer branch over that of the branch: a factor other than 1 gives its polynomials other nodes.
 _LONGER = 1.03
-# First trial radius over the flat end, in units of where height and elongation are equal on the half-space.
+# First trial radius beyond the flat end, over `balance_radius` beyond the flat end.
 FIRST_WAY = 2.0
-# a/h from which the half-space is no guide to the first trial radius.
+# First trial a/h where `balance_radius`, which is of a half-space, is too large for the layer.
 _THIN = 10.0
 # Largest number of contacts of a path that are checked for touching outside.
 _CHECKED = 12
@@ -88,7 +88,7 @@ class Adhesive:
 
     @property
     def finer(self) -> Adhesive:
-        """The companion whose change states errors."""
+        """The same scene at a finer resolution: the difference of the answers is the stated error."""
         return replace(self, springs=self.springs.finer, longer=_LONGER)
 
     @cached_property
@@ -100,7 +100,7 @@ class Adhesive:
         return np.asarray(np.sqrt(2 * np.pi * self._work * radius / self.springs.modulus) / y1)
 
     def states(self, radius: FloatArray, excess: FloatArray | None = None) -> FloatArray:
-        """Depth [m] and force [N] at contact radii [m], with their excess over a flat end if known, shape (2, n)."""
+        """Depth [m] and force [N] at contact radii [m], shape (2, n); `excess` is a - b [m] over a flat end."""
         radius = np.maximum(radius, np.finfo(float).tiny)
         values = self.springs.at(radius, excess)
         depth = values.g - self.elongation(radius, values.y1)
@@ -114,13 +114,13 @@ class Adhesive:
         return np.asarray(floor * np.stack([terms, 2 * self.springs.modulus * (terms * values.K + values.M)]))
 
     def branch(self, radius: float, compliance: float = 0.0) -> Branch:
-        """All equilibria up to a contact radius [m], held by a machine of some compliance [m/N]."""
+        """All equilibria up to a contact radius [m], with a machine of the given compliance [m/N] in series."""
         indenter, flat = self.scene.indenter, self.scene.indenter.flat_radius
         refuse_too_wide(self.springs, radius)
         if not isinstance(indenter, FlatPunch):
             RadiusSearch(self.springs, may_fall=not is_simple(self.scene)).refuse_falls(radius)
         return Branch.sampled(
-            lambda start, way: self.states(start + way, (start - flat) + way if start >= flat > 0.0 else None),
+            lambda start, step: self.states(start + step, (start - flat) + step if start >= flat > 0.0 else None),
             breakpoints=(indenter.flat_radius, *indenter.breakpoints),
             radius=radius,
             error=max(_SAMPLED, float(np.max(self.springs.floor(np.array([radius]))))),
@@ -128,7 +128,7 @@ class Adhesive:
         )
 
     def reaching(self, enough: Callable[[Branch], bool], compliance: float = 0.0) -> Branch:
-        """A branch that is long enough, or ends with the indenter."""
+        """The shortest trial branch for which `enough` is true, or the branch up to the radius of the indenter."""
         for radius in growing_radii(self.scene.indenter, self._first_radius()):
             try:
                 branch = self.branch(radius, compliance)
@@ -198,7 +198,7 @@ def solve_adhesive(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[
 
 
 def _prescribed(contacts: Adhesive) -> Triple:
-    """Radius [m], depth [m] and force [N] of the states that the loading asks for."""
+    """Radius [m], depth [m] and force [N] of the states that the loading prescribes."""
     scene, springs = contacts.scene, contacts.springs
     loading, indenter = scene.loading, scene.indenter
     if isinstance(loading, ContactRadii):
@@ -212,15 +212,15 @@ def _prescribed(contacts: Adhesive) -> Triple:
     quantity, values = DEPTH if isinstance(loading, IndentationDepths) else FORCE, loading.values
     if isinstance(indenter, FlatPunch):
         branch = contacts.branch(indenter.radius)
-        # A punch keeps its radius down to where the front sets off.
-        held = values >= branch.at(quantity, branch.end)
+        # The contact radius equals that of the punch until the load falls to that of the end of the branch.
+        at_end = values >= branch.at(quantity, branch.end)
     else:
         largest = float(values.max())
         branch = contacts.reaching(lambda b: b.at(quantity, b.end) >= largest)
-        held = np.zeros(values.size, dtype=bool)
-    y = np.where(held, branch.end, branch.smallest(quantity, values))
+        at_end = np.zeros(values.size, dtype=bool)
+    y = np.where(at_end, branch.end, branch.smallest(quantity, values))
     _refuse_missing(y, values, branch, quantity)
-    radius = np.where(held, indenter.max_radius, branch.radius(y))
+    radius = np.where(at_end, indenter.max_radius, branch.radius(y))
     at = springs.at(radius)
     if quantity == DEPTH:
         return radius, values, 2 * springs.modulus * (values * at.K - at.M)
@@ -247,29 +247,32 @@ def _path_errors(contacts: Adhesive, found: Triple, other: Triple) -> dict[str, 
     by_depth, by_force = (isinstance(loading, kind) for kind in (IndentationDepths, NormalForces))
     values, floor = springs.at(radius), np.max(springs.floor(radius), axis=0)
     scale = [max(float(np.abs(one).max()), 1e-300) for one in found]
-    # Where a depth or force is prescribed, its rounding moves the radius by the slope of the branch.
+    # The rounding error of a prescribed depth or force, divided by the branch's slope, is an error of the radius.
     row, step = FORCE if by_force else DEPTH, 1e-4
-    rise = np.abs(contacts.states(radius)[row] - contacts.states(radius * (1 - step))[row]) / (step * radius)
+    slope = np.abs(contacts.states(radius)[row] - contacts.states(radius * (1 - step))[row]) / (step * radius)
     is_sought = (by_depth or by_force) and not isinstance(contacts.scene.indenter, FlatPunch)
-    moved = np.asarray(
+    a_error = np.asarray(
         stated_error(radius, other[0], scale=scale[0])
-        + is_sought * 2 * rounding[row] / np.maximum(rise, 1e-300) / scale[0]
+        + is_sought * 2 * rounding[row] / np.maximum(slope, 1e-300) / scale[0]
     )
-    finer, growth = springs.finer.at(other[0]).K, radius * values.y1**2 / values.K
-    stiffness = stated_error(values.K, finer, scale=values.K.max(), floor=floor + growth * moved * scale[0] / radius)
+    fine_K, growth = springs.finer.at(other[0]).K, radius * values.y1**2 / values.K
+    stiffness = stated_error(values.K, fine_K, scale=values.K.max(), floor=floor + growth * a_error * scale[0] / radius)
     depth_error = stated_error(depth, other[1], scale=scale[1], floor=rounding[DEPTH] / scale[1])
     force_error = stated_error(force, other[2], scale=scale[2], floor=rounding[FORCE] / scale[2])
     errors: dict[str, StatedError] = {
-        "contact_radius": moved,
-        "indentation_depth": 0 * moved if by_depth else depth_error,
-        "normal_force": 0 * moved if by_force else force_error,
+        "contact_radius": a_error,
+        "indentation_depth": 0 * a_error if by_depth else depth_error,
+        "normal_force": 0 * a_error if by_force else force_error,
         "contact_stiffness": stiffness,
     }
-    return errors | _field_errors(contacts, found, moved)
+    return errors | _field_errors(contacts, found, a_error)
 
 
-def _field_errors(contacts: Adhesive, found: Triple, moved: FloatArray) -> dict[str, StatedError]:
-    """Stated errors of pressure and displacement: two resolutions, and the errors of the radius."""
+def _field_errors(contacts: Adhesive, found: Triple, a_error: FloatArray) -> dict[str, StatedError]:
+    """Relative stated errors of pressure and surface displacement.
+
+    They add the difference of two resolutions, rounding, and the effect of `a_error`, the relative error of the radius.
+    """
     springs, (radius, depth, force) = contacts.springs, found
     values, floor = springs.at(radius), np.max(springs.floor(radius), axis=0)
     load = np.maximum(np.abs(force), 2 * springs.modulus * values.K * np.abs(depth))
@@ -284,12 +287,12 @@ def _field_errors(contacts: Adhesive, found: Triple, moved: FloatArray) -> dict[
         return compared_displacement(pair(widest)) * float(abs(depth[widest])) / size
 
     terms = values.g + np.abs(values.g - depth)
-    beside = 2 / np.pi * np.abs(values.g - depth) * np.sqrt(2 * moved * radius.max() / radius)
+    near_edge = 2 / np.pi * np.abs(values.g - depth) * np.sqrt(2 * a_error * radius.max() / radius)
     size = max(float(np.abs(depth).max()), 1e-300)
     spread = 2 * springs.modulus * values.K * terms / (np.pi * radius**2) / scale
     return {
         "pressure": lambda: (
-            max(compared_pressure(pair(step), scale) for step in steps) + (floor + moved) * np.maximum(spread, 1.0)
+            max(compared_pressure(pair(step), scale) for step in steps) + (floor + a_error) * np.maximum(spread, 1.0)
         ),
-        "surface_displacement": lambda: displacement() + (floor * terms + beside) / size,
+        "surface_displacement": lambda: displacement() + (floor * terms + near_edge) / size,
     }

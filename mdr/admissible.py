@@ -1,6 +1,6 @@
 """Whether an equilibrium is a contact: it presses everywhere, and the surface outside is touched nowhere.
 
-A stiff film on a soft base is pressed down by the rim of a flat end like a plate and lifts off in between. A profile
+A stiff film on a soft base is pressed down by the edge of a flat end like a plate and lifts off in between. A profile
 with a hollow, or any profile on layers that soften downwards, may touch outside its circle. Both make every number
 computed for one full circle wrong, so they are refused.
 """
@@ -65,7 +65,7 @@ def refuse_pulling(surface: Surface, force: float) -> None:
     pressure = surface.pressure(radius)
     low = 1 + np.flatnonzero((pressure[1:-1] <= pressure[:-2]) & (pressure[1:-1] <= pressure[2:]))
     low = low[pressure[low] < mean]
-    if low.size:  # dips are narrow beside a rim
+    if low.size:  # dips are narrow near an edge
         share = np.arange(1.0, 6.0) / 6.0
         gaps = (radius[low + 1] - radius[low], radius[low - 1] - radius[low])
         close = np.concatenate([(radius[low, None] + gap[:, None] * share).ravel() for gap in gaps])
@@ -82,9 +82,9 @@ def _radii(surface: Surface) -> FloatArray:
     breaks = [b for b, _ in sharpest] or list(tip.breaks[:_MOST_BREAKS])
     corners = np.array([a, *breaks])
     near = min(surface.springs.unit, a) * _DISTANCES
-    beside = np.concatenate([np.subtract.outer(corners, near).ravel(), np.add.outer(corners, near).ravel()])
+    graded = np.concatenate([np.subtract.outer(corners, near).ravel(), np.add.outer(corners, near).ravel()])
     between = a * np.sin(np.pi / 2 * (np.arange(_RADII) + 0.5) / _RADII)
-    radius = np.array(sorted({*beside.tolist(), *between.tolist()}))
+    radius = np.array(sorted({*graded.tolist(), *between.tolist()}))
     inside = (radius > 1e-3 * a) & (radius < a * (1 - 1e-9)) & ~np.isin(radius, [*corners, *tip.breaks])
     return np.asarray(radius[inside])
 

@@ -150,7 +150,7 @@ def equilibria(scenes: Sequence[Scene], flat_punch: FlatPunchSource, *, progress
 
 
 def _refuse_unknown(found: FloatArray) -> None:
-    """A scene that was never computed must not pass for an answer."""
+    """Raise `NotConvergedError` if an answer is not finite."""
     unknown = np.flatnonzero(~np.isfinite(found).all(axis=0))
     if unknown.size:
         raise NotConvergedError(f"scenes[{unknown[0]}]: no finite answer, nor of {unknown.size - 1} others")

@@ -5,7 +5,7 @@
     w(r) = (2/pi) [int_0^a phi(t)/sqrt(r^2 - t^2) dt - int_0^inf (1 - chi) phi^(k) J_0(kr) dk]        outside
 
 psi is a series of even Legendre polynomials, whose Abel images are known: P_2n(t/a) becomes P_2n(u)/(P_2n(0) a u) with
-a u = sqrt(a^2 - r^2). On contacts much wider than the layer is thick psi varies over a thickness beside every kink of
+a u = sqrt(a^2 - r^2). On contacts much wider than the layer is thick psi varies over a thickness next to every kink of
 the profile. There it is a series of Legendre polynomials on each patch between kinks.
 """
 
@@ -65,9 +65,9 @@ class Surface:
         is_singular: Whether phi(a) is not zero: under a flat punch, and with adhesion.
     """
 
-    # Of psi at the edge of graded layers: `smooth_slope` leaves -corner ln[(a + t)/(a - t)] out of psi'.
+    # Logarithm of psi' at the edge of graded layers: psi' = smooth_slope - corner ln[(a + t)/(a - t)].
     corner = 0.0
-    _degree = 0  # of polynomials under the quadrature of the pressure
+    _degree = 0  # degree of the polynomials that the quadrature of the pressure integrates
 
     def __init__(self, springs: Springs, a: float, depth: float, *, is_singular: bool = False) -> None:
         self.springs, self.tip, self.sizes = springs, springs.tip, springs.sizes
@@ -82,9 +82,9 @@ class Surface:
         self._solve()
 
     def _solve(self) -> None:
-        """phi and psi as coefficients of P_2n.
+        """Solve for the coefficients of phi and psi in Legendre polynomials P_2n.
 
-        On graded layers a density that ends with phi(a) leaves psi a corner, of which polynomials miss most:
+        On graded layers psi has a logarithm at the edge if phi(a) is not zero. Polynomials converge slowly to it:
         psi = corner [(a - t) ln(1 - t/a) + (a + t) ln(1 + t/a)] + smooth, corner = -c_1 phi(a)/pi.
         """
         if self.kernel.is_uniform:
@@ -110,12 +110,12 @@ class Surface:
 
     @property
     def degree(self) -> int:
-        """Of psi."""
+        """Twice the number of coefficients of psi."""
         return 2 * self._smooth.size
 
     @property
     def edge_of_series(self) -> float:
-        """phi(a) [m] as the series has it, which differs from `edge` by what they miss."""
+        """phi(a) [m] of the truncated series; `edge` minus this is the truncation error."""
         known = self.depth - float(self.tip.transform(np.array([self.a]))[0]) + 2 * np.log(2) * self.a * self.corner
         return float(known + self._smooth.sum())
 

@@ -167,9 +167,9 @@ def is_singular(scene: Scene, radius: float) -> bool:
 
 
 def refuse_inadmissible(scene: Scene, springs: Springs, state: State) -> None:
-    """Refuse paths of which some contact pulls or is touched outside.
+    """Refuse paths with tension in a contact, or with a second contact outside one.
 
-    Where g rises the widest contact has the smallest gaps of all, so it alone is looked at for those.
+    Where g rises the widest contact has the smallest gaps, so gaps are checked for it alone.
 
     Raises:
         UnsupportedSceneError: With the contact radius and the place.
@@ -195,34 +195,34 @@ def _spread(radius: FloatArray, count: int) -> NDArray[np.intp]:
 
 
 def _elastic_errors(scene: Scene, springs: Springs, state: State, values: SpringValues) -> dict[str, StatedError]:
-    """Relative errors of what was not prescribed, each of shape (n,); those of fields when they are first read."""
+    """Relative errors, shape (n,) each, zero for the prescribed quantity; those of fields are called at first use."""
     some = _spread(state.radius, _COMPARED)
-    seen = State(*(one[some] for one in state))
-    finer, flat, a = springs.finer.at(seen.radius), springs.tip.flat, state.radius
+    states = State(*(one[some] for one in state))
+    finer, flat, a = springs.finer.at(states.radius), springs.tip.flat, state.radius
     is_punch = isinstance(scene.indenter, FlatPunch)
     by_radius, by_depth = (isinstance(scene.loading, kind) for kind in (ContactRadii, IndentationDepths))
-    companion = springs.finer.state(seen.radius, finer, None if by_radius else seen.depth)
+    companion = springs.finer.state(states.radius, finer, None if by_radius else states.depth)
     floor, whole = springs.floor(a)
     if scene.indenter.ends_upright:  # the last digit of a changes g
         floor = floor + EPS * a * springs.tip.transform_slope(a) / springs.tip.transform(a)
-    depth = _largest(values.g[some], finer.g, seen.depth) + floor
-    force = _largest(seen.force, companion.force, seen.force) + whole + floor
-    stiffness = _largest(seen.stiffness, companion.stiffness, seen.stiffness) + whole
+    depth = _largest(values.g[some], finer.g, states.depth) + floor
+    force = _largest(states.force, companion.force, states.force) + whole + floor
+    stiffness = _largest(states.stiffness, companion.stiffness, states.stiffness) + whole
     zero = np.zeros(a.size)
-    moved = zero if by_radius or is_punch else depth * _sensitivity(scene, springs, seen)
+    a_error = zero if by_radius or is_punch else depth * _sensitivity(scene, springs, states)
     of_depth, of_force = force if is_punch else force + depth, force + (depth if by_radius else 0.0)
-    # Between the rim of a flat end and the edge pressures go with a - b.
-    pressure = whole + moved / np.maximum(1 - flat / a, 1e-12)
+    # Between the edge of a flat end and that of the contact pressures go with a - b.
+    pressure = whole + a_error / np.maximum(1 - flat / a, 1e-12)
     # Outside thin layers w is a small difference of terms of the size of phi, K/a times the depth.
-    displacement = (force if is_punch else depth) + moved + EPS * values.K / a
+    displacement = (force if is_punch else depth) + a_error + EPS * values.K / a
     # Functions outlive the answer's other arrays, so they refer to a few states only.
-    pair = partial(_pair, scene, springs, seen)
+    pair = partial(_pair, scene, springs, states)
     return {
-        "contact_radius": moved,
+        "contact_radius": a_error,
         "indentation_depth": zero if by_depth else of_depth,
         "normal_force": of_force if by_radius or by_depth else zero,
-        "contact_stiffness": stiffness + moved * a * values.y1**2 / values.K,  # d(ln k_N)/d(ln a) = a y_1^2/K
-        "pressure": lambda: _pressure_error(pair, seen) + pressure,
+        "contact_stiffness": stiffness + a_error * a * values.y1**2 / values.K,  # d(ln k_N)/d(ln a) = a y_1^2/K
+        "pressure": lambda: _pressure_error(pair, states) + pressure,
         "surface_displacement": lambda: compared_displacement(pair(-1)) + displacement,
     }
 

@@ -40,7 +40,7 @@ _POLYNOMIALS = 2.0
 _NEAREST = 1e-12
 # Largest wave number of stacks times the top layer's thickness: exp(-45) is left out; with half of it 1e-10.
 _REACH = 45.0
-# Of graded layers times a, whose waves fall like exp(-kz)/k: half of it doubles the error beside the edge. Also k z.
+# Of graded layers times a, whose waves fall like exp(-kz)/k: half of it doubles the error near the edge. Also k z.
 _GRADED_REACH, _GRADED_FADED = 400.0, 40.0
 # Radians that `Sizes.nodes` = 20 Gauss nodes resolve to the last digit; with twice of it to 1e-8.
 _PHASE = 25.0
@@ -93,9 +93,10 @@ class Body:
         parts = [_from_rows(part, r, shear * self.layer.shear_modulus) for part in (np.where(own, near, 0.0), far)]
         return parts[0] + parts[1], np.abs(parts[0]) + np.abs(parts[1])
 
-    # The nine rows of a part: u_r/r and u_z times 2 G; zz, rz; rr + 2 G u_r/r; tt - 2 G u_r/r; p, dp/dr, dp/dz.
+    # Nine rows: u_r/r and u_z times 2 G; zz, rz; rr + 2 G u_r/r; tt - 2 G u_r/r; p, dp/dr, dp/dz.
 
     def _half_space(self, r: FloatArray, z: FloatArray) -> FloatArray:
+        """Rows of the half-space with the same density, shape (9, n), from h01 = I_01/r, h11 = I_11/r and the I_jk."""
         i00, i10, i20, h01, h11, i21 = self._integrals(r, z)
         nu, share = self.nu, 2 * (1 + self.nu) / 3
         rows = [-(1 - 2 * nu) * h01 + z * h11, 2 * (1 - nu) * i00 + z * i10, -i10 - z * i20, -z * i21]
@@ -104,7 +105,7 @@ class Body:
     def _integrals(self, r: FloatArray, z: FloatArray) -> FloatArray:
         """I_00, I_10, I_20, I_01/r, I_11/r, I_21, shape (6, n)."""
         surface, a = self.surface, self.a
-        # Series of graded layers converge slowly at the edge; what they leave there belongs to their transform, too.
+        # Series of graded layers converge slowly at the edge: phi(a) is that of the series, as in its transform.
         edge = surface.edge_of_series if self.kernel.tail else surface.edge
         found = edge * _punch(r, z, a, (r - a) * (r + a))
         for low, high in pairwise([0.0, *(b for b in self.tip.breaks if b < a), a]):
@@ -236,7 +237,7 @@ def _panels(middle: FloatArray, pole: FloatArray, fixed: FloatArray) -> tuple[ND
 
 
 def _row_factors(transfer: Transfer, k: FloatArray, material: Material) -> FloatArray:
-    """What multiplies p^ and the Bessel function of each row."""
+    """Factors of p^ times the Bessel function in each row."""
     u, w, q, p = transfer
     _, nu, stiffens, turns, _ = material
     m, share = nu / (1 - nu), (1 + nu) / (3 * (1 - nu))

@@ -20,11 +20,11 @@ from mdr.equilibria import is_simple
 from mdr.radius_search import Quantity, RadiusSearch
 from mdr.spring_bed import LARGEST_RATIO, Springs
 
-# ln of radii [m] beside a flat end at which the half-space's answer is tabulated for first guesses.
+# ln of radii [m] near a flat end at which the half-space's answer is tabulated for first guesses.
 _TABLE = np.linspace(-60.0, 40.0, 400)
 # Secant steps on coarse springs; six are usual. They end at this logarithmic residual.
 _STEPS, _CLOSE = 40, 1e-4
-# Least and largest powers with which depth or force grow: beside a flat end, and of the steepest tips.
+# Least and largest powers with which depth or force grow: near a flat end, and of the steepest tips.
 _POWERS = (0.2, 25.0)
 
 
@@ -68,7 +68,7 @@ def equilibria_on_layers(scenes: Sequence[Scene], sizes: Sizes) -> FloatArray:
 
 
 def _radii(springs: Springs, quantity: Quantity, targets: FloatArray) -> FloatArray:
-    """Contact radii [m] with these depths [m] or forces over E* [m^2]; infinite where the search does not end."""
+    """Contact radii [m] with these depths [m] or forces over E* [m^2]; infinite where the search does not converge."""
     y, search = np.log(targets), RadiusSearch(springs, may_fall=False)
     start = search.scale(_on_half_space(springs, quantity, y))
     slope, before = np.full_like(start, 2.0 if quantity == "force" else 1.0), np.full((2, y.size), np.nan)

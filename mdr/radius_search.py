@@ -21,21 +21,21 @@ from mdr.spring_bed import Springs
 
 Quantity = Literal["depth", "force"]
 
-# Trial radii double up to this share of an upright end's radius, and come closer to it by these shares.
+# Trial radii double up to this share of the radius of an upright end; their distance to it then has these shares.
 _NEAR_END, _CLOSER = 0.7, (0.2, 0.05, 0.01, 1e-3, 1e-6)
 # Radii per e-fold of the rough table. Half as many cost one more secant step.
 _DENSITY = 6
-# ln(load) missed by a cubic between knots up to which one step of Newton suffices: their slopes are good to 1e-6.
+# Error of ln(load) of the cubic between knots for which one Newton step suffices: its slopes are accurate to 1e-6.
 _NEAR = 1e-10
-# First interval over the first step. With half of it every second interval has to grow, twice of it takes a step more.
+# First interval over the first step. At half of it every second interval has to grow; twice it costs one step more.
 _WIDER = 2.0
-# Steps before a search gives up; four are usual, and halving alone needs sixty.
+# Largest number of steps before the search raises an error. Four are usual; bisection alone needs sixty.
 _MOST_STEPS = 200
-# ln(load) missed by roundings, which reach 4e-15. Twice of it shows in radii.
+# Tolerance of ln(load). Rounding errors reach 4e-15; twice the tolerance is visible in the radii.
 _SMALLEST = 1e-14
 # ln(a/h) below which the layers under the first change g too little to let it fall.
 _WITHIN_LAYER = -5.0
-# Places around each maximum of g. Half as many miss depths within 0.3 % of the maximum.
+# Radii tabulated around each maximum of g. Half as many fail at depths within 0.3 % of the maximum.
 _AROUND_TOP = 41
 # Breaks of a profile between which a table is refined; more are measured points, whose steps are small.
 _PER_BREAK = 4
@@ -109,10 +109,10 @@ class RadiusSearch:
         self._unit = springs.unit * springs.thickness
 
     def place(self, z: FloatArray) -> FloatArray:
-        """Contact radii [m] on a scale without ends: flat + unit e^z, bent to stay within the indenter."""
+        """Contact radii a = b + u/(1 + u/(end - b)) [m], u = unit e^z: all z are within the indenter."""
         tip = self.springs.tip
-        grown, room = self._unit * np.exp(z), tip.end - tip.flat
-        return np.asarray(tip.flat + grown / (1 + grown / room))
+        u, span = self._unit * np.exp(z), tip.end - tip.flat
+        return np.asarray(tip.flat + u / (1 + u / span))
 
     def scale(self, radius: FloatArray) -> FloatArray:
         """z of contact radii [m], the inverse of `place`."""
@@ -126,7 +126,7 @@ class RadiusSearch:
         return np.asarray(np.log(np.maximum(getattr(state, quantity), 1e-300)))
 
     def among(self, some: BoolArray) -> RadiusSearch:
-        """The search on some of the layers, where each radius is on a layer of its own."""
+        """The search for the radii where `some` is true, each with its own thickness if the springs have several."""
         thickness = self.springs.thickness
         if isinstance(thickness, float):
             return self

@@ -122,7 +122,7 @@ def _refuse_far(shape: Shape, found: Expansion) -> None:
 
 
 def _errors(scene: Scene, path: ContactPath, found: Expansion, fields: ShapeFields) -> dict[str, StatedError]:
-    """Relative errors: those of the mean profile and the third order."""
+    """Relative errors: those of the mean profile plus the third order."""
     force, stiffness, radius = SAFETY * found.third
     share = path.normal_force / (path.contact_stiffness * path.indentation_depth)  # d(ln depth)/d(ln F)
     by_depth = isinstance(scene.loading, IndentationDepths)
@@ -132,7 +132,7 @@ def _errors(scene: Scene, path: ContactPath, found: Expansion, fields: ShapeFiel
     pressure = path.normal_force / (np.pi * path.contact_radius**2)
 
     def of_pressure() -> FloatArray:
-        """The second order, largest beside the edge, and what truncated harmonics leave."""
+        """The second order, largest near the edge, and the error of truncated harmonics."""
         left = np.array([fields.truncation(step) for step in range(len(path))])
         return np.asarray(SAFETY * (_BESIDE_EDGE * size + left / pressure) + of_mean)
 
@@ -150,7 +150,7 @@ class Expanded:
     """Second order of a shape on springs of its mean profile.
 
     Attributes:
-        springs: Of the mean profile.
+        springs: Springs of the mean profile.
         shape: The shape.
     """
 
@@ -169,6 +169,7 @@ class Expanded:
         return Harmonics(radius, (0, *self.shape.orders))
 
     def _flat(self, shape: Flat, path: ContactPath) -> Expansion:
+        """Second order of a flat punch, whose stiffness is one constant for all depths."""
         angle, weight = shape.sector()
         outline, orders = shape.outline(angle), np.array(shape.orders)
         a, one = float(weight @ outline), np.ones(len(path))
@@ -176,12 +177,13 @@ class Expanded:
         y1 = float(self.springs.at([a]).y1[0])
         terms = self.springs.modulus * y1**2 * alpha**2 * self.harmonics(a).growth / a
         k = 2 * self.springs.modulus * float(weight @ self.springs.at(outline).K) + float(terms.sum())
-        # Of corners half of the orders tells what the others leave.
+        # At corners the upper half of the orders bounds the truncation error.
         size, corners = float(np.sqrt((alpha**2).sum()) / a), float(terms[orders > orders[-1] / 2].sum())
         third = np.array([1.0, 1.0, 0.0]) * (abs(terms.sum()) * size + abs(corners)) / k
         return Expansion(a * one, k * path.indentation_depth, k * one, np.outer(one, alpha), np.outer(third, one))
 
     def _raised(self, shape: Raised, path: ContactPath) -> Expansion:
+        """Radius, force F + S, stiffness k + dS/ddelta and the edge's harmonics at each depth, to second order."""
         a, modulus = path.contact_radius, self.springs.modulus
         step = np.minimum(_STEP, (self.springs.tip.end / a - 1) / 4)
         around = a[:, None] * (1 + step[:, None] * np.arange(-2, 3))
@@ -193,8 +195,8 @@ class Expanded:
         S = 0.5 * modulus * (phi**2).sum(axis=2) / rise
         more = ((S[:, 2:] - S[:, :1]) / width / rise[:, 1:2])[:, 0]  # dS/ddelta
         outline = -phi[:, 1] / (rise * y1[:, 1:-1])[:, 1:2]
-        bend = (y1[:, 3:4] ** 2 - y1[:, 1:2] ** 2) / width / 2  # of the average of k_0(a(phi)), over E*
-        known = modulus * (outline**2 * (bend + y1[:, 2:3] ** 2 * growth[:, 1] / a[:, None])).sum(axis=1)
+        curve = (y1[:, 3:4] ** 2 - y1[:, 1:2] ** 2) / width / 2  # of the average of k_0(a(phi)), over E*
+        known = modulus * (outline**2 * (curve + y1[:, 2:3] ** 2 * growth[:, 1] / a[:, None])).sum(axis=1)
         radius = a + (more - known) / (2 * modulus * y1[:, 2] ** 2)
         size = np.sqrt((outline**2).sum(axis=1)) / a
         force, stiffness = path.normal_force + S[:, 1], path.contact_stiffness + more

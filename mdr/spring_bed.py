@@ -120,7 +120,7 @@ class Springs:
         return self.punches.radius(a / self.unit)
 
     def at(self, radii: ArrayLike, excess: FloatArray | None = None) -> SpringValues:
-        """y_1, g, K, M at radii > 0 [m], shape (n,); an excess a - b [m] has digits that a loses beside a flat end."""
+        """y_1, g, K, M at radii > 0 [m], shape (n,); near a flat end of radius b pass `excess` = a - b [m], exact."""
         x = np.atleast_1d(np.asarray(radii, dtype=np.float64))
         found = SpringValues(*np.empty((4, x.size)))
         for index, punch, resolvent, _ in self._rows(x):

@@ -111,7 +111,7 @@ def _uncertainty(solution: Solution, name: str) -> FloatArray:
 
 
 def difference_table(solution: Solution, other: Solution) -> Table:
-    """The largest difference of each quantity of two answers to one scene, beside the error that both state.
+    """The largest difference of each quantity of two answers to one scene, and the errors that both state.
 
     Raises:
         InvalidInput: if the answers are of another kind or have other states.

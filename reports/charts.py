@@ -196,7 +196,7 @@ SHOWN_QUANTITIES = (
     "indentation_depth",
 )
 UNITS_OF_PARAMETERS = {"thickness": " [m]"}
-# Letters of a scene beside a row: more leave no room for the axes.
+# Largest number of letters of a scene at a row: more would cover the axes.
 LONGEST = 40
 Place = tuple[float, float]
 

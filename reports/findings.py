@@ -36,7 +36,7 @@ EXPLANATIONS: Mapping[Status, str] = {
 WORST_FIRST = tuple(EXPLANATIONS)
 # Relative errors this near to their median, as a share of it, are one error: half as much splits rounded factors.
 ALIKE = 0.05
-# A relative tolerance beyond this is shown beside the verdict: agreement within 5 % is another statement than AGREE.
+# A relative tolerance beyond this is shown with the verdict, since AGREE within 5 % is a weak statement.
 WIDE = 1e-2
 # Where to look when a method has the first quantity wrong while it has the second right.
 PLACES = (
@@ -108,7 +108,7 @@ def relative_error(verdict: Verdict) -> float | None:
 
 
 def is_wide(verdict: Verdict) -> bool:
-    """Whether a claim passed within a relative tolerance that is shown beside its verdict.
+    """Whether a claim passed within a relative tolerance that is shown with its verdict.
 
     Orders have another unit. Counts (of silent failures) are claimed to be zero. A limit of one or more is a factor.
     """

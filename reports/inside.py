@@ -35,7 +35,7 @@ DECADES = 3
 ARROWS = (8, 6)
 # Lightness of this map falls evenly, so that it reads in grey and with any colour vision.
 COLOURS = "cividis_r"
-# Words on the maps have a light rim, since colours below them may be dark.
+# Words on the maps have a light outline, since colours below them may be dark.
 RIM = [withStroke(linewidth=2.0, foreground="white")]
 
 
@@ -153,7 +153,7 @@ def _draw_map(axes: Axes, halves: tuple[Half, Half], name: str) -> None:
 
 
 def _draw_arrows(axes: Axes, halves: tuple[Half, Half]) -> str:
-    """Where a fluid would be driven: against the gradient, lengths by its root, since it is steep beside edges.
+    """Where a fluid would be driven: against the gradient, lengths by its root, since it is steep near edges.
 
     Returns:
         What they show, for readers.

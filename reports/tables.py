@@ -227,7 +227,7 @@ def _price(method: str, points: Sequence[Point]) -> str:
 
 
 def orders(run: Run) -> Table | None:
-    """One row per study of convergence: observed order beside formal order, stated beside true error."""
+    """One row per study of convergence: observed and formal order, stated and true error."""
     return tabulated(
         run.judged.convergence,
         {
@@ -357,7 +357,7 @@ def _answer_rows(found: Mapping[str, Answer], methods: Sequence[str]) -> Iterato
 
 
 def _final(answer: Answer) -> dict[str, Values]:
-    """Single numbers, such as a pull-off force, where an answer has any beside its path; else the whole path."""
+    """Single numbers, such as a pull-off force, where an answer has any; else the whole path."""
     paths = {name: q for name, q in answer.quantities.items() if q.values and not q.at}
     return {name: q for name, q in paths.items() if len(q.values) == 1} or paths
 

@@ -34,7 +34,7 @@ PRESCRIBED: Final[dict[type, Prescribed]] = {
     IndentationDepths: "indentation_depth",
     NormalForces: "normal_force",
 }
-# Times the difference to half as many cells: stated errors of pressures, whose order beside kinks is one half. Half of
+# Times the difference to half as many cells: stated errors of pressures, whose order next to kinks is one half. Half of
 # it covers 90 % of random scenes instead of 97 %.
 FIELD_SAFETY: Final = 4.0
 # What two grids do not show of a stiffness at a given radius.

@@ -214,10 +214,10 @@ def _lattice(layer: ElasticLayer, disc: Disc, cell_size: float) -> int:
 
 
 def refuse_unresolved(layer: ElasticLayer, indenter: Profile, radius: float, cells: int) -> None:
-    """Ask for a layer thicker than a cell, and for cells between the edge and an upright end [m].
+    """Refuse layers thinner than `LEAST_LAYER` cells, and fewer than `END_CELLS` between the edge and an upright end.
 
     Raises:
-        Unresolved: If there are fewer.
+        Unresolved: With the number of cells that is needed.
     """
     cell_size = radius / disc_of(cells).radius
     thick = layer.surface.thickness / cell_size
@@ -226,9 +226,9 @@ def refuse_unresolved(layer: ElasticLayer, indenter: Profile, radius: float, cel
             f"the layer of thickness {layer.surface.thickness:g} m is {thick:.2g} cells thick and needs "
             f"{LEAST_LAYER:g}; take {LEAST_LAYER / thick:.1f} times as many points, or ask mdr or fem"
         )
-    left = (indenter.max_radius - radius) / cell_size
-    if indenter.ends_upright and left < END_CELLS:
+    gap = (indenter.max_radius - radius) / cell_size
+    if indenter.ends_upright and gap < END_CELLS:
         raise Unresolved(
             f"between the contact radius {radius:g} m and the upright end of the indenter at {indenter.max_radius:g} m "
-            f"lie {left:.2g} cells of {END_CELLS:g} that are needed; take more points, or ask mdr"
+            f"lie {gap:.2g} cells of {END_CELLS:g} that are needed; take more points, or ask mdr"
         )

@@ -24,7 +24,7 @@ CHUNK: Final = 4
 PULLED: Final = 1e-3
 # Cells of the coarser grid within which it has to show the same.
 NEARBY: Final = 1.5
-# Cells beside edges and kinks in which the sign of the pressure is not resolved; half of it refuses worn cones.
+# Cells next to edges and kinks in which the sign of the pressure is not resolved; half of it refuses worn cones.
 BESIDE_KINKS: Final = 8.0
 # Radii r/a at which fields of two grids are compared.
 INSIDE: Final = np.sqrt((np.arange(64) + 0.5) / 64)
@@ -86,7 +86,7 @@ class ContactFields:
 
         Raises:
             UnsupportedSceneError: With the place.
-            Unresolved: With the place, where the only such cells lie beside an edge or a kink.
+            Unresolved: With the place, where the only such cells lie next to an edge or a kink.
         """
         rings, quotient = self._rings
         other_rings, other = coarser._rings

@@ -184,7 +184,7 @@ class ShapeSolver:
         else:
             raise NotConvergedError("the depth under a force was not found on cells")
         refuse_unresolved(pressing.layer, shape.mean, mean.radius, points)
-        # The ratio varies so little with the depth that cells twice as wide will do.
+        # The ratio varies so little with the depth that cells twice as wide suffice.
         low, high = (self._pair(shape, 2.0 * s, mean._replace(depth=mean.depth * (1.0 + e))) for e in (-STEP, STEP))
         change = (high[0].load / high[1].load - low[0].load / low[1].load) / (2.0 * STEP * mean.depth)
         moved = np.array([shaped.moment(n) - round_.moment(n) for n in _cosines(shape)]) * s * s / pi

@@ -2,7 +2,7 @@
 
 At every depth the field splits into waves of the local half-space that fade downwards, with tractions d, and waves that
 fade upwards, with tractions g = R d: t = d + g and 2 G k (U, W) = C_0 d - C_0~ g. C_0 is the half-space's compliance,
-C_0~ the same with the other sign beside the diagonal; C_0 + C_0~ = 4 beta, beta = 1 - nu. So
+C_0~ the same with the other sign off the diagonal; C_0 + C_0~ = 4 beta, beta = 1 - nu. So
 
     C = C_0 - 4 beta S,   S = R (1 + R)^-1,   1 - chi = 2 S_WW at the surface.
 
@@ -35,23 +35,23 @@ from contact.records.validation import FloatArray
 from contact.scene.graded_layer import GradedLayer
 from contact.scene.layer import ElasticBase
 
-# Depth times |k| below which nothing is felt: exp(-2 DEEP cos(15 degrees)) is 1e-17, with half of it 1e-9.
+# Depth times |k| below which the layer has no influence: exp(-2 DEEP cos(15 degrees)) is 1e-17, with half of it 1e-9.
 DEEP = 21.0
-# Depth times k down to which the inside is followed: exp(-43) is below all digits, exp(-21) would be seen. With `DEEP`
-# it is a power of two, so that no octave holds waves that reach the base and waves that do not.
+# Depth times k down to which the inside is integrated: exp(-43) is negligible, exp(-21) is not. With `DEEP` it is a
+# power of two, so that in an octave all waves reach the base or none does.
 _FADED = 43.0
 # Relative and absolute tolerance of the integration; ten times as much costs a digit and saves a tenth of the time.
 TOLERANCE, ABSOLUTE = 1e-13, 1e-15
 # Chebyshev nodes over the depth between two breakpoints: exp(-61 z) is resolved by 64 to 1e-14, by 32 to 1e-5.
 _NODES = 64
-# Nodes per octave of wave numbers: 18 leave 1e-13, 9 leave 1e-7.
+# Nodes per octave of wave numbers: the error is 1e-13 with 18 and 1e-7 with 9.
 _WAVES = 18
-# Wave number from which the tail's coefficients are fitted. Half of it leaves ten times the error, twice loses digits.
+# Wave number from which the tail's coefficients are fitted. Half has ten times the error, twice more rounding.
 _FAR = 80.0
 _SHARES = (1 - np.cos(np.pi * np.arange(1, 2 * _NODES, 2) / (2 * _NODES))) / 2
 _WEIGHTS = barycentric(_SHARES)
 
-# What is integrated as a function of the share of the way, and its slope by z from the share, z and the value.
+# The solution as a function of s in [0, 1], the fraction of the interval; and dy/dz as a function of s, z and y.
 _Followed: TypeAlias = Callable[[float], NDArray[Any]]
 _Rate: TypeAlias = Callable[[float, FloatArray, NDArray[Any]], NDArray[Any]]
 
@@ -65,7 +65,7 @@ class _Local(NamedTuple):
 
     @classmethod
     def at(cls, layer: GradedLayer, z: NDArray[Any]) -> _Local:
-        """In a layer."""
+        """Of a layer at depths z."""
         nu, turns, modulus = layer.ratio_at(z), layer.ratio_slope(z), layer.youngs_modulus
         return cls(nu, turns, modulus.slope(z, 1.0) / modulus.at(z, 1.0) - turns / (1 + nu))
 
@@ -82,7 +82,7 @@ class GradedKernel:
 
     @property
     def longest(self) -> float:
-        """The thickness, or what stretches farther: stiff parts spread a load."""
+        """Length over which a load spreads, at least the thickness: the ratio of the largest modulus to the least."""
         moduli, base = self.layer.youngs_modulus.at(np.linspace(0.0, 1.0, 257), 1.0), self.layer.support
         if isinstance(base, ElasticBase):
             moduli = np.append(moduli, base.youngs_modulus)
@@ -102,7 +102,7 @@ class GradedKernel:
         return (first, *(fitted * _FAR ** np.arange(2.0, 12))[:4].tolist())
 
     def __getstate__(self) -> dict[str, Any]:
-        """Without tables, which are made again where they are needed."""
+        """State without tables, which are computed again when needed."""
         return {"layer": self.layer}
 
     def chi(self, k: NDArray[Any]) -> NDArray[Any]:
@@ -137,7 +137,7 @@ class GradedKernel:
         ]
 
     def _at_base(self, k: NDArray[Any]) -> NDArray[Any]:
-        """R = 4 beta (C + C_0~)^-1 - 1 on what lies below."""
+        """R = 4 beta (C + C_0~)^-1 - 1 at the base."""
         nu, base = float(self.layer.ratio_at(1.0)), self.layer.support
         own, side, face = 2 * (1 - nu), 1 - 2 * nu, base
         if isinstance(base, ElasticBase):
@@ -175,7 +175,7 @@ class GradedKernel:
         return Octaves(lambda k, _: self._followed(k), lowest, _WAVES)
 
     def _followed(self, k: FloatArray) -> FloatArray:
-        """The same at some wave numbers; stretches that they do not reach hold zeros."""
+        """`transfers` at some wave numbers; zero on stretches below the reach of the waves."""
         reflected = self.reflection(k, _FADED + DEEP)
         stretches = self.stretches(np.minimum(1.0, (_FADED + DEEP) / k))
         found = np.zeros((k.size, 4, len(self.layer.breakpoints) + 1, _NODES))
@@ -190,7 +190,7 @@ class GradedKernel:
         return found.reshape(k.size, -1)
 
     def _fading(self, k: FloatArray, R: _Followed, share: float, z: FloatArray, d: FloatArray) -> FloatArray:
-        """Slope of d exp(kz)."""
+        """d/dz of d exp(kz)."""
         nu, turns, stiffens = _Local.at(self.layer, z)
         u, w, q, p = _fields(nu, R(share), d)
         both = k * (d[1] - d[0]) - 2 * turns * (q + p) / (4 * (1 - nu))
@@ -208,22 +208,22 @@ class GradedDescent:
             self._rows[index] = kernel.transfers(k[index], octave).reshape(-1, *self._rows.shape[1:])
 
     def places(self, z: FloatArray) -> NDArray[np.intp]:
-        """One place for all depths."""
+        """Index of the layer at depths z: zero."""
         return np.zeros(z.shape, dtype=np.intp)
 
     def material(self, place: int, z: FloatArray) -> Material:
-        """At depths z."""
+        """Constants of the material at depths z."""
         layer = self.kernel.layer
         nu, turns, stiffens = _Local.at(layer, z)
         modulus = layer.youngs_modulus.at(z, 1.0) / float(layer.youngs_modulus.at(0.0, 1.0))
         return Material(modulus * (1 + float(layer.ratio_at(0.0))) / (1 + nu), nu, stiffens, turns, is_top=True)
 
     def at(self, place: int, z: FloatArray) -> Transfer:
-        """At depths z, shape (m, 1): arrays of shape (m, n)."""
+        """Transfer functions at depths z of shape (m, 1), each of shape (m, n)."""
         return Transfer(*np.stack([self._at(depth) for depth in z.ravel().tolist()], axis=1))
 
     def _at(self, z: float) -> FloatArray:
-        """At one depth, shape (4, n)."""
+        """Transfer functions U, W, Q, P at one depth, shape (4, n)."""
         i = min(max(int(np.searchsorted(self._ends, z)) - 1, 0), self._ends.size - 2)
         low = self._ends[i]
         high = np.minimum(self._ends[i + 1], np.maximum((_FADED + DEEP) / self.k, low + 1e-9))
@@ -241,15 +241,15 @@ def _unreflected(R: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
 
 
 def _fields(nu: FloatArray, R: FloatArray, d: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """U and W times 2 G k, Q, P of fading waves d with what is reflected of them."""
+    """2 G k U, 2 G k W, Q and P of the waves with tractions d downwards and g = R d upwards."""
     g = R[0] * d[0] + R[1] * d[1], R[1] * d[0] + R[2] * d[1]
-    away, whole, eta = d - np.array(g), d + np.array(g), 1 - 2 * nu
-    u, w = 2 * (1 - nu) * away
-    return u - eta * whole[1], w - eta * whole[0], whole[0], whole[1]
+    difference, total, eta = d - np.array(g), d + np.array(g), 1 - 2 * nu
+    u, w = 2 * (1 - nu) * difference
+    return u - eta * total[1], w - eta * total[0], total[0], total[1]
 
 
 def _integrated(rate: _Rate, start: NDArray[Any], begin: FloatArray, end: FloatArray) -> _Followed:
-    """Values y with dy/dz = rate(share, z, y) of all wave numbers together, over the share of the way between depths.
+    """Solve dy/dz = rate(s, z, y) for all wave numbers together; returns y(s), s the fraction from `begin` to `end`.
 
     Raises:
         NotConvergedError: If the tolerance is not met.

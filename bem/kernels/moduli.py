@@ -12,7 +12,7 @@ from contact.scene.scene import Scene
 
 
 def contact_modulus(layer: ElasticLayer) -> float:
-    """E* = E / (1 - nu^2) [Pa], of the half-space that the surface resembles from near."""
+    """E* = E / (1 - nu^2) [Pa] of the material at the surface."""
     surface = layer.surface
     nu = surface.poissons_ratio
     return surface.youngs_modulus / ((1.0 - nu) * (1.0 + nu))

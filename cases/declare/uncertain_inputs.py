@@ -192,6 +192,7 @@ def _changed(scene: Scene, one: UncertainInput, change: Callable[[Any], Any]) ->
 
 
 def _with(record: Any, field: str, one: UncertainInput, change: Callable[[Any], Any]) -> Any:
+    """The record with one field changed by `change`, for the uncertain input `one`."""
     value = getattr(record, field)
     if one.is_range and isinstance(value, np.ndarray):
         raise InvalidInput(f"uncertain {one.name}: it is a list of numbers; give a percentage for all of them")

@@ -231,7 +231,7 @@ def _lost(before: Baseline | None, after: Baseline) -> Iterator[str]:
 
 
 def _relative_width(values: Values) -> float:
-    """The widest permitted change over the largest value: what a tolerance and a declared scale allow together."""
+    """The widest permitted change over the largest value, from the tolerance and the declared scale."""
     largest = max(map(abs, values.values), default=0.0)
     return relative_tolerance(values) * max(1.0, values.scale / largest if largest > 0 else 1.0)
 
@@ -250,7 +250,7 @@ def accept(folder: Path, proposal: Proposal, run: Run, now: WriteConditions, *, 
 
 def accepted_before(folder: Path, case: str) -> Baseline | None:
     """Return the baseline of a case; None if there is none."""
-    return next((one for one in read_baselines(folder) if one.accepted.case == case), None)
+    return next((baseline for baseline in read_baselines(folder) if baseline.accepted.case == case), None)
 
 
 def refusals(proposal: Proposal, run: Run, now: WriteConditions, *, loosen: bool = False) -> tuple[str, ...]:
@@ -265,12 +265,13 @@ def refusals(proposal: Proposal, run: Run, now: WriteConditions, *, loosen: bool
 
 
 def refusals_beforehand(case: str, run: Run, now: WriteConditions) -> tuple[str, ...]:
-    """Return every reason that is known before the spread is measured."""
+    """Return every reason that does not need the spread to be measured."""
     own = (verdict for verdict in run.judged.verdicts if verdict.case == case)
     return *_refused_circumstances(run, now), *_refused_run(run.answers.of_case(case), own)
 
 
 def _refused_circumstances(run: Run, now: WriteConditions) -> Iterator[str]:
+    """Reasons in the state of the source tree and the stamp of the run."""
     stamp = run.judged.stamp
     if now.in_ci:
         yield "continuous integration must not accept its own numbers; accept them by hand and commit the files"
@@ -285,6 +286,7 @@ def _refused_circumstances(run: Run, now: WriteConditions) -> Iterator[str]:
 
 
 def _refused_run(answers: Iterable[Answer], verdicts: Iterable[Verdict]) -> Iterator[str]:
+    """Reasons in failed answers and failed claims of kind exact or order."""
     for answer in answers:
         if answer.status.is_failure:
             yield f"{answer.method} on {answer.scene!r} ended with {answer.status}: {answer.reason}"
@@ -301,6 +303,7 @@ def _not_finite(answers: Iterable[Answer]) -> Iterator[str]:
 
 
 def _loosenings(proposal: Proposal) -> Iterator[str]:
+    """Reasons to refuse a baseline that checks less than before, or with wider tolerances."""
     for change in proposal.changes:
         if change.loosens:
             yield f"{_loosening(change)}; find out why, then say --loosen"

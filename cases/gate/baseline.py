@@ -44,7 +44,7 @@ class AcceptedClaim:
 
 @dataclass(frozen=True, kw_only=True, config=RECORD)
 class Accepted:
-    """What was accepted of a case, beside its answers.
+    """The accepted results of a case except its answers.
 
     Attributes:
         case: its name.
@@ -73,7 +73,7 @@ _ACCEPTED: TypeAdapter[Accepted] = TypeAdapter(Accepted)
 
 
 def kept(answer: Answer) -> Answer:
-    """Return what a baseline keeps of an answer: its question, quantities and counters, of fields the stated errors."""
+    """Return the part of an answer that a baseline stores: fields have stated errors but no values."""
     quantities = {name: replace(q, values=(), at=(0.0,)) if q.at else q for name, q in answer.quantities.items()}
     return Answer(
         case=answer.case,

@@ -1,6 +1,6 @@
 """What cases share: layers, scenes, methods, reasons, requirements, reference numbers, and the claims that most make.
 
-A requirement is a tolerance that is fixed beforehand. No method sets its own: errors that methods state stand beside a
+A requirement is a tolerance that is fixed beforehand. No method sets its own: stated errors are shown with the
 verdict. A method that is too coarse is told so (INCONCLUSIVE), and one that misses it by more than it states disagrees.
 """
 
@@ -143,7 +143,7 @@ def scene(
         layer: or stack.
         indenter: its profile.
         loading: what is prescribed.
-        effects: beside elasticity.
+        effects: in addition to elasticity.
         steep: whether its strains are beyond small ones; the scene is solved all the same.
         sampling: what is kept of each answer.
         methods: that solve it; empty for those of the case.

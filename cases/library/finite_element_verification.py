@@ -8,7 +8,7 @@ them acts on irregular meshes of the unit square, refined by halving. Degree k m
 and pressures of order k in the L2 norm, by mixed pairs at both nu, by displacements alone at nu = 0.3.
 
 Inf-sup constant: how well displacements control the pressure, on uniform meshes and on one graded towards the edge of a
-contact. A stable pair keeps it away from zero as meshes refine; two unstable pairs stand beside them and must be
+contact. A stable pair keeps it away from zero as meshes refine; two unstable pairs are included and must be
 caught. Compressibility only adds to the constant, so that nu = 1/2 is the worst case.
 
 Patch test: a constant strain on a graded mesh leaves every inner equation satisfied but for rounding, at every nu.

@@ -51,7 +51,7 @@ def punch(label: str, ratio: float) -> CaseScene:
 
 
 def walk(label: str, what: str, ratios: tuple[float, ...], *more: MethodUse) -> CaseScene:
-    """Return a paraboloid that walks through contact radii ``ratios`` h."""
+    """Return a scene with a paraboloid at the contact radii ``ratios`` h."""
     tip, radii = (
         Paraboloid(radius_of_curvature=RADIUS_OF_CURVATURE),
         ContactRadii(values=c.THICKNESS * np.array(ratios)),

@@ -1,6 +1,6 @@
 """Full stick under the cylindrical flat punch: what it adds to the stiffness, for every layer.
 
-Under a punch that sticks the surface does not move sideways: u_r = 0 beside u_z = delta on r <= a. MDR takes its
+Under a punch that sticks the surface does not move sideways: u_r = 0 and u_z = delta on r <= a. MDR takes its
 stiffness from a coupled pair of integral equations without a mesh; finite elements hold the surface. The two share no
 code. On the half-space the stiffness is that of the frictionless punch times (1 - nu) ln(3 - 4 nu)/(1 - 2 nu), ten per
 cent more at nu = 0 and nothing at nu = 1/2 (Mossakovskii). On layers the ratio is another one: a thin bonded layer with

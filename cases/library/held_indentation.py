@@ -91,7 +91,7 @@ EASED = tuple(
 
 
 def moduli_and_times(scene: c.AnyScene) -> tuple[list[float], list[float]]:
-    """Return the moduli [Pa] and times [s] of the Maxwell branches of a scene; none beside a dashpot."""
+    """Return the moduli [Pa] and times [s] of the Maxwell branches of a scene; none if it has a dashpot."""
     (effect,) = scene.effects
     if isinstance(effect, KelvinVoigt):
         return [], []

@@ -2,7 +2,7 @@
 
 Under a paraboloid and a truncated cone, on bonded layers with nu = 0.3, 0.45 and 0.5 and on an unbonded one, MDR makes
 the fields inside from the density of its pressure, closed forms of the half-space and an integral over wavenumbers;
-finite elements recover them from their own solution. At twelve points away from rims they agree: displacements in
+finite elements recover them from their own solution. At twelve points away from edges they agree: displacements in
 the fifth digit of the depth, stresses in the third of the mean pressure, and the hydrostatic pressure at nu = 1/2 as
 well as at 0.3, where it no longer follows from the strain. Each answer also obeys the laws of elastic bodies: the force
 passes every depth, volume changes with the pressure, the gradient adds up to the pressure, the base holds, and just
@@ -34,7 +34,7 @@ KINDS = ("paraboloid", "truncated cone")
 # r over the contact radius and z over the smaller of contact radius and thickness; the last is in the middle.
 POINTS = (*((r, z) for r in (0.0, 0.3, 0.8, 1.25) for z in (0.3, 0.6, 1.0)), (0.0, 0.5))
 BELOW_CONTACT = tuple((r, z) for r, z in POINTS if r < 1.0)
-# Away from rims and faces; the cost of the last is measured.
+# Away from edges and faces; the cost of the last is measured.
 GRID = (*((r, z) for r in np.linspace(0.05, 1.45, 8).tolist() for z in np.linspace(0.15, 0.9, 8).tolist()), (0.5, 0.5))
 # Finite elements solve these in the suite ci, all in the nightly one.
 QUICK = ("paraboloid, bonded nu=0.5 a/h=1",)

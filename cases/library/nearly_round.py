@@ -4,7 +4,7 @@ MDR expands about the mean profile: the outline to first order in the deviation 
 second order. Boundary elements press cells and assume no circle; only the layer kernel is shared. Hertz' ellipse and
 the elliptic punch are known in closed form, the square punch by its capacity, and elliptic punches on thin
 incompressible layers by Poisson's equation. Microscopes replace a pyramid by the cone of equal cross-sections: cells
-and MDR say what that costs. The cone is solved by finite elements as well, so that the kernel is not its own witness.
+and MDR say what that costs. The cone is solved by finite elements as well, so that the kernel is checked independently.
 """
 
 import numpy as np

@@ -115,7 +115,7 @@ def inverted(function: Callable[[FloatArray], FloatArray], wanted: FloatArray, f
     Args:
         function: of arrays, shape (n,), entry by entry.
         wanted: positive, shape (n,).
-        first: a first guess, shape (n,); any positive one will do.
+        first: a first guess, shape (n,); any positive one.
 
     Raises:
         NotConvergedError: if no argument gives what is wanted.

@@ -9,9 +9,9 @@ from contact.scene.extent import radius_of_load
 # falls like exp(-2.1 r/h) on unbonded and faster on bonded layers (first root of their kernels), to 5e-8 over eight.
 BESIDE = 4.0
 # Side of a half-space's grid, which is not repeated, over the diameter it must hold: of n points n/22 stay free on each
-# side of a flat punch, three of 64, and more beside curved indenters, whose contact is smaller than that diameter.
+# side of a flat punch, three of 64, and more around curved indenters, whose contact is smaller than that diameter.
 RIM = 1.1
-# What stands higher than so many sides of the grid never touches: all beyond a rim.
+# Height in sides of the grid above which points never touch: those beyond the edge of the indenter.
 FAR = 1e3
 
 

@@ -30,7 +30,7 @@ class SerialExecutor(Executor):
         try:
             future.set_result(fn(*args, **kwargs))
         except Exception as error:
-            # A future carries its error.
+            # `result` of the future raises it.
             future.set_exception(error)
         return future
 
@@ -99,11 +99,11 @@ class DaskExecutor(Executor):
 
         # The future belongs to the cluster: ``result`` waits if its worker died meanwhile.
         def deliver(remote: Any) -> None:
-            """Hand the answer or the error of the cluster to the future."""
+            """Set the answer or the error of the cluster on the future."""
             try:
                 future.set_result(remote.result())
             except Exception as error:
-                # A future carries its error.
+                # `result` of the future raises it.
                 future.set_exception(self._named(error))
 
         if self._is_lost:
@@ -139,7 +139,7 @@ class DaskExecutor(Executor):
     def _named(self, error: Exception) -> Exception:
         """The error in the words of this program: a lost scheduler, workers that died of a call, or itself.
 
-        What a call raises beside that is no ``OSError``: `cases.solve` turns every error into a row.
+        Other errors of a call are no ``OSError``: `cases.solve` turns every error into a row.
         """
         if isinstance(error, CancelledError | OSError) or self._is_lost:
             return self._lost()
@@ -234,7 +234,7 @@ class Window(Generic[A, T]):
         self.broken: list[A] = []
 
     def results(self, arguments: Iterable[A]) -> Iterator[tuple[A, T]]:
-        """Hand over arguments, taken one by one while there is room, and give each with its result, first come first.
+        """Submit arguments one by one while workers are free, and yield each with its result as soon as it is finished.
 
         Raises:
             Exception: whatever a call raised, but for a process that died: its argument is in `broken`.

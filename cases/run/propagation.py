@@ -130,21 +130,21 @@ Found = tuple[tuple[PropagatedQuantity, ...], FloatArray]
 
 
 def _differences(inputs: UncertainInputs, middle: Named, solved: Solve, _: int) -> Found:
-    """By central differences; rows of the second result are independent contributions to the last steps."""
+    """Uncertainties by central differences, and independent contributions to the last steps, each in a row."""
     units = np.eye(len(inputs.inputs))
     above, below = ([_values(solved(sign * unit), middle) for unit in units] for sign in (1.0, -1.0))
     root = _root(inputs.correlation)
     found, last = [], []
-    for number, (name, one) in enumerate(middle):
+    for number, (name, quantity) in enumerate(middle):
         changes = np.array([(up[number] - down[number]) / 2 for up, down in zip(above, below, strict=True)])
-        bend = np.array(
-            [up[number] + down[number] - 2 * np.array(one.values) for up, down in zip(above, below, strict=True)]
+        curvature = np.array(
+            [up[number] + down[number] - 2 * np.array(quantity.values) for up, down in zip(above, below, strict=True)]
         )
         shares = root.T @ changes
         spread = np.sqrt(np.sum(shares**2, axis=0))
         inputs_named = [entry.name for entry in inputs.inputs]
-        bends = bool(np.any(np.abs(bend).max(axis=0) / 2 > BENT * spread + 1e-9 * one.scale))
-        found.append(_quantity(name, one, spread, dict(zip(inputs_named, changes, strict=True)), bends=bends))
+        bends = bool(np.any(np.abs(curvature).max(axis=0) / 2 > BENT * spread + 1e-9 * quantity.scale))
+        found.append(_quantity(name, quantity, spread, dict(zip(inputs_named, changes, strict=True)), bends=bends))
         last.append(shares[:, -1])
     return tuple(found), np.array(last).T
 

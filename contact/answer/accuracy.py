@@ -10,7 +10,7 @@ import numpy as np
 from contact.answer.solution import Solution
 
 S = TypeVar("S", bound=Solution)
-# Fields beside the numbers of an answer; near edges they are less accurate, and the accuracy of the pressure is theirs.
+# Fields of an answer. They are less accurate near edges and must meet the accuracy of the pressure.
 FIELDS: Final = ("pressure", "surface_displacement")
 
 
@@ -31,7 +31,7 @@ def shortfalls(answer: Solution, accuracy: float, pressure_accuracy: float | Non
 
 def told_where_less(answer: S, accuracy: float, pressure_accuracy: float | None = None) -> S:
     """The answer with a note that names every quantity whose stated error is above the accuracy asked for."""
-    # Residuals that a method publishes beside its errors are no quantities of the answer.
+    # Residuals among the stated errors of a method are no quantities of the answer.
     wanted = {name: accuracy for name in answer.error_estimate if hasattr(answer, name)}
     if pressure_accuracy is not None:
         wanted |= {name: pressure_accuracy for name in FIELDS if name in wanted}

@@ -13,10 +13,10 @@ from typing import Any
 
 
 class OneThread(ContextDecorator):
-    """Context and decorator: every loaded BLAS computes on one thread, and as before when the last one has left.
+    """Context and decorator: every loaded BLAS computes on one thread until the last context is left.
 
-    Threads of Python may be inside at once, each as deeply nested as it likes.  A BLAS that is loaded inside (SciPy's,
-    at the first factorisation) is held by the next context that is entered.
+    Contexts may be nested and shared by Python threads. A BLAS that is loaded inside (SciPy's, at the first
+    factorisation) is set to one thread by the next context that is entered.
     """
 
     def __init__(self) -> None:
@@ -25,7 +25,7 @@ class OneThread(ContextDecorator):
         self._threads_before: dict[str, tuple[Any, int]] = {}
 
     def __enter__(self) -> None:
-        """Hold every loaded BLAS that is not held yet."""
+        """Set every loaded BLAS to one thread, and store its number of threads before."""
         with self._lock:
             self._inside += 1
             for library in _loaded_libraries("scipy.linalg._flapack" in sys.modules):
@@ -34,7 +34,7 @@ class OneThread(ContextDecorator):
                     library.set_num_threads(1)
 
     def __exit__(self, *error: object) -> None:
-        """Give each BLAS its former number of threads back if nobody else is inside."""
+        """Give each BLAS its former number of threads back if no other context is open."""
         with self._lock:
             self._inside -= 1
             if self._inside == 0:

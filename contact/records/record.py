@@ -237,7 +237,7 @@ def describe(error: pydantic.ValidationError, cls: type[Record], place: str, top
     """
     lines: list[str] = []
     details = error.errors(include_url=False)
-    # A field that is written with another name is missing as well, and named once.
+    # pydantic reports a misspelt field twice, as unknown and as missing: only the first is printed.
     meant = {(*detail["loc"][:-1], _meant(cls, detail["loc"])) for detail in details if detail["type"] == _UNKNOWN}
     for detail in details:
         steps = [step for step in detail["loc"] if not str(step).startswith(_TAG)]

@@ -48,7 +48,7 @@ SMALLEST, LARGEST = 1e-75, 1e75
 RANGE = frozenset({"start", "stop", "count", "spacing"})
 COLUMN = frozenset({"file", "column", "unit"})
 
-# What stands beside the type in the annotation of a field.
+# Metadata in the annotation of a field.
 Checked: TypeAlias = tuple[Any, ...]
 
 

@@ -96,7 +96,7 @@ class KelvinVoigt(Viscoelasticity):
 
     @property
     def relaxation(self) -> Relaxation:
-        """G for ever, and a bare dashpot eta; no branches."""
+        """G constant in time, and a dashpot eta; no branches."""
         return Relaxation(
             long_term_modulus=self.shear_modulus, moduli=np.empty(0), times=np.empty(0), viscosity=self.viscosity
         )
@@ -118,7 +118,7 @@ class StandardSolid(Viscoelasticity):
 
     @property
     def relaxation(self) -> Relaxation:
-        """One branch G_1 that relaxes in eta / G_1, beside G_inf."""
+        """One branch G_1 with the relaxation time eta / G_1, in addition to G_inf."""
         moduli = np.array([self.maxwell_shear_modulus])
         return Relaxation(
             long_term_modulus=self.long_term_shear_modulus, moduli=moduli, times=self.viscosity / moduli, viscosity=0.0
@@ -150,7 +150,7 @@ class PronySeries(Viscoelasticity):
 
     @property
     def relaxation(self) -> Relaxation:
-        """The moduli G_j and times tau_j as they are, beside G_inf."""
+        """The moduli G_j and times tau_j as given, without G_inf."""
         return Relaxation(
             long_term_modulus=self.long_term_shear_modulus,
             moduli=self.shear_moduli,

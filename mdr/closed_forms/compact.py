@@ -1,7 +1,7 @@
 """One formula for any layer up to a/h = 10: the stiffness of a flat punch, and the force on a paraboloid at a depth.
 
-Half-space and thin layer, added, times the exponential of a polynomial; its coefficients, which `fit_compact` makes,
-stand in `compact.toml` with the largest error that was seen while fitting.
+The sum of half-space and thin layer, times the exponential of a polynomial. `fit_compact` writes its coefficients and
+the largest error of the fit to `compact.toml`.
 """
 
 import tomllib
@@ -45,6 +45,7 @@ def paraboloid_factor(x: FloatArray, nu: FloatArray, support: str) -> FloatArray
 
 
 def _factor(shape: str, x: FloatArray, nu: FloatArray, support: str) -> FloatArray:
+    """`base` times the exponential of the fitted polynomial, shape (n,)."""
     fit = coefficients()[f"{shape}, {support}"]
     values = design(x, nu, support, fit) @ np.array(fit["coefficients"])
     return np.asarray(base(shape, x, nu, support) * np.exp(values))
@@ -52,12 +53,12 @@ def _factor(shape: str, x: FloatArray, nu: FloatArray, support: str) -> FloatArr
 
 @cache
 def coefficients() -> dict[str, Any]:
-    """What `compact.toml` holds, by shape and support."""
+    """Contents of `compact.toml`, by shape and support."""
     return tomllib.loads(PLACE.read_text(encoding="utf-8"))
 
 
 def base(shape: str, x: FloatArray, nu: FloatArray, support: str) -> FloatArray:
-    """The half-space, a first correction, and the thin layer, added."""
+    """Sum of the half-space, a first correction, and the thin layer."""
     springs = FIRST[shape] * x
     if support == "unbonded":
         return 1 + springs

@@ -116,7 +116,7 @@ class Adhering(Family):
         attached: Which points are in contact, shape (n,).
         elastic_error: Relative error of the force without adhesion.
         varied: What u stands for.
-        is_scaled: Whether the modulus is free beside u.
+        is_scaled: Whether the modulus is fitted in addition to u.
         starts: First values of u.
     """
 

@@ -134,7 +134,7 @@ def check_contact(data: Data, gain: float, residual: FloatArray) -> None:
 
     Args:
         data: The curve.
-        gain: Decrease of the sum of squares by the contact beside the background [N^2].
+        gain: Decrease of the sum of squares by the contact in addition to the background [N^2].
         residual: Of the fit with a contact [N], shape (n,).
 
     Raises:

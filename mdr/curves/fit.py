@@ -45,7 +45,7 @@ _STEP: Final = 1e-3
 # Widening of the interval of E by a free square of the depth in the background, from which the baseline is too short.
 # At twice that shifts of several intervals are silent; at half of it curves with a baseline of half the travel warn.
 _BENT: Final = 3.0
-# Points in contact beside the parameters of the contact. With one less the interval of E may be ten times too narrow.
+# Least points in contact minus parameters of the contact. With one less the interval of E may be ten times too narrow.
 _SPARE_POINTS: Final = 2
 
 

@@ -59,7 +59,7 @@ def creep_of(solid: Relaxation) -> tuple[float, FloatArray, FloatArray]:
     """J(t) = J_inf - sum_j r_j exp(-t/lambda_j): J_inf [1/Pa], r_j [1/Pa] and lambda_j [s], each of shape (k,).
 
     With D(s) = G_inf + eta s + sum_j G_j s tau_j/(1 + s tau_j) its transform is 1/(s D), and D(-1/lambda_j) = 0. The
-    zeros are eigenvalues of the equations of the strains in the dashpots. A dashpot eta has no branches beside it.
+    zeros are eigenvalues of the equations of the strains in the dashpots. A dashpot eta allows no branches.
     """
     m, moduli, times = solid.moduli.size, solid.moduli, solid.times
     if solid.viscosity > 0.0:
@@ -103,7 +103,7 @@ def force_of_depth(curve: ForceCurve, solid: Relaxation, time: FloatArray, depth
 
 
 def _withdrawn(solid: Relaxation, time: FloatArray, d: FloatArray, phi: FloatArray, start: int) -> FloatArray:
-    """F/3 [N] from the instant `start` on, with t1 by halving for all instants at once."""
+    """F/3 [N] from the instant `start` on; bisection gives t1 of all instants together."""
     parts, depth_parts = ([convolved(time, values, tau) for tau in solid.times] for values in (phi, d))
     late, n = time[start:], start - 1
 

@@ -32,7 +32,7 @@ _REACH = 21.5
 _RATIO, _LEVELS = 0.15, 17
 # Share of a punch's radius within which shear goes with the radius: half of it loses digits, twice leaves 4e-5.
 _NEAR_AXIS = 3e-3
-# Place over a up to which polynomials of the density serve beside the edge: with 1.005 they err by 1e-6 at a/h = 50.
+# r/a up to which polynomials of the density are used outside the edge. With 1.005 the error is 1e-6 at a/h = 50.
 _BESIDE = 1 + 1e-6
 
 ComplexArray: TypeAlias = NDArray[np.complex128]
@@ -182,7 +182,7 @@ class Adhered:
         return 2 * self.beta / np.pi / self.a * abel(s, (1 - s) * (1 + s), self.rule, self.density)
 
     def displacement(self, s: FloatArray) -> FloatArray:
-        """u_z beside the punch, at radii s > 1 over a, over its depth."""
+        """u_z/depth outside the punch at s = r/a > 1."""
         t, rest, w = self.rule
         phi, _ = self.density(t, rest)
         near = w / np.sqrt((s[:, None] - 1 + rest) * (s[:, None] + t)) @ phi.real

@@ -24,12 +24,12 @@ from mdr.friction.adhered_punch import Adhered, Rule, abel, towards_one
 from mdr.inside import wave_rule
 from mdr.profiles import Tip
 
-# Punches and places of the table, at a/h = 0 and per a/h; a fifth less loses three digits.
+# Numbers of radii a and of x in the table: at a/h = 0, and per a/h. With a fifth less three digits are lost.
 _PUNCHES, _PLACES = (26, 4.5), (28, 5.5)
-# At least so many for the root of the longest length that a/h spans: with 6 growth over a base a hundred times as soft
-# errs by 1e-7.
+# Least number of both per `Punches.root`. With 6 the error over a base a hundred times as soft is 1e-7.
 _PER_ROOT = 9.0
-# Unknowns of a stretch likewise, and the most for the root of the length: with 70 rounding leaves 5e-8.
+# Unknowns of a stretch: at a/h = 0 and per a/h, per `Punches.root`, and their largest number. With 70 rounding errors
+# are 5e-8.
 _UNKNOWNS, _UNKNOWNS_PER_ROOT, _MOST = (20, 5.0), 2.5, 46.0
 
 
@@ -69,7 +69,7 @@ class Punches:
 
 @lru_cache(maxsize=32)
 def punches_of(kernel: StackKernel, end: float, extra: int) -> Punches:
-    """The punches of one layer, remembered."""
+    """The punches of one layer, cached."""
     return Punches(kernel, end, extra)
 
 
@@ -84,7 +84,7 @@ class Stretch:
     count: int
 
     def steps(self, low: float, high: float, rule: Rule, *, to_high: bool) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Of radii between low and high: a, its distance from high (or low) with all digits, d delta by coefficient."""
+        """Quadrature from low to high: radii a, exact distances from high (or low), d delta per coefficient."""
         length, (v, rest, w) = self.end - self.start, rule
         first, last = (np.clip((x - self.start) / length, 0, 1) ** (1 / self.power) for x in (low, high))
         u = first + (last - first) * (v if to_high else rest)
@@ -98,11 +98,11 @@ class Growth:
     """The contact of one tip up to the radius `end`.
 
     Args:
-        kernel: Of the layer.
+        kernel: Kernel of the layer.
         tip: The profile, in metres.
         unit: Length of the kernel [m].
         end: Largest radius in units.
-        extra: Added to the sizes of the discretisation.
+        extra: Increase of the sizes of the discretisation.
     """
 
     def __init__(self, kernel: StackKernel, tip: Tip, unit: float, end: float, extra: int) -> None:
@@ -119,7 +119,10 @@ class Growth:
         return self.tip.transform(np.asarray(x, dtype=np.float64) * self.unit) / self.unit
 
     def _follow(self, lead: float, count: int) -> None:
-        """d delta, stretch after stretch, by least squares at more places than unknowns."""
+        """Solve g_hs(x) = int_0^x M d delta for d delta on one new after another, by least squares.
+
+        The number of equations is 1.25 times that of the unknowns; `lead` is the exponent of delta at the tip.
+        """
         flat, unit = self.tip.flat / self.unit, self.unit
         ends = [flat, *(b / unit for b in self.tip.breaks if flat < b / unit < self.end), self.end]
         self.parts: list[tuple[Stretch, FloatArray]] = []
@@ -133,7 +136,7 @@ class Growth:
             self.parts.append((new, np.linalg.lstsq(rows, scale * (self._height(x) - known), rcond=None)[0]))
 
     def _followed(self, stretch: Stretch, x: float) -> FloatArray:
-        """int M(x; a) d delta over the radii of one stretch up to x, by coefficient."""
+        """int M(x; a) d delta over the radii of one stretch up to x, per coefficient of d delta."""
         a, gap, rows = stretch.steps(0.0, x, self.rule, to_high=True)
         G = chebyshev.chebval(2 * x / self.punches.end - 1, self.punches.at(a))
         turned = np.exp(1j * self.punches.largest.eps * np.log((x + a) / gap)) * G
@@ -151,13 +154,13 @@ class Growth:
         return depth, force, self.punches.stiffness(radii)
 
     def _beyond(self, x: float, a: float, rule: Rule) -> list[tuple[FloatArray, FloatArray, FloatArray]]:
-        """Radii from x to a: themselves, their distances from x, and d delta, of each stretch."""
+        """Quadrature from x to a on each stretch: radii, their distances from x, and d delta."""
         reached = [(s, c) for s, c in self.parts if s.end > x and s.start < a]
         found = [(s.steps(x, a, rule, to_high=False), c) for s, c in reached]
         return [(size, gap, rows @ c) for (size, gap, rows), c in found]
 
     def tractions(self, r: FloatArray, a: float) -> FloatArray:
-        """p and q over E* at radii r < a of the contact of radius a, shape (2, n): of all punches larger than r."""
+        """p and q over E* at radii r < a of the contact of radius a, shape (2, n): sums over punches larger than r."""
         found, of, (_, rest, w) = np.zeros((2, r.size)), self.punches.largest, self.rule
         squared = 1 - rest**2, rest**2, 2 * rest * w  # tractions of a punch are 1/sqrt(gap)
         for i, x in enumerate(r.tolist()):
@@ -167,7 +170,7 @@ class Growth:
         return 2 * of.beta / np.pi * found
 
     def displacement(self, r: FloatArray, a: float) -> FloatArray:
-        """u_z at radii r > a beside the contact of radius a: of the density of all punches together."""
+        """u_z at radii r > a outside the contact of radius a, from the density summed over all punches."""
         of, (v, rest, w) = self.punches.largest, self.rule
         t = a * v
         phi = a * w * np.array([self._density(x, a) for x in t.tolist()])
@@ -182,7 +185,7 @@ class Growth:
         return np.asarray(2 / np.pi * (2 * of.beta * near + added))
 
     def _density(self, x: float, a: float) -> complex:
-        """Phi at x: of all punches larger than x."""
+        """Phi at x, summed over all punches larger than x."""
         of, total = self.punches.largest, 0j
         for size, gap, step in self._beyond(x, a, self.rule):
             G = chebyshev.chebval(2 * x / self.punches.end - 1, self.punches.at(size))
@@ -191,7 +194,7 @@ class Growth:
 
 
 class _Densities:
-    """Phi and (1 - t^2) Phi' of unit punches of some sizes, each at its own t: from the table."""
+    """Phi and (1 - t^2) Phi' of unit punches of given sizes, each at its own t, `short` = 1 - t, from the table."""
 
     def __init__(self, punches: Punches, size: FloatArray) -> None:
         self.of, self.end, self.size = punches.largest, punches.end, size[:, None]

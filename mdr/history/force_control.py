@@ -12,8 +12,8 @@ Chebyshev's points t_i follow from the sums of displacements at these instants,
     2 E* int u(x, t_i) y_1^2(x) dx = F_e(t_i),   u = delta - g in contact.
 
 Springs in contact take part with their depth alone, whatever the path to it. Panels of springs end at the fronts of the
-last march, so that these sums are Gauss rules, and the march is repeated until the depth stays: the sum is stationary
-in the fronts.
+last march, so that these sums are Gauss rules, and the march is repeated until the depth converges: the sum is
+stationary in the fronts.
 """
 
 from __future__ import annotations
@@ -32,22 +32,22 @@ from mdr.history.fronts import Layout
 from mdr.history.spring_bed import Path, SpringBed, followed
 from mdr.history.spring_law import SpringLaw
 
-# Samples of F_e in all intervals of a history and in each, and rounds that bring its turns sixteen times closer. A turn
-# off by 1e-6 of an interval costs 1e-9 of the depth.
+# Samples of F_e in all intervals of a history and in each, and refinements by 16 of its turns. An error of a turn of
+# 1e-6 of the interval changes the depth by 1e-9.
 _SAMPLES, _MOST_SAMPLES, _ZOOMS = 2000, 33, 5
-# Share of an interval below which a turn is one with its end.
+# Distance over the length of an interval below which a turn coincides with its end.
 _APART = 1e-6
-# Corrections of a substep, and halvings of one; eight and none are usual.
+# Largest numbers of corrections of a substep, and of halvings of a correction; eight and none are usual.
 _MOST_STEPS, _MOST_HALVINGS = 60, 6
-# Share of the largest F_e to which it is met, and that may be missed: it is stated. Before a contact ends free springs
-# alone may exceed F_e by the errors of the way so far.
+# Relative tolerance of F_e, and the largest error that is accepted, which is stated. Before a contact ends free springs
+# alone may exceed F_e by the accumulated errors.
 _TOLERANCE, _ACCEPTABLE = 1e-13, 1e-5
-# Springs among which the lowest is sought, and how often: each round comes twenty times closer.
+# Springs among which the lowest is selected, and number of refinements, each by a factor of twenty.
 _AMONG, _ROUNDS = 41, 4
-# Share of all springs whose stiffness starts a substep in which hardly any touch.
+# Least stiffness for corrections, over that of all springs, in substeps in which hardly any touch.
 _LEAST = 1e-3
-# Ratio of neighbouring substeps while a force fades to zero, twice the degree of them beyond half of its interval.
-# Nothing presses in the last one. With half as many 1e-4 is left.
+# Ratio of neighbouring substeps while a force decreases to zero; the second half of the interval has twice as many as
+# the degree. With half of these the error is 1e-4.
 _SHORTER = 0.35
 
 
@@ -56,14 +56,14 @@ class Steps(NamedTuple):
 
     Attributes:
         time: Ends of substeps [s], shape (n + 1,).
-        force: F there [N].
+        force: F [N] at `time`.
         given: Indices of the instants of the history.
         nodes: Shares of a substep at which depths are determined, shape (q,).
-        instants: All of these [s], shape (n, q).
-        load: F_e [N] at these, shape (n, q).
+        instants: Nodes of all substeps [s], shape (n, q).
+        load: F_e [N] at `instants`, shape (n, q).
         start: F_e [N] at the first instant.
-        from_rises: From rises at the nodes to coefficients of a polynomial in the share of a substep, without the
-            constant, shape (q, q).
+        from_rises: Matrix from depth increases at the nodes to coefficients of a polynomial in the share of a substep,
+            without the constant, shape (q, q).
     """
 
     time: FloatArray
@@ -85,10 +85,10 @@ def steps_of(law: SpringLaw, loading: ForceHistory, substeps: int, degree: int) 
     """Substeps of each interval, and of its parts before and after a turn of F_e.
 
     Args:
-        law: Of the springs.
+        law: Law of the springs.
         loading: The force.
-        substeps: Number of them. Half are shared out by duration, half to all intervals alike: short ones may be steep.
-        degree: Of the depth in each.
+        substeps: Their number. Half are distributed by duration, half equally: short intervals may be steep.
+        degree: Degree of the depth in each substep.
     """
     ends = np.sort(np.append(loading.time, turns(law, loading)))
     force = np.interp(ends, loading.time, loading.force)
@@ -136,7 +136,7 @@ def turns(law: SpringLaw, loading: ForceHistory) -> FloatArray:
 
 
 def never_larger(law: SpringLaw, load: FloatArray) -> NDArray[np.bool_]:
-    """At which instants F_e [N] has never been larger, but for rounding, shape (n,)."""
+    """Whether F_e [N] is its largest value so far, within rounding, at each instant, shape (n,)."""
     rounding = EPS * (load.size + 4.0 * (law.times.size + 1))
     return np.asarray(load >= np.maximum.accumulate(load) * (1 - rounding))
 
@@ -146,14 +146,14 @@ class March:
     """Depths under a force on one bed of springs.
 
     Attributes:
-        law: Of the springs.
-        layout: Where they stand.
-        weight: Stiffness of each in contact [N/m], shape (n,).
+        law: Law of the springs.
+        layout: Positions of the springs.
+        weight: Stiffness of each spring [N/m], shape (n,).
         steps: Substeps.
         closed: Depths [m] of the elastic layer under F_e at the first instant and all nodes, shape (1 + n q,).
-        known: Where these are the depths in whole substeps, shape (n,).
-        before: Depths at nodes in an earlier march, or guessed, from which substeps start, shape (n, q).
-        missed: Share of the largest F_e by which it is missed.
+        known: Whether `closed` is the depth in the whole substep, shape (n,).
+        before: First guess of the depths at nodes, e.g. of an earlier march, shape (n, q).
+        missed: Largest error of F_e over the largest F_e.
         depth: Depths at nodes [m], shape (n, q).
         fronts: Radii [m] at which contact ends at all nodes, negative where nothing touches, shape (n, q).
     """
@@ -173,7 +173,7 @@ class March:
         """Depths at all ends of substeps.
 
         Raises:
-            NotConvergedError: If no depth carries the force.
+            NotConvergedError: If no depth is found for a force.
         """
         (count, degree), steps = self.steps.load.shape, self.steps
         bed = SpringBed.undeformed(self.law, self.layout.g, float(self.closed[0]))
@@ -203,7 +203,7 @@ class March:
 
     @cached_property
     def _dashpots(self) -> tuple[FloatArray, FloatArray]:
-        """From values at the start and the nodes to integrals up to the nodes, and from rises to slopes there."""
+        """Matrices from values at start and nodes to integrals up to the nodes, and from depth increases to slopes."""
         nodes, order = np.append(0.0, self.steps.nodes), np.arange(1, self.steps.nodes.size + 2)
         powers = np.vander(nodes, nodes.size, increasing=True)
         slopes = powers[:, :-1] * order[:-1] @ self.steps.from_rises
@@ -212,7 +212,7 @@ class March:
     def _correction(self, missed: FloatArray, touching: NDArray[np.bool_], before: SpringBed) -> FloatArray:
         """Change of depths at the nodes that changes F_e there by -missed, to first order.
 
-        Springs that let go keep nothing of the way before; on dashpots they keep all of it, dF_e = int K(t) dv(t) dt.
+        Without dashpots a spring that loses contact no longer counts; with them dF_e = int K(t) dv(t) dt.
         """
         stiffness = np.append(before.touching @ self.weight, touching @ self.weight)
         stiffness = np.maximum(stiffness, max(_LEAST * self.weight.sum(), stiffness.max() / 4))
@@ -228,7 +228,10 @@ class March:
     def _met(
         self, before: SpringBed, start: float, k: int, span: float
     ) -> tuple[FloatArray, SpringBed, NDArray[np.bool_]]:
-        """Way of substep k that meets F_e at its nodes, from the stiffness in contact; bed and contact."""
+        """Solve substep k for the depth at which the force is F_e at its nodes, by damped Newton steps.
+
+        Returns the coefficients of the depth, the bed at the end, and which springs touch at the nodes.
+        """
         steps = self.steps
         target, largest = steps.load[k], float(steps.load.max())
         y = start + self.before[k] - (self.before[k - 1, -1] if k else self.closed[0])
@@ -236,15 +239,15 @@ class March:
         for _ in range(_MOST_STEPS):
             bed, way = before.copy(), self._way(start, y + move)
             surface, touching = bed.advance(way, span, steps.nodes)
-            missed = surface @ self.weight - target
-            worst = float(np.abs(missed).max()) / largest
-            if worst < best[0]:
-                best, y = (worst, way, bed, touching), y + move
-                move = self._correction(missed, touching, before)
+            load_error = surface @ self.weight - target
+            relative = float(np.abs(load_error).max()) / largest
+            if relative < best[0]:
+                best, y = (relative, way, bed, touching), y + move
+                move = self._correction(load_error, touching, before)
                 halvings = 0
             else:
                 move, halvings = move / 2, halvings + 1
-            if worst <= _TOLERANCE or halvings > _MOST_HALVINGS:
+            if relative <= _TOLERANCE or halvings > _MOST_HALVINGS:
                 break
         if best[0] > _ACCEPTABLE:
             raise NotConvergedError("no depth carries the prescribed force", {"force": best[0]})
@@ -253,9 +256,9 @@ class March:
 
 
 def _fronts(time: FloatArray, radius: FloatArray, instants: FloatArray) -> FloatArray:
-    """Front [m] at instants [s], linear in time between passing springs at some radii [m], when these touch or let go.
+    """Front [m] at instants [s], linear between the instants when springs at given radii [m] touch or lose contact.
 
-    A front that turns passes the same spring twice, and goes on beyond it as fast as before and after.
+    A front that turns passes the same spring twice. In between it moves with its speed before and after.
     """
     apart = time[-1] + instants.max()
     time, radius = np.concatenate([[-2 * apart, -apart], time, [apart, 2 * apart]]), np.pad(radius, 2, mode="edge")
@@ -271,9 +274,9 @@ def resting_depth(law: SpringLaw, g: FloatArray, path: Path, k: int) -> float:
     """Depth [m] of an indenter that rests on the surface at a free instant k: the least u + g.
 
     Args:
-        law: Of the springs.
-        g: Springs to begin with [m], increasing.
-        path: Depths.
+        law: Law of the springs.
+        g: g(x) of the first springs [m], increasing.
+        path: Depths over time.
         k: Number of the instant.
     """
     for _ in range(_ROUNDS):

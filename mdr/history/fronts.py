@@ -31,7 +31,7 @@ from mdr.spring_bed import Springs
 _MOST_STEPS = 100
 # Springs among which fronts are bracketed, besides one between all depths of the history.
 _SPREAD = 33
-# Ratio of neighbouring panels beside a front, and the most of them. With 2 springs double.
+# Ratio of the widths of neighbouring panels near a front, and their largest number. With 2 springs double.
 _GROWTH, _MOST_PANELS = 4.0, 12
 # Share of a stretch between kinks below which two ends of panels are one.
 _APART = 1e-9
@@ -183,7 +183,7 @@ def _refined(law: SpringLaw, path: Path, instants: NDArray[np.intp], low: FloatA
 
 
 def _edges(law: SpringLaw, path: Path, instants: NDArray[np.intp], g: FloatArray) -> FloatArray:
-    """`SpringBed.edge` of one spring per instant, each at its own, which increase."""
+    """`SpringBed.edge` of spring i at the i-th of the instants, in increasing order, in one march, shape (n,)."""
     found, done = np.empty(g.size), 0
     bed = SpringBed.undeformed(law, g, float(path.depth[0]))
     speed = path.final_speed

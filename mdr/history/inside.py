@@ -236,7 +236,7 @@ class HistoryFields:
         return found
 
     def _panels_to(self, springs: Springs, b: float, front: float) -> FloatArray:
-        """Panels of [0, b], closer beside a front at which springs let go by and by."""
+        """Panels of [0, b], graded towards a front at which springs lose contact one after another."""
         tip, rows, fronts = springs.tip, [], self.answer.radius.tolist()
         beside = front + np.concatenate([[0.0], (b - front) * _BESIDE_FRONT, -front * _BESIDE_FRONT])
         flat = springs.tip.flat

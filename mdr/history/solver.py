@@ -62,7 +62,7 @@ def solve_history(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
 
     Raises:
         InvalidInput: If a force is negative, nothing is ever pressed, or the indenter ends before.
-        UnsupportedSceneError: If the contact would leave a gap inside itself, or touch beside itself.
+        UnsupportedSceneError: If the contact would have a gap inside, or touch outside the contact.
         NotConvergedError: If a spring is touched and released without end, or no depth carries a force.
     """
     loading, log = scene.loading, StageLog()

@@ -8,8 +8,8 @@ or a flat end, where g - d_0 is a power series in the root of a - b. The logarit
 profile. Nodes are images of Lobatto nodes in ln(1 + u/u_0), a = u at a tip and b + u^2 elsewhere.
 
 Under a power law f = C r^n lengths count in thicknesses L and depths in C L^n, so that one track serves all layers of
-one kind. Other profiles count in metres. A track reaches up to a radius from a ladder b + L 2^k, so that no number of
-an impact depends on what is solved along with it.
+one kind. Other profiles count in metres. A track ends at one of the radii b + L 2^k of a ladder, so that the answer to
+an impact does not depend on the others of its batch.
 """
 
 from __future__ import annotations
@@ -34,20 +34,20 @@ from mdr.profiles import tip_of
 from mdr.radius_search import largest_radius
 from mdr.spring_bed import Springs
 
-# Width of the polynomials in ln(u), and nodes less than `Sizes.radii`. Twice as wide, or with half the nodes, K errs by
-# 1e-7 in place of 1e-13.
+# Width of the panels in ln(u), and nodes less than `Sizes.radii`. With twice the width or half the nodes the error of K
+# is 1e-7 instead of 1e-13.
 _WIDTH, _FEWER = 0.5, 4
-# Octaves of u below the smallest length, and most octaves of a piece. With fewer of both, touches are less smooth.
+# Octaves of u below the smallest length, and largest number of octaves of a piece. Fewer make first touch less smooth.
 _BELOW, _MOST = 2, 40
-# Least binary logarithm of the ladder's radii over the unit of length.
+# Least log2 of the tabulated radii over the unit of length.
 _LOWEST = -60
-# Force times depth over the energy that is stored: at most, on thin layers under cones, and usually.
+# Force times depth over the stored energy: its upper bound (cones on thin layers), and a usual value.
 _MOST_WORK, _USUAL_WORK = 12.0, 2.5
-# Flattest tip r^n, and binary logarithm of the least heights of a ladder: beyond, energies underflow.
+# Largest exponent n of a tip r^n, and least log2 of tabulated heights: beyond these, energies underflow.
 _FLATTEST, _UNDERFLOW = 40.0, -900.0
-# Share of the radius of an upright end that contacts keep away from it.
+# Least distance of contacts from an upright end, over its radius.
 _NEAR_END = 1e-6
-# Tracks and ladders that are remembered.
+# Number of tracks and ladders that are cached.
 _KEPT = 128
 
 
@@ -60,7 +60,7 @@ class Piece(NamedTuple):
         power: q.
         scale: z_0.
         is_tip: Whether it starts at a point, where K and a vanish; then the polynomials are those of K/z and a/z.
-        ends: Of the polynomials in ln(1 + z/z_0), shape (m + 1,).
+        ends: Ends of the m panels in ln(1 + z/z_0), shape (m + 1,).
         series: Chebyshev coefficients of K, a and dK/dln(1 + z/z_0), shape (m, k, 3).
     """
 
@@ -73,13 +73,13 @@ class Piece(NamedTuple):
     series: FloatArray
 
     def at(self, depth: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """K, dK/d(depth) and a at depths of any shape; constant beyond the piece."""
+        """K, dK/d(depth) and a at depths of any shape; beyond the piece those of its end."""
         rise = np.clip(depth - self.start, 1e-300, self.end - self.start)
         z = rise ** (1 / self.power)
         place = np.log1p(z / self.scale)
         which = np.clip(np.searchsorted(self.ends, place) - 1, 0, len(self.series) - 1)
         low, high = self.ends[which], self.ends[which + 1]
-        # As cosines: a few points cost a tenth of a recurrence.
+        # T_n(cos x) = cos(n x): ten times as fast as the recurrence for a few points.
         angle = np.arccos(np.clip((2 * place - low - high) / (high - low), -1.0, 1.0))
         basis = np.cos(angle[..., None] * np.arange(self.series.shape[1]))
         K, a, slope = np.moveaxis((basis[..., None] * self.series[which]).sum(axis=-2), -1, 0)
@@ -137,15 +137,18 @@ class Track:
 def _piece(
     springs: Springs, low: float, high: float, start: float, stiffness: float
 ) -> tuple[Piece | None, float, float | None]:
-    """The piece between two excesses from the depth and K at its start; K at its end; the radius where g falls."""
+    """Interpolate K and a for radii from b + `low` to b + `high`; depth and K at `low` are `start` and `stiffness`.
+
+    Returns the piece (None if g falls before one panel is full), K at its end, and the last radius before g falls.
+    """
     flat, is_tip = springs.tip.flat, springs.tip.flat + low == 0
     count = springs.sizes.radii - _FEWER
-    # Towards an upright end u has no end: a = u/(1 + u/room).
-    room = springs.tip.end - flat - low if springs.tip.profile.ends_upright else np.inf
-    top = (high - low) / (1 - (high - low) / room)
+    # An upright end of the profile is at u = infinity: a = u/(1 + u/span).
+    span = springs.tip.end - flat - low if springs.tip.profile.ends_upright else np.inf
+    top = (high - low) / (1 - (high - low) / span)
     share, least = _shares(springs, flat + low, top, count)
-    grown = top * share ** (1 if is_tip else 2)
-    excess = low + grown / (1 + grown / room)
+    u = top * share ** (1 if is_tip else 2)
+    excess = low + u / (1 + u / span)
     radius = flat + excess
     values = springs.at(radius, excess if flat else None)
     falls = np.flatnonzero(np.diff(values.g, prepend=start) <= 0)
@@ -183,7 +186,7 @@ def _shares(springs: Springs, start: float, top: float, count: int) -> tuple[Flo
 
 
 def _series(place: FloatArray, rows: FloatArray, ends: FloatArray) -> FloatArray:
-    """Chebyshev coefficients between ends through rows at places, and of the first row's derivative, shape (k, 3)."""
+    """Chebyshev coefficients of the interpolants of two rows, and of the derivative of the first, shape (k, 3)."""
     half = (ends[1] - ends[0]) / 2
     basis = chebyshev.chebvander((place - ends[0]) / half - 1, place.size - 1)
     fit = np.linalg.solve(basis, rows.T)
@@ -194,8 +197,8 @@ class Bed(NamedTuple):
     """Layer and profile in their own units, 2 E* = 1.
 
     Attributes:
-        kernel: Of the layer.
-        unit: Length in which the kernel counts.
+        kernel: Kernel of the layer.
+        unit: Unit of length of the kernel.
         indenter: Profile.
         tabulated: Layer and table that springs come from; None if from the layer's equation.
     """
@@ -206,7 +209,7 @@ class Bed(NamedTuple):
     tabulated: tuple[ElasticLayer, FlatPunchSource] | None = None
 
     def springs(self, sizes: Sizes) -> Springs:
-        """The springs."""
+        """The springs at the given resolution."""
         if self.tabulated is not None:
             layer, source = self.tabulated
             springs = springs_on(layer, self.indenter, source)
@@ -254,26 +257,26 @@ class Ladder:
 
     @property
     def is_whole(self) -> bool:
-        """Whether contacts cannot be wider."""
+        """Whether the last level is the widest possible contact."""
         return not self.excess.size or self.excess[-1] >= self._last
 
     def _climb(self, levels: FloatArray) -> None:
-        """Add levels, the last one at most at the widest contact."""
-        grown = self.springs.unit * np.exp2(levels)
-        excess = grown / (1 + grown / (self.tip.end - self.tip.flat))
+        """Append levels; the last one is at the widest possible contact if they exceed it."""
+        u = self.springs.unit * np.exp2(levels)
+        excess = u / (1 + u / (self.tip.end - self.tip.flat))
         inner = excess < self._last * (1 - _NEAR_END)
         excess = excess[inner] if inner.all() else np.append(excess[inner], self._last)
         values = self.springs.coarse.at(self.tip.flat + excess, excess)
-        found = np.stack([excess, values.g, values.g * values.K - values.M])
-        self.excess, self.depth, self.force = np.hstack([[self.excess, self.depth, self.force], found])
+        columns = np.stack([excess, values.g, values.g * values.K - values.M])
+        self.excess, self.depth, self.force = np.hstack([[self.excess, self.depth, self.force], columns])
 
     def extend(self) -> None:
-        """Add a level, if contacts can be wider."""
+        """Append one level, unless the last one is the widest possible contact."""
         if not self.is_whole:
             self._climb(np.array([self.lowest + float(self.excess.size)]))
 
     def level(self, energy: float, impulse: float) -> int:
-        """The level at which an elastic layer stores an energy, or a dashpot has taken an impulse, surely."""
+        """The first level at which the stored energy or the impulse of a dashpot certainly exceeds the given one."""
         while True:
             reached = (self.force * self.depth > _MOST_WORK * energy) | (self.force > 2 * impulse)
             if reached.any() or self.is_whole:
@@ -281,7 +284,7 @@ class Ladder:
             self.extend()
 
     def depth_of(self, energy: float, impulse: float) -> tuple[float, float]:
-        """Depths where that energy and that impulse are reached, roughly."""
+        """Approximate depths at which an elastic layer stores the energy, and a dashpot takes up the impulse."""
         self.level(energy, impulse)
         with np.errstate(divide="ignore"):
             depth, force = np.log(self.depth), np.log(self.force)

@@ -14,7 +14,7 @@ from contact.records.validation import FloatArray, IntArray
 from mdr.impact.motion import Bodies, Growth, Phase, Shrinkage, State
 from mdr.impact.rules import rule
 
-# Places per phase between which the largest force is refined; with a third of them narrow peaks are missed.
+# Samples of a phase from which the search for the largest force starts. With a third of them narrow peaks are missed.
 _PLACES = 129
 
 
@@ -35,8 +35,8 @@ class Course:
         parts: Growths in their order, each with its shrinkage.
         turn: State at the turn.
         end: State at the release.
-        unsure: Sums of the last corrections of speeds over v_0, of ln T, of rebounds over their speeds, shape (3, n).
-        short: Whether a contact grows beyond its track, shape (n,); its numbers are void then.
+        unsure: Sums over the phases of the last corrections of speed/v_0, ln(duration) and rebound/speed, shape (3, n).
+        short: Whether a contact grows beyond its track, shape (n,); its results are invalid then.
     """
 
     bodies: Bodies
@@ -48,7 +48,7 @@ class Course:
 
     @property
     def is_elastic(self) -> bool:
-        """Whether nothing relaxes, so that the shrinkage mirrors the growth."""
+        """Whether the layer is elastic, so that the shrinkage mirrors the growth."""
         return not (self.bodies.rates.any() or self.bodies.viscosity.any())
 
     def outcomes(self) -> FloatArray:
@@ -61,13 +61,13 @@ class Course:
 
 
 def course(bodies: Bodies, nodes: int, guess: Course | FloatArray) -> Course:
-    """Motions of some impacts.
+    """Compute the motions of n impacts.
 
     Args:
         bodies: Impacts on flat punches only, or on tips of one exponent only, with equal numbers of branches.
-        nodes: Per phase.
-        guess: The same motions at another resolution; or durations of the growths [s] and the rates [1/s] at which they
-            lose their speed at first, shape (2, n).
+        nodes: Number of nodes per phase.
+        guess: The same motions at another resolution; or durations of the growths [s] and their initial decay rates
+            of the speed [1/s], shape (2, n).
     """
     n, m = bodies.rates.shape
     state = State(np.zeros(n), bodies.velocity.copy(), np.zeros(n), np.zeros((n, m)), np.zeros((n, m)))
@@ -85,7 +85,7 @@ def course(bodies: Bodies, nodes: int, guess: Course | FloatArray) -> Course:
         if not found.is_elastic:
             shrinkage = _mirrored(growth, state.take(index), like.parts[number].shrinkage if like else None)
             shrinkage.solve(growth, searched=like is not None)
-            # Where a dashpot stopped a body, speeds of its rebound are far below v_0.
+            # If a dashpot has stopped a body, the speeds of its rebound are far below v_0.
             whole = np.abs(shrinkage.speed).max(axis=1) / shrinkage.bodies.velocity
             speed, duration = shrinkage.unsure
             unsure[:, index] += np.stack([speed * whole, duration, speed])
@@ -99,9 +99,9 @@ def course(bodies: Bodies, nodes: int, guess: Course | FloatArray) -> Course:
 def _growths(
     bodies: Bodies, nodes: int, guess: FloatArray, state: State, short: NDArray[np.bool_]
 ) -> Iterator[Pressed]:
-    """Growths piece by piece; the state advances to the turn.
+    """Solve the growths piece by piece; the state advances to the turn.
 
-    Each piece is tried up to the turn. Bodies that would turn beyond its end are solved again up to there.
+    On each piece the turn is sought first. Bodies that turn beyond its end are solved again up to the end.
     """
     going = np.arange(bodies.velocity.size)
     r = rule(nodes, bodies.power, ending=False)
@@ -133,7 +133,7 @@ def _growths(
 
 
 def _alike(bodies: Bodies, nodes: int, state: State, like: Course) -> Iterator[Pressed]:
-    """Growths through the pieces of another course."""
+    """Solve the growths through the same pieces as in another course, whose motion is the first guess."""
     for index, old, _ in like.parts:
         r = rule(nodes, old.rule.power, ending=False)
         speed = _speeds(old, np.broadcast_to(r.share[:-1], (index.size, nodes)))
@@ -143,18 +143,18 @@ def _alike(bodies: Bodies, nodes: int, state: State, like: Course) -> Iterator[P
 
 
 def _pressed(growth: Growth, index: IntArray, state: State, until: FloatArray | None) -> Pressed:
-    """A growth to the turn, or to depths `until`, with the state after it."""
+    """Solve a growth to the turn, or to depths `until`, and store the state at its end in `state`."""
     growth.solve(until)
     state.put(index, growth.finish(turned=until is None))
     return Pressed(index, growth, None)
 
 
 def _mirrored(growth: Growth, start: State, like: Shrinkage | None) -> Shrinkage:
-    """The shrinkage back through a growth, guessed from another resolution or as the elastic one."""
+    """The unsolved shrinkage back through a growth; the guess is that of another resolution or the elastic one."""
     nodes = growth.speed.shape[1]
     r = rule(nodes, growth.rule.power, ending=True)
     if like is None:
-        # A body that entered a piece at a speed v leaves it at -v, less what was lost before.
+        # An elastic body that entered a piece at a speed v leaves it at -v.
         duration, speed = growth.duration.copy(), -growth.speed[:, ::-1]
         share = np.broadcast_to(1 - r.share[:-1], speed.shape)
     else:
@@ -173,7 +173,7 @@ def _speeds(phase: Phase, share: FloatArray) -> FloatArray:
 
 
 def _largest(phase: Growth) -> FloatArray:
-    """Largest force over 2 E* of a growth, by Newton steps on its polynomial from the best of some places.
+    """Largest force over 2 E* of a growth, by Newton steps on its polynomial from the largest of `_PLACES` samples.
 
     A viscous layer relaxes at the turn, so that the force is smaller after it.
     """
@@ -181,10 +181,10 @@ def _largest(phase: Growth) -> FloatArray:
     places = np.linspace(0, 1, _PLACES)
     values = phase.rule.at(phase.force, np.broadcast_to(places, (fit.shape[0], _PLACES)))
     s = places[np.clip(values.argmax(axis=1), 1, _PLACES - 2)]
-    slope, bend = (legendre.legder(fit.T, order) * 2.0**order for order in (1, 2))
+    slope, second = (legendre.legder(fit.T, order) * 2.0**order for order in (1, 2))
     for _ in range(4):
         rise, curved = (
-            np.array([legendre.legval(2 * x - 1, one) for x, one in zip(s, c.T, strict=True)]) for c in (slope, bend)
+            np.array([legendre.legval(2 * x - 1, one) for x, one in zip(s, c.T, strict=True)]) for c in (slope, second)
         )
         s = np.clip(s - np.where(curved < 0, rise / np.where(curved < 0, curved, 1.0), 0.0), 0, 1)
     return np.asarray(np.maximum(phase.rule.at(phase.force, s[:, None])[:, 0], values.max(axis=1)))

@@ -42,7 +42,7 @@ def solve_impact(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[st
 
     Raises:
         NotConvergedError: If the indenter never rebounds.
-        InvalidInput: If it is pressed in beyond its rim.
+        InvalidInput: If the contact exceeds the radius of the indenter.
         UnsupportedSceneError: If it would touch outside its largest circle of contact, or pull inside.
     """
     log, known = StageLog(), {"accuracy": DEFAULT_ACCURACY, **settings}

@@ -20,7 +20,7 @@ from reports.fit_tables import fit_csv, fit_table, formula_table, map_csv, map_f
 from reports.terminal import console, show_facts, show_table
 from reports.words import small
 
-# Stands for all that is fitted beside the modulus by default.
+# Means: all that is fitted by default in addition to the modulus.
 ALL = "all"
 
 

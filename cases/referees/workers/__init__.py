@@ -1,1 +1,1 @@
-"""Scripts that run inside the interpreter of a referee: JSON in, JSON out, nothing of this project imported."""
+"""Scripts that run inside the interpreter of an outside solver: JSON in, JSON out, nothing of this project imported."""
