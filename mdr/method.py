@@ -108,7 +108,7 @@ def _not_relaxing(layer: ElasticLayer, model: str) -> str:
         return ""
     return (
         f"mdr models {model} in incompressible layers only, and {_compressible_part(layer)}; "
-        "use Layer.incompressible, or a method that models compressible ones"
+        "use nu = 0.5, or finite elements (--method fem)"
     )
 
 
@@ -141,8 +141,9 @@ def solver_of(scene: Scene) -> Solver | Unsupported:
         )
     if friction is not None and not friction.is_stick:
         return Unsupported(
-            f"mdr models full stick and frictionless contact, and Friction.coefficient = {friction.coefficient:g}; "
-            "give inf, or bound what friction moves with mdr.friction.statement.friction_effect"
+            f"mdr models frictionless contact and full stick (coefficient = inf), and Friction.coefficient = "
+            f"{friction.coefficient:g}; use finite elements (--method fem), or bound the change of the force without "
+            "friction in the scene (--advise)"
         )
     found = [solver for solver in SOLVERS if solver.takes(scene)]
     if found:

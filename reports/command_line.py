@@ -347,7 +347,8 @@ def run(arguments: list[str]) -> int:
     try:
         code = app(arguments, standalone_mode=False)
     except USAGE_ERROR as error:
-        return _complain(f"{error.format_message()} Try: contact-verify --help", USAGE)
+        command = [word for word in arguments[:1] if not word.startswith("-") and error.ctx and error.ctx.parent]
+        return _complain(f"{error.format_message()} Try: {' '.join(['contact-verify', *command])} --help", USAGE)
     except (KeyboardInterrupt, typer.Abort):
         return _complain("interrupted", INTERRUPTED)
     except Exception as error:

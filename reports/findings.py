@@ -272,11 +272,12 @@ def headline(run: Run) -> tuple[str, str]:
 
 
 def _unjudged(run: Run) -> list[str]:
-    """A sentence for each chosen method about which no claim was judged, with the reason of its first skip."""
+    """A sentence for each chosen method about which no claim was judged, with the reasons of its skipped scenes."""
     skipped = [answer for answer in run.answers if answer.status is Status.SKIP]
-    reasons = {method: next((one.reason for one in skipped if one.method == method), "") for method in run.unjudged}
+    reasons = {method: dict.fromkeys(one.reason for one in skipped if one.method == method) for method in run.unjudged}
     return [
-        f"no claim about {method} was judged{': ' if why else ''}{in_words(why)}" for method, why in reasons.items()
+        f"no claim about {method} was judged{': ' if why else ''}{'; '.join(map(in_words, why))}"
+        for method, why in reasons.items()
     ]
 
 

@@ -1,6 +1,7 @@
 """Pictures of one answer and of answers over a range of a number."""
 
 import numpy as np
+from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -28,7 +29,7 @@ POINTS = 240
 FEWEST = 8
 # Histories of more instants are drawn as symbols: solving between them would take longer than the answer.
 MOST_INSTANTS = 2000
-# States named in a legend, at most: more fill the picture.
+# Lines named in a legend, at most: of more, every second or third is named.
 MOST_NAMED = 8
 # A panel [inches]; one that stands alone is larger by this factor.
 SIZE, ALONE = (4.0, 2.9), 1.4
@@ -101,11 +102,26 @@ def between(scene: Scene) -> Scene | None:
 
 
 def sweep_figure(found: Sweep) -> Figure:
-    """Each quantity that is not constant over the varied number, a line for each state."""
+    """Each quantity that the varied number changes.
+
+    Scenes of more states than varied values have a line per value over the prescribed quantity, others a line per state
+    over the varied number.
+    """
     columns = found.columns
-    x_head, *heads = (head for head in columns if "_uncertainty" not in head)
-    states = len(columns[x_head]) // len(np.unique(columns[x_head]))
-    varied = [head for head in heads if np.ptp(columns[head][states - 1 :: states]) > 0.0] or heads
+    swept, *heads = (head for head in columns if "_uncertainty" not in head)
+    groups = [np.flatnonzero(columns[swept] == value) for value in dict.fromkeys(columns[swept].tolist())]
+    states = max(len(rows) for rows in groups)
+    last = [rows[-1] for rows in groups]
+    varied = [head for head in heads if np.ptp(columns[head][last]) > 0.0] or heads
+    prescribed = next((head for head in heads if head not in varied), "")
+    over_states = bool(prescribed) and states > len(groups)
+    if over_states:
+        scale, label = scaled_column(swept, columns[swept].tolist())
+        x_head, lines = prescribed, groups
+        names = [f"{label}: {value:.4g}" for value in columns[swept][last] / scale]
+    else:
+        x_head, lines = swept, [np.array([rows[k] for rows in groups if k < len(rows)]) for k in range(states)]
+        names = [f"state {state + 1}" for state in range(states)]
     size = (ALONE * SIZE[0], ALONE * SIZE[1]) if len(varied) == 1 else SIZE
     drawing, all_axes = panels(len(varied), size=size)
     for axes, head in zip(all_axes, varied, strict=True):
@@ -113,9 +129,11 @@ def sweep_figure(found: Sweep) -> Figure:
             scaled_column(name, columns[name].tolist()) for name in (x_head, head)
         )
         axes.set(xlabel=x_label, ylabel=y_label)
-        x, y = columns[x_head] / x_factor, columns[head] / y_factor
-        for state in range(states):
-            axes.plot(x[state::states], y[state::states], label=f"state {state + 1}")
-    if 1 < states <= MOST_NAMED:
-        drawing.legend(handles=all_axes[0].lines, loc="outside lower center", ncols=min(states, 4))
+        if over_states:
+            axes.set_prop_cycle(color=colormaps["viridis"](np.linspace(0.0, 0.9, len(names))))
+        for rows, name in zip(lines, names, strict=True):
+            axes.plot(columns[x_head][rows] / x_factor, columns[head][rows] / y_factor, label=name)
+    if len(names) > 1:
+        named = all_axes[0].lines[:: -(-len(names) // MOST_NAMED)]
+        drawing.legend(handles=named, loc="outside lower center", ncols=min(len(named), 4))
     return drawing

@@ -153,7 +153,7 @@ def _run(cases: Sequence[Case], options: RunOptions) -> Run:
     complete = True
     with (options.out / NAME).open("a", encoding="utf-8") as stream:
         run = _Run(options, stream, total=len(jobs))
-        run.tell("planned", f"{len(cases)} cases")
+        run.tell("planned", f"{len(cases)} case{'s' * (len(cases) != 1)}")
         for job, answer in kept:
             run.finish(job, answer, reused=True)
         try:

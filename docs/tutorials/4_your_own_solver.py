@@ -11,6 +11,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from cases.referees.from_depth import Response, answer_from_depths
 from contact import ContactPath, ContactRadii, Layer, Paraboloid, Scene, StageLog, Supported, Unsupported
 from mdr import Mdr
 
@@ -63,6 +64,30 @@ scene = Scene(layer=half_space, indenter=Paraboloid(radius_of_curvature=0.01), l
 mine, reference = MyHertz().solve(scene), Mdr().solve(scene)
 for quantity in ("indentation_depth", "normal_force"):
     print(quantity, getattr(mine, quantity) / getattr(reference, quantity) - 1)
+
+# %%
+# A solver that has only a force at depths needs less: ``answer_from_depths`` inverts it where radii or forces are
+# prescribed, and differentiates it for the stiffness. Most cases prescribe contact radii, so return those as well.
+
+
+class FromDepth(MyHertz):
+    """The right formula of Hertz, F = 4/3 E* sqrt(R) depth^1.5, given as a function of depth [m]."""
+
+    name: ClassVar[str] = "from_depth"
+
+    def solve(self, scene):
+        """Depth, force and stiffness at whatever the scene prescribes."""
+        radius, modulus = scene.indenter.radius_of_curvature, scene.layer.contact_modulus
+
+        def respond(depth):
+            force = 4 / 3 * modulus * np.sqrt(radius) * depth**1.5
+            return Response(normal_force=force, contact_radius=np.sqrt(radius * depth))
+
+        return answer_from_depths(scene, respond, StageLog(), method=self.name)
+
+
+for quantity in ("indentation_depth", "normal_force", "contact_stiffness"):
+    print(quantity, getattr(FromDepth().solve(scene), quantity) / getattr(reference, quantity) - 1)
 
 # %%
 # Registered under the entry point ``contact_verification.methods``, it takes part in every case, and one line in

@@ -146,7 +146,8 @@ def check_contact(data: Data, gain: float, residual: FloatArray) -> None:
     if not gain > _CONTACT**2 * variance or not gain > 1e-20 * float(data.force @ data.force):
         raise InvalidInput(
             "no contact in the curve: the force does not rise above its scatter and a straight line as the depth "
-            "grows; check columns and signs (pressing is positive), or fit without tilt (--with contact_point)"
+            "grows; check columns and signs (pressing is positive), or fit without tilt (--with contact_point); a "
+            "hold over time needs a viscoelastic effect in the scene"
         )
 
 

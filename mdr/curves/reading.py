@@ -165,7 +165,7 @@ def _with_units(file: Path, given: str) -> Table:
         names = ", ".join(column.name for column in table.columns if column.name)
         raise InvalidInput(
             f"{file}, line {table.line}: columns without units{f' ({names})' if names else ''}; write them in the "
-            "heads, as in depth [nm], or give --units nm,nN"
+            "heads, as in depth [nm], or give --units nm,nN in the order of the columns"
         )
     return table
 
@@ -225,7 +225,9 @@ def _converted(table: Table, cantilever: Cantilever, file: str | Path) -> Measur
     if place is None or signal is None:
         if len(table.columns) != 2 or any(column is not None for column in found.values()):
             heads = ", ".join(column.name or "?" for column in table.columns)
-            raise InvalidInput(f"{file}: needs a column of depth or height and one of force or deflection; has {heads}")
+            raise InvalidInput(
+                f"{file}: needs a column of depth or height and one of force or deflection; rename the heads ({heads})"
+            )
         place, signal = table.columns
         found["depth"] = place
     bending: FloatArray | None
@@ -285,7 +287,7 @@ def _si(one: Column, unit: str, file: str | Path) -> FloatArray:
     try:
         return in_unit(one.values, one.unit, unit)
     except InvalidInput as error:
-        raise InvalidInput(f"{file}, column {one.name!r}: {error}") from None
+        raise InvalidInput(f"{file}, column {one.name!r}, unit {one.unit!r}: {error}") from None
 
 
 def _falls(depth: FloatArray, force: FloatArray) -> bool:

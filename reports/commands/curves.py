@@ -5,7 +5,13 @@ from typing import Annotated
 
 import typer
 
-SceneFile = Annotated[Path, typer.Argument(help="Scene in TOML.")]
+SceneFile = Annotated[
+    Path,
+    typer.Argument(
+        help="Scene in TOML, as printed by contact-verify solve --example. Layer, tip and effects are used. The "
+        "modulus that is fitted and the depths of the loading are not, though a scene must name them."
+    ),
+]
 Written = Annotated[
     list[Path] | None, typer.Option("--write", "-w", help="Also write FILE.csv, .svg, .png or .pdf. Repeatable.")
 ]
@@ -35,7 +41,9 @@ def fit(
             "--with", help="What else is fitted: contact_point,baseline,tilt (all), thickness, work_of_adhesion."
         ),
     ] = "all",
-    units: Annotated[str, typer.Option(help='Units of columns whose heads have none, "nm,nN".')] = "",
+    units: Annotated[
+        str, typer.Option(help='Units of columns whose heads have none, in the order of the columns: "nm,nN".')
+    ] = "",
     spring_constant: Annotated[
         str, typer.Option(help='Spring constant of the cantilever, "0.05 N/m", for columns of height and deflection.')
     ] = "",
