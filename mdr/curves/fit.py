@@ -98,8 +98,9 @@ def fit_curve(
         found = _limited(found, limit, data)
     if not formulas or scene.effects or "youngs_modulus" not in parameters:
         return found
-    names = [name for name in parameters if name in ("youngs_modulus", *BACKGROUND)]
-    bare = Data.of(found.depth, found.force, names)
+    # A formula that does not suit the curve would take its misfit for tilt: it has the background of this fit.
+    names = [name for name in parameters if name in ("youngs_modulus", *BACKGROUND) and name != "tilt"]
+    bare = Data.of(found.depth, found.force - found.background, names)
     return replace(found, formulas=_by_formulas(scene, bare, found.youngs_modulus))
 
 
@@ -302,7 +303,7 @@ def _limited(found: CurveFit, limit: Limit, data: Data) -> CurveFit:
 
 
 def _by_formulas(scene: Scene, data: Data, own: float) -> tuple[FormulaFit, ...]:
-    """Each formula fitted to the same curve with the same background."""
+    """Each formula fitted to a curve without tilt."""
     found, rough = [], rough_indentation(data)
     for formula in formulas_for(scene):
         best = _search(data, Family(formula), rough, math.inf)
