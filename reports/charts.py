@@ -269,21 +269,22 @@ def _draw_ends(tests: Sequence[StressTest]) -> Figure:
 
 
 def _draw_agreement(found: Sequence[Verdict]) -> Figure:
-    drawing = Figure(figsize=(8.0, 1.0 + 0.26 * len(found)), layout="constrained")
+    drawing = Figure(figsize=(5.0, 0.8 + 0.4 * len(found)), layout="constrained")
     axes = drawing.subplots()
     shares = [(difference(v) / v.tolerance, _stated(v) / v.tolerance) for v in found]
     least = min((share for pair in shares for share in pair if share > 0.0), default=1.0)
     left = 10.0 ** math.floor(math.log10(max(1e-6, min(least, 0.1))))
     for place, (verdict, (share, stated)) in enumerate(zip(found, shares, strict=True)):
+        name = f"{shorten(verdict.scene, LONGEST)}, {quantity_words(verdict.quantity)}, {who(verdict.methods)}"
+        axes.annotate(name, (0.01, place - 0.25), xycoords=axes.get_yaxis_transform(), va="center", fontsize=7.5)
         look, middle = look_of(verdict.methods[-1]), max(share, left)
-        axes.plot([max(share - stated, left), max(share + stated, left)], [place, place], color=GREY, linewidth=1.6)
-        axes.plot([middle], [place], "X" if verdict.status.is_failure else look.marker, color=look.colour)
+        axes.plot([max(share - stated, left), max(share + stated, left)], [place + 0.15] * 2, color=GREY, linewidth=1.6)
+        axes.plot([middle], [place + 0.15], "X" if verdict.status.is_failure else look.marker, color=look.colour)
     right = max(3.0, 3.0 * max(sum(pair) for pair in shares))
     axes.axvspan(left, 1.0, color=TINT, zorder=0.5)
     axes.axvline(1.0, color=VERMILLION, linewidth=1.2)
-    axes.set(xscale="log", xlabel="difference / tolerance", xlim=(left, right), ylim=(len(found) - 0.5, -0.5))
-    names = [f"{shorten(v.scene, LONGEST)}, {quantity_words(v.quantity)}, {who(v.methods)}" for v in found]
-    axes.set_yticks(range(len(found)), names)
+    axes.set(xscale="log", xlabel="difference / tolerance", xlim=(left, right), ylim=(len(found) - 0.5, -0.8))
+    axes.set_yticks([])
     axes.grid(visible=False, axis="y")
     mark_decades(axes.xaxis)
     return drawing
