@@ -19,10 +19,12 @@ from bem.grid.operators import GridOperator, grid_operator, pressed
 from contact import ElasticLayer, NotConvergedError, Profile, Shape
 from contact.records.validation import BoolArray, FloatArray
 
-# Half the grid over the radius of the mean contact, and its growth where a contact reaches the border.
+# Half the grid over the radius of the mean contact, and its growth where a contact reaches the border. Twice of the first
+# takes twice as long and changes forces by 3e-10.
 MARGIN: Final = 1.5
 GROWTH: Final = 1.4
-# Largest error of the displacement on the contact; forces lose its square.
+# Largest error of the displacement on the contact over the depth. With a hundred times of it forces are 4e-6 off, with
+# a hundredth they change by 5e-9.
 TOLERANCE: Final = 1e-7
 # Changes of the active set; ten are usual.
 MOST_SETS: Final = 60

@@ -35,16 +35,6 @@ def foundation_modulus(layer: Layer) -> float:
     return contact_modulus(layer) if layer.support == "unbonded" else layer.confined_modulus
 
 
-def thin_spring_stiffness(layer: Layer, x: ArrayLike) -> FloatArray:
-    """c_N = k_N'/2 [Pa], Eqs. (17), (20) and (22)."""
-    x, h = np.asarray(x, dtype=float), layer.thickness
-    if is_film(layer):
-        # Eq. (20), where E* = 4 E/3.
-        return np.pi * layer.youngs_modulus * x**3 / (4 * h**3)
-    # Eqs. (17), (22).
-    return np.pi * foundation_modulus(layer) * x / h
-
-
 def thin_profile(layer: Layer, indenter: Profile, x: ArrayLike) -> FloatArray:
     """g [m]: the profile itself, Eqs. (17) and (22), or its mean over the contact area, Eq. (20)."""
     x = np.asarray(x, dtype=float)

@@ -10,9 +10,13 @@ from contact import ContactError, ContactRadii
 from mdr import Mdr
 from tests.random_scenes import INDENTERS, drawn_scene
 
+STACKS = [
+    pytest.param(name, marks=pytest.mark.slow) for name in ("bonded stack", "sliding stack", "stack on elastic base")
+]
+
 
 @pytest.mark.parametrize("loading", ["IndentationDepths", "NormalForces"])
-@pytest.mark.parametrize("layer", ["half-space", "bonded layer", "unbonded layer"])
+@pytest.mark.parametrize("layer", ["half-space", "bonded layer", "unbonded layer", *STACKS])
 def test_radii_of_random_loads_give_the_loads_again(layer, loading):
     """Loads of blunt tips with steep flanks were off by a factor of two: slopes of secants change many times over."""
     quantity = {"IndentationDepths": "indentation_depth", "NormalForces": "normal_force"}[loading]
