@@ -19,8 +19,8 @@ from bem.grid.operators import GridOperator, grid_operator, pressed
 from contact import ElasticLayer, NotConvergedError, Profile, Shape
 from contact.records.validation import BoolArray, FloatArray
 
-# Half the grid over the radius of the mean contact, and its growth where a contact reaches the border. Twice of the first
-# takes twice as long and changes forces by 3e-10.
+# Half the grid over the radius of the mean contact, and its growth where a contact reaches the border. Twice of the
+# first takes twice as long and changes forces by 3e-10.
 MARGIN: Final = 1.5
 GROWTH: Final = 1.4
 # Largest error of the displacement on the contact over the depth. With a hundred times of it forces are 4e-6 off, with

@@ -126,6 +126,16 @@ def cone_without_flat_end(transform):
     return lambda self, x: np.pi / 2 * self._pieces[0, 0] * (x - self.flat)
 
 
+def larger_harmonics(edges):
+    """phi_n(a) times the root of two."""
+
+    def wrong(self, shape, radii):
+        phi, growth = edges(self, shape, radii)
+        return math.sqrt(2) * phi, growth
+
+    return wrong
+
+
 def half_moment(at):
     """M counted half."""
 
@@ -176,6 +186,18 @@ MDR = [
         "mdr",
         override("mdr.spring_bed:Springs", "state", force_times(1 + 1e-9)),
         cone(HALF_SPACE, "half-space b/a=0.5", "mdr"),
+    ),
+    Fault(
+        "second order of a nearly round contact counted twice",
+        "mdr",
+        override("mdr.shapes:Expanded", "_edges", larger_harmonics),
+        Claims("nearly_round", ("force on an ellipse",), ("elliptic paraboloid, half-space",), ("mdr",)),
+    ),
+    Fault(
+        "layer forgotten in the equation of harmonics",
+        "mdr",
+        override("mdr.harmonics:Harmonics", "_solve", lambda _: lambda self, radius: None),
+        Test("verification.test_shapes:test_the_second_order_of_the_force_is_that_of_cells", (2, 1.0, 0.5)),
     ),
     Fault(
         "search for the radius ends after one step",
