@@ -265,7 +265,7 @@ def refusals(proposal: Proposal, run: Run, now: WriteConditions, *, loosen: bool
 
 
 def refusals_beforehand(case: str, run: Run, now: WriteConditions) -> tuple[str, ...]:
-    """Return every reason that does not need the spread to be measured."""
+    """Return the reasons to refuse that are known before any solution is repeated to measure its spread."""
     own = (verdict for verdict in run.judged.verdicts if verdict.case == case)
     return *_refused_circumstances(run, now), *_refused_run(run.answers.of_case(case), own)
 

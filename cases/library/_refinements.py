@@ -91,10 +91,10 @@ def neighbours(name: str, groups: Iterable[Iterable[float]], **fixed: float | st
 
 
 def fem_cells(degree: int, *, thin: bool = False) -> Refinement:
-    """Cells at every distance from the graded points, or the largest cells where a thin layer consists of these.
+    """Refine the growth of cells from the graded points on; on thin layers, which consist of largest cells, their size.
 
-    Sizes grow by a factor 1 + growth from cell to cell, so the length that errors follow is ln(1 + growth); the largest
-    cell is growth times the thickness. Degrees above two are told from the second length on: from the first to it,
+    Sizes grow by a factor 1 + growth from cell to cell, so that errors depend on ln(1 + growth). The largest cell is
+    growth times the thickness. The order of degrees above two is taken from the second growth on: between the first two
     errors fall by orders of 7 to 10.
     """
     if thin:

@@ -24,7 +24,7 @@ from contact.records.validation import FloatArray
 # Modulus of the film over that of the substrate.
 CONTRASTS = (0.01, 0.1, 0.5, 2.0, 10.0, 100.0)
 RATIOS = (0.1, 1.0, 5.0)
-# Solved in the suite ci; finite elements and grids solve the second.
+# Contrast and a/H of the scenes of the suite ci. MDR solves both, finite elements and grids the second.
 QUICK = ((0.1, 1.0), (10.0, 1.0))
 # Flat ends do not pull on these.
 SOFT = (0.1, 0.5, 2.0)

@@ -237,7 +237,7 @@ class CalculiX:
         return replace(self, cells=2 * self.cells)
 
     def _state(self, scene: Scene, value: float, log: StageLog) -> "Converged":
-        """One state on three meshes; at nu = 1/2, where displacements alone do not do, towards it."""
+        """One state on three meshes; for nu = 1/2, where elements of displacements lock, extrapolated from less."""
         if scene.layer.is_incompressible:
             layers = (scene.layer.replace(poissons_ratio=0.5 - away / 2.0) for away in AWAY)
             rows = [self._state(scene.replace(layer=layer), value, log) for layer in layers]
