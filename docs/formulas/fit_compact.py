@@ -6,8 +6,8 @@ import numpy as np
 
 from contact import ContactRadii, Layer, Paraboloid, Scene
 from contact.records.validation import FloatArray
+from docs.formulas.compact import PLACE, base, design
 from mdr import Mdr
-from mdr.closed_forms.compact import PLACE, base, design
 
 RATIOS = np.concatenate([np.geomspace(1e-3, 0.05, 8), np.geomspace(0.06, 10.0, 56)])
 # Close to nu = 1/2 a layer changes where 1 - 2 nu is about (h/a)^2.

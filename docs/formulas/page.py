@@ -46,7 +46,7 @@ far as programs copied them rightly.
 LAST = """
 ## The compact fit
 
-`mdr.closed_forms.compact` gives `punch_factor(a/h, nu, support)`, that is k_N/(2 E* a), and
+`docs/formulas/compact.py` gives `punch_factor(a/h, nu, support)`, that is k_N/(2 E* a), and
 `paraboloid_factor(sqrt(R delta)/h, nu, support)`, that is F over Hertz's force, for a/h up to 10, any nu from 0 to 1/2
 and both supports: half-space and thin layer, added, times the exponential of a polynomial. `fit_compact` makes the
 coefficients (`compact.toml`). On random points that the fit has not seen the error stays below 0.1 %

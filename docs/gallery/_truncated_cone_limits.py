@@ -9,7 +9,7 @@ from cases.library._common import layer
 from contact import TruncatedCone
 from contact.records.validation import FloatArray
 from docs.gallery._parts import Series, series
-from mdr.closed_forms.truncated_cone import thin_cone_force, thin_cone_pressure, thin_cone_profile
+from docs.gallery._thin_layers import thin_cone_force, thin_cone_pressure, thin_cone_profile
 
 HALF_SPACE, THIN_LAYER = "half-space", "thin layer"
 NODES, WEIGHTS = leggauss(60)

@@ -6,8 +6,8 @@ Fig. 11: restitution of a flat punch on a Kelvin-Voigt layer
 import numpy as np
 
 from contact.records.validation import FloatArray
+from docs.gallery._flat_punch_restitution import kelvin_voigt_restitution
 from docs.gallery._parts import UNBONDED, Figure, Panel, Series, closed_form, layer, mdr_line, name_of, punch, show
-from mdr.closed_forms.flat_punch_restitution import kelvin_voigt_restitution
 
 LAYERS = (layer(0.5), UNBONDED)
 # Damping ratios D on the half-space.

@@ -3,9 +3,9 @@
 import numpy as np
 from mpmath import mp
 
-from bem.flat_punch import IntegralEquation
 from benchmarks.references.layer_equation import DIGITS, pressure
 from contact import Layer
+from docs.gallery._flat_punch import FlatPunchValues
 
 
 def test_pressures_are_right_within_the_condition_of_the_equation():
@@ -14,7 +14,7 @@ def test_pressures_are_right_within_the_condition_of_the_equation():
     rho = np.array([0.3, 0.99, 1.01, 2.02]) / ratio
     with mp.workdps(DIGITS):
         exact = [float(value) for value in pressure(repr(ratio), repr(nu), 20, [repr(r) for r in rho.tolist()])]
-    solution = IntegralEquation().punch(Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=nu))
+    solution = FlatPunchValues(Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=nu))
     found = solution.smooth_pressure(rho, ratio) / np.sqrt((1 - rho) * (1 + rho))
     roundings = np.abs(found / exact - 1) / np.finfo(float).eps
     assert roundings.max() <= 10 * solution.normalized_contact_stiffness(ratio)

@@ -6,10 +6,10 @@ import pytest
 from contact import Cone, FlatPunch, IndentationDepths, Layer, Paraboloid, Scene
 from docs.formulas import cone, paraboloid, punch
 from docs.formulas.audit import RATIOS, force_errors, holds_to, modulus_errors
+from docs.formulas.compact import paraboloid_factor, punch_factor
 from docs.formulas.fit_compact import exact
 from docs.formulas.page import PLACE, page
 from docs.formulas.table import FORMULAS
-from mdr.closed_forms.compact import paraboloid_factor, punch_factor
 from mdr.curves import formulas_for
 
 BY_NAME = {formula.name: formula for formula in FORMULAS}

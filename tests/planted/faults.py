@@ -501,7 +501,7 @@ TIME_STEPPING = [
     Fault(
         "overdamped branch continued with arctan",
         "time stepping",
-        swap("mdr.closed_forms.flat_punch_restitution:kelvin_voigt_restitution", arctan_beyond_one),
+        swap("docs.gallery._flat_punch_restitution:kelvin_voigt_restitution", arctan_beyond_one),
         Test("verification.test_impact:test_flat_punch_restitution_is_smooth_through_critical_damping"),
     ),
     Fault(

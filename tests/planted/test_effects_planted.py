@@ -6,9 +6,9 @@ import pytest
 from bem.branch import Branch
 from cases.verdicts import Status
 from contact import Adhesion, Detachment, Layer, Paraboloid, Scene
+from docs.gallery import _flat_punch_restitution as flat_punch_restitution
 from mdr import Mdr
 from mdr.adhesive import Adhesive
-from mdr.closed_forms import flat_punch_restitution
 from mdr.impact import history as impact_history
 from mdr.impact import solver as impact_solver
 from mdr.impact.motion import Phase, Shrinkage

@@ -5,7 +5,7 @@ import pytest
 
 from contact import CoatedPair, ContactRadii, InvalidInput, Layer, Paraboloid, Scene
 from mdr import Mdr
-from mdr.coated_pairs import mean_thickness_error, pair_springs
+from tests.coated_pairs import mean_thickness_error, pair_springs
 
 
 def pair(first, second, *, nu=0.5, support="bonded", radii=(1e-3,)):

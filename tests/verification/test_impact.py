@@ -23,8 +23,8 @@ from contact import (
     TruncatedCone,
     TruncatedParaboloid,
 )
+from docs.gallery._flat_punch_restitution import kelvin_voigt_restitution
 from mdr import Mdr
-from mdr.closed_forms.flat_punch_restitution import kelvin_voigt_restitution
 from mdr.impact.solver import impact_batch, solve_impact
 from tests.bed import bed_of
 from tests.mdr.impact_explicit import explicit_impact

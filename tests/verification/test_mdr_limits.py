@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from contact import Cone, InvalidInput, Layer, TruncatedCone
-from mdr.closed_forms.asymptotic import thin_profile
-from mdr.closed_forms.truncated_cone import thin_cone_force, thin_cone_pressure, thin_cone_profile
+from docs.gallery._thin_layers import thin_cone_force, thin_cone_pressure, thin_cone_profile, thin_profile
 
 LAYERS = {
     "unbonded": Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.3, support="unbonded"),

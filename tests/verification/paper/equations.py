@@ -19,12 +19,11 @@ from cases.library.sphere_impact import (
 from cases.library.sphere_impact import scene_of as impact_of
 from contact import CoatedPair, ContactRadii, FlatPunch, IndentationDepths, Layer, Paraboloid, PowerLaw, Profile, Scene
 from docs.gallery._parts import SOURCE, UNBONDED, layer, name_of, punch
+from docs.gallery._thin_layers import thin_cone_pressure, thin_profile
 from docs.gallery.figure_07 import pressed
-from mdr.closed_forms.asymptotic import thin_profile
-from mdr.closed_forms.truncated_cone import thin_cone_pressure
-from mdr.coated_pairs import mean_thickness_error
 from mdr.equilibria import solve_elastic
 from mdr.impact.solver import solve_impact
+from tests.coated_pairs import mean_thickness_error
 from tests.verification.paper.profiles import cone
 from tests.verification.paper.statement import FORMULA, GOOD, SAME, Measured, Statement, deviation, reads, within
 

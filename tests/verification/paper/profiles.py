@@ -8,8 +8,8 @@ import numpy as np
 from cases.library.coated_pair import RATIOS, one_body_on_its_plane, symmetric
 from contact import Layer, Paraboloid, TruncatedCone
 from docs.gallery._parts import SOURCE, UNBONDED, layer, name_of
+from docs.gallery._thin_layers import thin_cone_force
 from docs.gallery.figure_07 import depth_over_height, pressed
-from mdr.closed_forms.truncated_cone import thin_cone_force
 from mdr.equilibria import solve_elastic
 from tests.verification.paper.statement import GOOD, Measured, Statement, deviation, within
 
