@@ -20,7 +20,7 @@ from bem.kernels.of_layer import contact_kernel
 from bem.numerics import EPS, even_legendre
 from contact import ElasticLayer
 from contact.answer.one_thread import one_thread
-from contact.records.record import Record, record
+from contact.records.record import Record
 from contact.records.validation import FloatArray, positive
 from contact.stated import stated_error
 
@@ -32,7 +32,6 @@ MORE_NODES: Final = 4
 _ROUNDINGS = 16.0
 
 
-@record
 class IntegralEquation(Record):
     """Resolution of the layer's equation.
 
