@@ -25,7 +25,7 @@ from contact.answer.one_thread import one_thread
 from contact.answer.small_strains import within_small_strains
 from contact.answer.stages import StageLog
 from contact.records.errors import InvalidInput, UnsupportedSceneError
-from contact.records.record import Record, record
+from contact.records.record import Record
 from contact.records.validation import FloatArray, positive
 from contact.scene.extent import radius_of_depth, radius_of_load
 from contact.scene.loading import ContactRadii, IndentationDepths, NormalForces
@@ -72,7 +72,6 @@ class Contact(NamedTuple):
         return float(self.state[2] / (pi * self.state[0] ** 2))
 
 
-@record
 class IntegralEquationMethod(Record):
     """Direct solution of the layer's integral equation.
 

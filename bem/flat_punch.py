@@ -7,7 +7,7 @@ from typing import Annotated, Final, Protocol, Self, runtime_checkable
 from pydantic import Field
 
 from bem.equation import USUAL, Sizes
-from contact.records.record import Record, record
+from contact.records.record import Record
 from contact.records.validation import positive
 
 # Nodes by default, and the most; a refined setting has so many more.
@@ -16,7 +16,6 @@ MOST_NODES: Final = 64
 MORE_NODES: Final = 4
 
 
-@record
 class IntegralEquation(Record):
     """Resolution of the layer's equation.
 

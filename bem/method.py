@@ -35,7 +35,7 @@ from contact.answer.no_contact import without_contact
 from contact.answer.one_thread import one_thread
 from contact.answer.small_strains import within_small_strains
 from contact.answer.solution import Setting
-from contact.records.record import Record, record
+from contact.records.record import Record
 
 # Numbers of points that are tried in turn for an accuracy, and the finest one that may be asked for.
 ACCURACY_POINTS: Final = (128, 256, 512, 1024, 2048)
@@ -44,7 +44,6 @@ FINEST_ACCURACY: Final = 1e-6
 BEST_GAIN: Final = 4.0
 
 
-@record
 class Bem(Record):
     """Boundary elements on square cells, for any profile and layer, without MDR.
 

@@ -28,7 +28,7 @@ from bem.grid.operators import Boundary
 from bem.numerics import even_legendre
 from contact import ElasticLayer, InvalidInput, Layer, UnsupportedSceneError
 from contact.files.storage import read_tree, write_tree
-from contact.records.record import Record, record
+from contact.records.record import Record
 from contact.records.validation import FloatArray
 from contact.scene.layer import Support
 
@@ -191,7 +191,6 @@ def tabulated_layer(layer: ElasticLayer) -> Layer:
     return plain.replace(thickness=1.0, youngs_modulus=1.0 - nu**2, poissons_ratio=nu)
 
 
-@record
 class FftTable(Record):
     """Settings of tables by boundary elements; where MDR's flat punches come from (`Mdr.flat_punch`).
 
@@ -273,7 +272,6 @@ def _row(layer: Layer, ratio: float, cells: int) -> tuple[float, FloatArray, Flo
     return k, series[0], series[1]
 
 
-@record
 class TableFile(Record):
     """A stored table as MDR's flat punches.
 

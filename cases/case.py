@@ -6,7 +6,7 @@ from functools import cached_property
 from typing import Any
 
 from cases.answers import Identity, Table
-from cases.declare.methods import MethodUse
+from cases.declare.methods import HOW_TO_ADD, MethodUse
 from cases.norms import RingQuadrature, ring_quadrature
 from cases.verdicts import Scalar, Verdict
 from contact import InvalidInput, Method, Scene
@@ -237,7 +237,7 @@ class Case:
         methods = tuple(use for use in self.methods if use.label in wanted)
         if not methods:
             known = ", ".join(use.label for use in self.methods)
-            raise InvalidInput(f"case {self.name} has no method {' or '.join(wanted)}; it has {known}")
+            raise InvalidInput(f"case {self.name} has no method {' or '.join(wanted)}; it has {known}; {HOW_TO_ADD}")
         left = self.only(lambda _, use: use.label in wanted)
         return replace(left, methods=methods, claims=tuple(claim for claim in self.claims if not claim.timed))
 

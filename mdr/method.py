@@ -47,7 +47,7 @@ from contact.answer.no_contact import without_contact
 from contact.answer.one_thread import one_thread
 from contact.answer.small_strains import within_small_strains
 from contact.answer.solution import Setting
-from contact.records.record import Record, record
+from contact.records.record import Record
 from contact.records.validation import in_range
 from contact.scene.effects import Viscoelasticity
 
@@ -152,7 +152,6 @@ def solver_of(scene: Scene) -> Solver | Unsupported:
     return Unsupported(f"mdr does not model {effects} under the loading {type(scene.loading).__name__}")
 
 
-@record
 class Mdr(Record):
     """Method of dimensionality reduction, section 2 of Forsbach (2023).
 

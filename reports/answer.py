@@ -24,7 +24,7 @@ from contact.answer.friction import told_of_friction
 from contact.answer.small_strains import depth_note, depths_of
 from contact.answer.solution import scene_line
 from contact.records.units import prefix_for
-from contact.records.validation import FloatArray
+from contact.records.validation import FloatArray, IntArray
 from reports.words import (
     Table,
     display_name,
@@ -42,13 +42,13 @@ if TYPE_CHECKING:
     from cases.sweep import Sweep
 
 BRACKETS = (
-    "Digits in brackets: uncertainty of the last digits, as the method itself estimates it; (?) where it gives none. "
-    "A number without brackets is right to the digits printed; --write FILE.csv writes all of them."
+    "Digits in brackets: error of the last digits, stated by the method; (?) where it states none. Other numbers are "
+    "right to the digits printed."
 )
 # Digits of a printed number whose uncertainty is beyond them: as many as anybody compares by eye.
 DIGITS = 6
-# Rows of a printed table; longer answers show every n-th state and the last one.
-LONGEST = 40
+# Rows of a printed table: half as many hide a curve, twice as many push what stands above off the screen.
+MOST_ROWS = 10
 
 PRINTED = {
     ContactPath: ("contact_radius", "indentation_depth", "normal_force", "contact_stiffness"),
@@ -60,20 +60,25 @@ PRINTED = {
 }
 
 
-def solution_table(solution: Solution, longest: int = LONGEST) -> Table:
-    """The states of an answer, each number with the uncertainty that the method states."""
-    # Distances of the printed states are one at least, so that none comes twice.
-    states = len(solution)
-    shown = np.linspace(0, states - 1, min(states, longest)).round().astype(np.intp)
+def solution_table(solution: Solution) -> Table:
+    """At most ten states of an answer, each number with the uncertainty that the method states."""
+    shown, where = _shown_rows(len(solution), "states")
+    names = PRINTED[type(solution)]
     heads, columns = [], []
-    for name in PRINTED[type(solution)]:
+    for name in names:
         factor, prefix = prefix_for(getattr(solution, name))
         heads.append(f"{SYMBOLS[name]} [{prefix}{UNITS[name]}]")
         numbers = np.asarray(getattr(solution, name))[shown] / factor, _uncertainty(solution, name)[shown] / factor
         columns.append([_readable(float(value), float(error)) for value, error in zip(*numbers, strict=True)])
-    skipped = f" {states - len(shown)} of {states} states are not printed." if states > len(shown) else ""
-    rows = tuple(zip(*columns, strict=True))
-    return Table(title=_title(solution), note=f"{BRACKETS}{skipped}", heads=tuple(heads), rows=rows, words=0)
+    symbols = ", ".join(f"{SYMBOLS[name]}: {quantity_words(name)}" for name in names)
+    note = f"{where}{symbols}. {BRACKETS}"
+    return Table(title=_title(solution), note=note, heads=tuple(heads), rows=tuple(zip(*columns, strict=True)), words=0)
+
+
+def _shown_rows(count: int, what: str) -> tuple[IntArray, str]:
+    """At most ten rows of a table, the first and the last among them, and where the others are."""
+    rows = np.unique(np.linspace(0, count - 1, MOST_ROWS).round().astype(np.int64))
+    return rows, f"{len(rows)} of {count} {what}; --write FILE.csv has all. " * (len(rows) < count)
 
 
 def _title(solution: Solution) -> str:
@@ -217,7 +222,7 @@ def _row(one: "PropagatedQuantity", names: list[str]) -> tuple[str, ...]:
 
 
 def sweep_table(found: "Sweep") -> Table:
-    """One row per state; quantities with their uncertainty in brackets."""
+    """At most ten rows, one per state; quantities with their uncertainty in brackets."""
     columns, texts = found.columns, {}
     for head, values in columns.items():
         if "_uncertainty" not in head:
@@ -227,6 +232,7 @@ def sweep_table(found: "Sweep") -> Table:
             factor, words = scaled_column(head, values.tolist())
             numbers = zip((values / factor).tolist(), (np.where(exact, 0.0, errors) / factor).tolist(), strict=True)
             texts[words] = [f"{value:.6g}" if error == 0.0 else _readable(value, error) for value, error in numbers]
-    note = "Digits in brackets: uncertainty of the last digits. A number without brackets is right to the digits shown."
-    rows = tuple(zip(*texts.values(), strict=True))
-    return Table(title=f"Over {quantity_words(found.swept.name)}", note=note, heads=tuple(texts), rows=rows, words=0)
+    rows = list(zip(*texts.values(), strict=True))
+    shown, where = _shown_rows(len(rows), "rows")
+    title, note = f"Over {quantity_words(found.swept.name)}", f"{where}{BRACKETS}"
+    return Table(title=title, note=note, heads=tuple(texts), rows=tuple(rows[row] for row in shown), words=0)

@@ -10,7 +10,7 @@ import io
 import sys
 import traceback
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, nullcontext
+from contextlib import contextmanager
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated, Any
@@ -95,8 +95,8 @@ Methods = Annotated[list[str] | None, Option(help="Only this method. Repeatable.
 Against = Annotated[list[str] | None, Option(help="Compare each --method with this one, and nothing else. Repeatable.")]
 Baselines = Annotated[Path, Option(help="Folder of the accepted numbers.")]
 Folder = Annotated[Path, typer.Argument(help="Folder of a finished run.")]
-Quiet = Annotated[bool, Option("--quiet", "-q", help="Only the verdict and errors; for logs of CI.")]
-Strict = Annotated[bool, Option("--strict", help="Verdicts that stay open end with exit code 6.")]
+Quiet = Annotated[bool, Option("--quiet", "-q", help="Print only the verdict and errors.")]
+Strict = Annotated[bool, Option("--strict", help="End with exit code 6 if a verdict stays open.")]
 OUT = Path("build/verification")
 
 
@@ -166,14 +166,15 @@ def run_suite(
     only: Annotated[
         Only | None, Option(help="cost: only timings, coarse to fine. stability: only stress tests.")
     ] = None,
-    listed: Annotated[bool, Option("--list", help="List the cases and stop; a single CASE is shown in full.")] = False,
+    listed: Annotated[bool, Option("--list", help="List the cases and stop; show a single CASE in full.")] = False,
     strict: Strict = False,
     quiet: Quiet = False,
 ) -> int:
-    """Solve cases by every method, judge their claims, write the report.
+    """Solve the verification cases by every method, judge their claims, and write the report.
 
-    A method of an installed package, named alone, is compared with mdr. Ctrl-C leaves a valid partial report; --resume
-    goes on from there. With --only stability CASE names stress tests.
+    A method of an installed package, named alone, is compared with mdr. With --only stability, CASE names stress tests.
+
+    Ctrl-C leaves a valid partial report, and --resume goes on from there.
     """
     from cases.run.runner import RunOptions  # noqa: PLC0415
     from reports.commands import runs  # noqa: PLC0415
@@ -200,9 +201,11 @@ def gate(
     strict: Strict = False,
     quiet: Quiet = False,
 ) -> int:
-    """Compare a run with the accepted numbers: values, counters, nothing missing, nothing extra; then its claims.
+    """Compare a finished run with the accepted numbers, and judge its claims again.
 
-    Compares the methods of the run unless --method names some. `contact-verify report` then draws its pages.
+    Numbers that changed beyond their tolerance, are missing or are new fail.
+
+    The methods of the run are compared unless --method names some. contact-verify report then draws the pages.
     """
     from reports.commands.baselines import run_gate  # noqa: PLC0415
 
@@ -220,9 +223,9 @@ def accept(
     loosen: Annotated[bool, Option("--loosen", help="Let tolerances grow or records be withdrawn.")] = False,
     jobs: Annotated[int, Option(help="Repetitions at a time.")] = 2,
 ) -> None:
-    """Show what new accepted numbers would change, in units of tolerance and of stated error; write them with --write.
+    """Show how the numbers of a run differ from the accepted ones; with --write they become the accepted ones.
 
-    Refused: numbers that are not finite, uncommitted changes, a failing exact or order claim, continuous integration.
+    Refused: numbers that are not finite, uncommitted changes, failing claims of closed forms or orders of convergence.
     """
     from reports.commands.baselines import AcceptRequest, accept_cases  # noqa: PLC0415
 
@@ -283,19 +286,17 @@ def solve(
 ) -> None:
     """Solve one scene: force, depth, contact radius and stiffness, each with its error bar.
 
-    An example to start from: contact-verify solve --example > scene.toml. With contact-verify solve --schema >
-    scene.schema.json editors complete and check a scene whose first line is `#:schema scene.schema.json`.
+    Start from an example: contact-verify solve --example > scene.toml.
+
+    Editors check a scene that begins with `#:schema FILE`, with FILE from contact-verify solve --schema > FILE.
     """
     with _loading():
         from reports.commands.solve import Request  # noqa: PLC0415
         from reports.commands.solve import solve as run_command  # noqa: PLC0415
-        from reports.terminal import progress_bar  # noqa: PLC0415
 
     wanted: Any = {"method": method, "accuracy": accuracy, "pressure_accuracy": pressure_accuracy, "samples": samples}
     wanted |= {"uncertain": uncertain, "over": over, "advise": advise, "against": against, "outputs": write or []}
-    request = Request(**wanted)
-    with progress_bar("scenes") if over else nullcontext() as progress:
-        run_command(scene, request, progress)
+    run_command(scene, Request(**wanted))
 
 
 app.command(epilog=EXIT_CODES)(curves.fit)
@@ -307,7 +308,7 @@ def report(
     other: Annotated[Path | None, typer.Argument(help="A second run to compare with the first.")] = None,
     single_file: Annotated[bool, Option("--single-file", help="All cases on one page.")] = False,
 ) -> int:
-    """Build the pages of a run again without computing; with two runs, compare the second with the first."""
+    """Draw the pages of a finished run again; with two runs, compare the second with the first."""
     from reports.commands.runs import compare_runs, rebuild  # noqa: PLC0415
 
     return rebuild(run, single_file=single_file) if other is None else compare_runs(run, other)

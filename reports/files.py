@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from contact import InvalidInput
-from reports.terminal import console
+from reports.terminal import console, progress_bar
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -49,7 +49,8 @@ def picture_writers(draw: Callable[[], "Figure"], *, key: str) -> Writers:
 def write_outputs(paths: Sequence[Path], writers: Writers) -> None:
     """Write each file in the format of its ending, and print its name."""
     for path in paths:
-        writers[path.suffix](path)
+        with progress_bar(f"writing {path}"):
+            writers[path.suffix](path)
         console().print(f"written: {path}")
 
 

@@ -1,5 +1,7 @@
 """Pictures of one answer and of answers over a range of a number."""
 
+from typing import Any
+
 import numpy as np
 from matplotlib import colormaps
 from matplotlib.axes import Axes
@@ -19,8 +21,9 @@ from contact import (
     Solution,
 )
 from contact.records.validation import FloatArray
+from reports.answer import GIVEN
 from reports.answer_plot import axis_label, factor
-from reports.style import BLACK, line_with_band, look_of, panels
+from reports.style import BLACK, line_with_band, look_of, mark_decades, panels
 from reports.words import display_name, scaled_column
 
 # Points of a line, about: half as many show corners in a printed figure.
@@ -104,24 +107,23 @@ def between(scene: Scene) -> Scene | None:
 def sweep_figure(found: Sweep) -> Figure:
     """Each quantity that the varied number changes.
 
-    Scenes of more states than varied values have a line per value over the prescribed quantity, others a line per state
-    over the varied number.
+    Scenes of more states than varied values have a line per value over the prescribed quantity, others a line per
+    prescribed value over the varied number, on a logarithmic axis where that grows by equal factors.
     """
     columns = found.columns
     swept, *heads = (head for head in columns if "_uncertainty" not in head)
     groups = [np.flatnonzero(columns[swept] == value) for value in dict.fromkeys(columns[swept].tolist())]
-    states = max(len(rows) for rows in groups)
-    last = [rows[-1] for rows in groups]
-    varied = [head for head in heads if np.ptp(columns[head][last]) > 0.0] or heads
-    prescribed = next((head for head in heads if head not in varied), "")
-    over_states = bool(prescribed) and states > len(groups)
+    states, last = max(groups, key=len), [rows[-1] for rows in groups]
+    given = GIVEN[type(found.answers[0][1].scene.loading).__name__]
+    prescribed = next((head for head in heads if head.partition(" [")[0] in given), "")
+    others = [head for head in heads if head != prescribed]
+    varied = [head for head in others if np.ptp(columns[head][last]) > 0.0] or others
+    over_states = bool(prescribed) and len(states) > len(groups)
     if over_states:
-        scale, label = scaled_column(swept, columns[swept].tolist())
-        x_head, lines = prescribed, groups
-        names = [f"{label}: {value:.4g}" for value in columns[swept][last] / scale]
+        x_head, lines, names = prescribed, groups, _named(found, swept, last)
     else:
-        x_head, lines = swept, [np.array([rows[k] for rows in groups if k < len(rows)]) for k in range(states)]
-        names = [f"state {state + 1}" for state in range(states)]
+        lines = [np.array([rows[k] for rows in groups if k < len(rows)]) for k in range(len(states))]
+        x_head, names = swept, _named(found, prescribed or swept, states)
     size = (ALONE * SIZE[0], ALONE * SIZE[1]) if len(varied) == 1 else SIZE
     drawing, all_axes = panels(len(varied), size=size)
     for axes, head in zip(all_axes, varied, strict=True):
@@ -133,7 +135,22 @@ def sweep_figure(found: Sweep) -> Figure:
             axes.set_prop_cycle(color=colormaps["viridis"](np.linspace(0.0, 0.9, len(names))))
         for rows, name in zip(lines, names, strict=True):
             axes.plot(columns[x_head][rows] / x_factor, columns[head][rows] / y_factor, label=name)
+        if not over_states and _by_factors(found.swept.values):
+            axes.set_xscale("log")
+            mark_decades(axes.xaxis)
     if len(names) > 1:
         named = all_axes[0].lines[:: -(-len(names) // MOST_NAMED)]
         drawing.legend(handles=named, loc="outside lower center", ncols=min(len(named), 4))
     return drawing
+
+
+def _named(found: Sweep, head: str, rows: Any) -> list[str]:
+    """Values of a column at these rows as names of lines, "thickness [mm]: 1.5"."""
+    values = found.columns[head]
+    scale, label = scaled_column(head, values.tolist())
+    return [f"{label}: {value:.4g}" for value in values[rows] / scale]
+
+
+def _by_factors(values: FloatArray) -> bool:
+    """Whether at least three values grow by equal factors."""
+    return bool(values.size > 2 and values.min() > 0.0 and np.ptp(np.diff(np.log(values))) < 1e-9)

@@ -4,6 +4,7 @@ import os
 import sys
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
+from threading import Timer
 from typing import Any
 
 from rich.console import Console
@@ -14,6 +15,8 @@ from contact.records.errors import printable
 from reports.words import Table
 
 WIDTH_WITHOUT_TERMINAL = 160
+# Seconds after which a computation shows that it goes on: half as many flicker, with twice as many a user wonders.
+PATIENCE = 2.0
 STYLES = {"bad": "bold white on red", "warn": "black on yellow", "skip": "dim", "good": "green"}
 
 
@@ -62,11 +65,25 @@ def show_facts(facts: Iterable[tuple[str, str]], *, on: Console) -> None:
 
 @contextmanager
 def progress_bar(what: str) -> Iterator[Callable[[int, int], None]]:
-    """A bar on a terminal, nothing in a pipe or a log; yields what takes the number done and the total."""
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn  # noqa: PLC0415
+    """A bar with the time spent, on a terminal after two seconds; yields what takes the number done and the total.
 
+    What is printed inside would be drawn over.
+    """
     terminal = console(stderr=True)
-    columns = TextColumn(what), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn()
-    with Progress(*columns, console=terminal, disable=not terminal.is_terminal, transient=True) as bar:
-        task = bar.add_task(what, total=None)
-        yield lambda done, total: bar.update(task, completed=done, total=total)
+    if not terminal.is_terminal:
+        yield lambda done, total: None
+        return
+    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn  # noqa: PLC0415
+
+    columns = TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn()
+    bar = Progress(*columns, console=terminal, transient=True)
+    task = bar.add_task(what, total=None)
+    patience = Timer(PATIENCE, bar.start)
+    patience.start()
+    try:
+        yield lambda n, total: bar.update(task, completed=n, total=total, description=f"{what}, {n} of {total}")
+    finally:
+        patience.cancel()
+        patience.join()
+        if bar.live.is_started:
+            bar.stop()

@@ -8,7 +8,6 @@ import pytest
 import contact
 from contact import CoatedPair, DepthFunction, Effect, ElasticLayer, Loading, Profile
 from contact.files.scene_file import scene_schema
-from contact.records.record import record
 from contact.scene.shapes import SHAPES
 from tests import random_scenes
 from tests.random_scenes import Around, UnknownField, concrete, drawn_record
@@ -54,7 +53,6 @@ def test_every_kind_of_the_published_schema_is_drawn():
 
 
 def test_a_new_class_is_refused_by_its_name(monkeypatch):
-    @record
     class Wedge(contact.Cone):
         """A class without a rule."""
 

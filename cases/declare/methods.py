@@ -19,6 +19,7 @@ from contact.records.errors import shown
 from contact.records.extras import missing_extra
 
 ENTRY_POINT_GROUP = "contact_verification.methods"
+HOW_TO_ADD = f"a package adds one by an entry point of the group {ENTRY_POINT_GROUP} (examples/hertz_half_space)"
 
 # Names of methods become names of files and stand in pages, tables and commands.
 NAME: Final = re.compile(r"[A-Za-z][A-Za-z0-9_.-]{0,59}")
@@ -111,7 +112,7 @@ def check_known(name: str, labels: Iterable[str] = ()) -> None:
     """
     known = dict.fromkeys((*method_names(), *labels))
     if name not in known:
-        raise InvalidInput(f"no method {name!r}; there are {', '.join(known)}")
+        raise InvalidInput(f"no method {name!r}; there are {', '.join(known)}; {HOW_TO_ADD}")
 
 
 def method_names() -> tuple[str, ...]:
@@ -148,10 +149,9 @@ def location(name: str) -> tuple[str, str]:
     """
     if name in BUILT_IN:
         return BUILT_IN[name].module, BUILT_IN[name].attribute
-    others = registered()
-    if name not in others:
-        raise InvalidInput(f"no method {name!r}; there are {', '.join([*BUILT_IN, *others])}")
-    return others[name].module, others[name].attr
+    check_known(name)
+    entry = registered()[name]
+    return entry.module, entry.attr
 
 
 # The type of a class from another package is not known here.

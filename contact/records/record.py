@@ -1,4 +1,4 @@
-"""`record`: a frozen, keyword-only dataclass of pydantic whose errors give value, place and remedy."""
+"""`Record`: a frozen, keyword-only dataclass of pydantic whose errors give value, place and remedy."""
 
 from __future__ import annotations
 
@@ -54,10 +54,15 @@ _TAG = "kind:"
 _UNKNOWN = "unexpected_keyword_argument"
 
 
+@dataclass_transform(frozen_default=True, kw_only_default=True, field_specifiers=(dataclasses.field, pydantic.Field))
 class _RecordType(ABCMeta):
-    """Type of all records: a constructor raises `InvalidInput`, and `help` shows its fields without validators."""
+    """Type of all records: dataclasses of pydantic; constructors raise `InvalidInput`, and `help` is short."""
 
     if not TYPE_CHECKING:  # type checkers read the fields
+
+        def __init__(cls, *args: Any, **kwargs: Any) -> None:
+            super().__init__(*args, **kwargs)
+            pydantic.dataclasses.dataclass(cls, **_OPTIONS)
 
         def __call__(cls, *args: Any, **kwargs: Any) -> Any:
             try:
@@ -83,22 +88,12 @@ def _parameter(field: dataclasses.Field[Any]) -> inspect.Parameter:
     )
 
 
-C = TypeVar("C")
-
-
-@dataclass_transform(frozen_default=True, kw_only_default=True, field_specifiers=(dataclasses.field, pydantic.Field))
-def record(cls: type[C]) -> type[C]:
-    """Make a `Record` subclass a frozen, keyword-only dataclass that validates its fields.
+class Record(metaclass=_RecordType):
+    """Base of all records: frozen, keyword-only dataclasses with equality, hash and change by copying, by content.
 
     Raises:
         InvalidInput: At construction, one line for each offending field.
     """
-    return cast(type[C], pydantic.dataclasses.dataclass(cls, **_OPTIONS))
-
-
-@record
-class Record(metaclass=_RecordType):
-    """Base of all records: equality, hash and change by copying, by content (arrays included)."""
 
     NAMED: ClassVar[bool] = False
     """Whether files name the record by the entry `kind`."""

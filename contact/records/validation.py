@@ -1,4 +1,4 @@
-"""Types of fields: each validator states what is required and the remedy; `record` adds value and place.
+"""Types of fields: each validator states what is required and the remedy; `Record` adds value and place.
 
 Numbers of fields with a unit may be texts with one. Vectors may be single numbers, lists, ranges and columns of CSV
 files as well. Files that mix numbers with and without units are read a second time by `UnitsRequired`.

@@ -6,7 +6,7 @@ from typing import Annotated
 
 from pydantic import model_validator
 
-from contact.records.record import Record, record
+from contact.records.record import Record
 from contact.records.validation import Modulus, PoissonsRatio, PositiveLength, number
 from contact.scene.effects import Effect
 from contact.scene.layer import Layer, Support
@@ -17,7 +17,6 @@ from contact.scene.scene import Scene
 _Radius = Annotated[float, *number("give the radius of curvature in metres", "m", above=True, infinite=True)]
 
 
-@record
 class CoatedPair(Record):
     """Two coated bodies of revolution in contact.
 

@@ -9,7 +9,7 @@ from typing import Annotated, ClassVar
 import numpy as np
 from pydantic import model_validator
 
-from contact.records.record import Record, record
+from contact.records.record import Record
 from contact.records.validation import FloatArray, Modulus, Vector, in_range, number, positive, vector
 
 _VISCOSITY = "give the viscosity in pascal seconds"
@@ -53,7 +53,6 @@ class Viscoelasticity(Effect):
         raise TypeError(f"{type(self).__name__} declares no relaxation function")
 
 
-@record
 class Adhesion(Effect):
     """Short-ranged (JKR) adhesion.
 
@@ -66,7 +65,6 @@ class Adhesion(Effect):
     ]
 
 
-@record
 class Friction(Effect):
     """Dry friction between indenter and layer (Coulomb). A coefficient of zero is frictionless contact.
 
@@ -82,7 +80,6 @@ class Friction(Effect):
         return math.isinf(self.coefficient)
 
 
-@record
 class KelvinVoigt(Viscoelasticity):
     """A spring and a dashpot in parallel.
 
@@ -102,7 +99,6 @@ class KelvinVoigt(Viscoelasticity):
         )
 
 
-@record
 class StandardSolid(Viscoelasticity):
     """A spring in parallel with a Maxwell element (Zener).
 
@@ -125,7 +121,6 @@ class StandardSolid(Viscoelasticity):
         )
 
 
-@record
 class PronySeries(Viscoelasticity):
     """A spring in parallel with any number of Maxwell elements.
 

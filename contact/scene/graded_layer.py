@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from pydantic import BeforeValidator, Discriminator, Tag, ValidationInfo, model_validator
 
 from contact.records.errors import refused, shown
-from contact.records.record import OneOf, Record, record
+from contact.records.record import OneOf, Record
 from contact.records.validation import (
     FloatArray,
     Modulus,
@@ -57,7 +57,6 @@ class DepthFunction(Record):
         return ()
 
 
-@record
 class _BetweenFaces(DepthFunction):
     """Base of those that are given by their values at both faces, whatever the thickness."""
 
@@ -68,7 +67,6 @@ class _BetweenFaces(DepthFunction):
         return self.replace(surface=self.surface / value, base=self.base / value)
 
 
-@record
 class ExponentialDepth(_BetweenFaces):
     """surface (base/surface)^(z/h).
 
@@ -88,7 +86,6 @@ class ExponentialDepth(_BetweenFaces):
         return math.log(self.base / self.surface)
 
 
-@record
 class LinearDepth(_BetweenFaces):
     """surface + (base - surface) z/h.
 
@@ -104,7 +101,6 @@ class LinearDepth(_BetweenFaces):
         return np.full(np.shape(depth), (self.base - self.surface) / thickness)
 
 
-@record
 class PowerLawDepth(DepthFunction):
     """surface (1 + z/z0)^m.
 
@@ -129,7 +125,6 @@ class PowerLawDepth(DepthFunction):
         return self.replace(surface=self.surface / value, reference_depth=self.reference_depth / length)
 
 
-@record
 class TabulatedDepth(DepthFunction):
     """Values at given depths, and piecewise cubic between them without overshoot (Fritsch and Carlson 1980).
 
@@ -183,7 +178,6 @@ def _pure(given: object, info: ValidationInfo) -> object:
         raise refused(f"values = {shown(given['values'])}: {error}") from None
 
 
-@record
 class GradedLayer(ElasticLayer):
     """A layer with elastic constants that change with depth.
 

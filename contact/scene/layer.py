@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self, TypeA
 from pydantic import Discriminator, Field, Tag, model_validator
 
 from contact.records.errors import refused, shown
-from contact.records.record import Record, record
+from contact.records.record import Record
 from contact.records.validation import Modulus, PoissonsRatio, PositiveLength, number
 
 Support: TypeAlias = Literal["bonded", "unbonded"]
@@ -18,7 +18,6 @@ Interface: TypeAlias = Literal["bonded", "unbonded"]
 MAX_SUBLAYERS = 1000
 
 
-@record
 class Sublayer(Record):
     """One uniform layer of a stack.
 
@@ -33,7 +32,6 @@ class Sublayer(Record):
     poissons_ratio: PoissonsRatio
 
 
-@record
 class ElasticBase(Record):
     """An elastic half-space below a layer.
 
@@ -128,7 +126,6 @@ class ElasticLayer(Record):
         return type(self).__name__
 
 
-@record
 class Layer(ElasticLayer):
     """An elastic layer on a rigid base.
 
@@ -207,7 +204,6 @@ Supported: TypeAlias = Annotated[
 """A rigid base, by its interface to the layer, or an elastic one."""
 
 
-@record
 class LayerStack(ElasticLayer):
     """Uniform layers on top of each other. A scene takes a stack of one on a rigid base as that `Layer`.
 

@@ -7,7 +7,7 @@ from typing import Annotated, ClassVar, Literal, TypeAlias
 
 from pydantic import model_validator
 
-from contact.records.record import Record, record
+from contact.records.record import Record
 from contact.records.validation import FloatArray, PositiveLength, Vector, positive, vector
 
 Controlled: TypeAlias = Literal["displacement", "force", "machine"]
@@ -23,7 +23,6 @@ class Loading(Record):
     NAMED: ClassVar[bool] = True
 
 
-@record
 class ContactRadii(Loading):
     """Equilibria at given contact radii: the natural parameter of every axisymmetric contact.
 
@@ -36,7 +35,6 @@ class ContactRadii(Loading):
     )
 
 
-@record
 class IndentationDepths(Loading):
     """Equilibria at given depths, each reached from the undeformed layer.
 
@@ -51,7 +49,6 @@ class IndentationDepths(Loading):
     values: Annotated[Vector, *vector("give indentation depths in metres", "m")] = field(kw_only=False)
 
 
-@record
 class NormalForces(Loading):
     """Equilibria at given forces, each reached from the unloaded layer.
 
@@ -62,7 +59,6 @@ class NormalForces(Loading):
     values: Annotated[Vector, *vector("give normal forces in newtons", "N")] = field(kw_only=False)
 
 
-@record
 class Detachment(Loading):
     """Slow separation of an adhering indenter.
 
@@ -97,7 +93,6 @@ class Detachment(Loading):
         return "machine" if self.machine_stiffness is not None else self.control
 
 
-@record
 class Impact(Loading):
     """A rigid body hits the layer along its axis and rebounds.
 
@@ -110,7 +105,6 @@ class Impact(Loading):
     velocity: Annotated[float, *positive("give the approach velocity in metres per second", "m/s")]
 
 
-@record
 class DepthHistory(Loading):
     """A prescribed depth in time, linear between the given instants.
 
@@ -128,7 +122,6 @@ class DepthHistory(Loading):
         return self
 
 
-@record
 class ForceHistory(Loading):
     """A prescribed normal force in time, linear between the given instants.
 

@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 from pydantic import ValidationInfo, model_validator
 
 from contact.records.errors import InvalidInput, refused, shown
-from contact.records.record import Record, record
+from contact.records.record import Record
 from contact.records.units import in_si
 from contact.records.validation import (
     FloatArray,
@@ -132,7 +132,6 @@ class Pointed(Profile):
         return 0.0
 
 
-@record
 class FlatPunch(Profile):
     """A flat-ended cylinder; its contact radius is its own.
 
@@ -157,7 +156,6 @@ class FlatPunch(Profile):
         return self.radius
 
 
-@record
 class Paraboloid(Pointed):
     """f(r) = r^2 / (2 R).
 
@@ -174,7 +172,6 @@ class Paraboloid(Pointed):
         return np.asarray(radius, dtype=np.float64) / self.radius_of_curvature
 
 
-@record
 class Sphere(Pointed):
     """The exact sphere, f(r) = R - sqrt(R^2 - r^2); a paraboloid for r << R.
 
@@ -206,7 +203,6 @@ class Sphere(Pointed):
         return "the sphere has sunk to its equator"
 
 
-@record
 class Cone(Sloped, Pointed):
     """f(r) = slope r.
 
@@ -223,7 +219,6 @@ class Cone(Sloped, Pointed):
         return np.full(np.shape(radius), self.slope)
 
 
-@record
 class Spheroconical(Sloped, Pointed):
     """A cone whose apex is a sphere that it touches at b = R sin(theta): f is the sphere's up to b, then straight.
 
@@ -257,7 +252,6 @@ class Spheroconical(Sloped, Pointed):
         return Sphere(radius=self.radius)
 
 
-@record
 class Truncated(Profile):
     """A profile that is flat up to b, where its slope jumps."""
 
@@ -268,7 +262,6 @@ class Truncated(Profile):
         return (self.flat_radius,)
 
 
-@record
 class TruncatedCone(Sloped, Truncated):
     """Eq. (35): flat up to b, then f(r) = slope (r - b).
 
@@ -286,7 +279,6 @@ class TruncatedCone(Sloped, Truncated):
         return np.where(np.asarray(radius) >= self.flat_radius, self.slope, 0.0)
 
 
-@record
 class TruncatedParaboloid(Truncated):
     """A worn paraboloid: flat up to b, then f(r) = (r^2 - b^2) / (2 R).
 
@@ -306,7 +298,6 @@ class TruncatedParaboloid(Truncated):
         return np.where(r >= self.flat_radius, r / self.radius_of_curvature, 0.0)
 
 
-@record
 class PowerLaw(Pointed):
     """f(r) = H (r / R)^n: a cone for n = 1, a paraboloid for n = 2, ever flatter at the tip as n grows.
 
@@ -329,7 +320,6 @@ class PowerLaw(Pointed):
         return np.asarray(self.reference_height / self.reference_radius * self.exponent * rho ** (self.exponent - 1.0))
 
 
-@record
 class Tabulated(Pointed):
     """A measured profile, joined by shape-preserving cubics (PCHIP: no overshoot, continuous slope).
 

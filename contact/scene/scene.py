@@ -10,7 +10,7 @@ import numpy as np
 from pydantic import AfterValidator, BeforeValidator, field_validator, model_validator
 from typing_extensions import TypeVar
 
-from contact.records.record import OneOf, Record, record
+from contact.records.record import OneOf, Record
 from contact.scene.effects import EFFECTS, Adhesion, Effect, Friction, Viscoelasticity
 from contact.scene.graded_layer import GradedLayer
 from contact.scene.layer import ElasticLayer, Layer, LayerStack
@@ -48,7 +48,6 @@ def _listed(effects: Any) -> Any:
     return tuple(effects)
 
 
-@record
 class Scene(Record, Generic[LoadingT_co, LayerT_co]):
     """One contact problem.
 

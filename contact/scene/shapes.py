@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 from pydantic import BeforeValidator, Field, model_validator
 
 from contact.records.errors import UnsupportedSceneError
-from contact.records.record import OneOf, Record, record
+from contact.records.record import OneOf, Record
 from contact.records.validation import FloatArray, PositiveLength, number
 from contact.scene.profiles import PROFILES, Cone, FlatPunch, Paraboloid, Pointed, Profile, Slope, Sloped
 
@@ -124,7 +124,6 @@ class Flat(Shape):
         return np.where(np.asarray(radius) <= self.outline(angle), 0.0, np.inf)
 
 
-@record
 class EllipticParaboloid(Raised):
     """f = x^2/(2 R_1) + y^2/(2 R_2), in r and phi: r^2 [cos^2(phi)/R_1 + sin^2(phi)/R_2]/2.
 
@@ -161,7 +160,6 @@ class EllipticParaboloid(Raised):
         return np.asarray(np.asarray(radius) * curvature)
 
 
-@record
 class Pyramid(Sloped, Raised):
     """A regular pyramid, f = slope r cos(phi) over the middle half of a face; the edges of its faces are sharp.
 
@@ -218,7 +216,6 @@ class Pyramid(Sloped, Raised):
         return slope, np.minimum(np.arcsin(sine), np.arctan(slope))
 
 
-@record
 class Averaged(Pointed):
     """f_0 of a shape by quadrature over phi.
 
@@ -247,7 +244,6 @@ class Averaged(Pointed):
         return True
 
 
-@record
 class Harmonic(Record):
     """One term share f(r) cos(n phi) of `Harmonics`.
 
@@ -274,7 +270,6 @@ def _terms(given: Any) -> Any:
     )
 
 
-@record
 class Harmonics(Raised):
     """f = f_0(r) + sum_n share_n f_n(r) cos(n phi).
 
@@ -328,7 +323,6 @@ class Harmonics(Raised):
         return self.profile if term.profile is None else term.profile
 
 
-@record
 class PolygonalPunch(Flat):
     """A flat punch whose outline is a regular polygon with rounded corners; phi = 0 is the middle of a side.
 
@@ -375,7 +369,6 @@ class PolygonalPunch(Flat):
         return np.where(phi <= end, self.inscribed_radius / np.cos(phi), round_part)
 
 
-@record
 class EllipticPunch(Flat):
     """A flat punch with an elliptic outline.
 

@@ -28,7 +28,7 @@ from cases.verdicts import ExitCode, exit_code
 from contact import InvalidInput
 from reports import words
 from reports.commands.runs import show_verdict, write_summaries
-from reports.terminal import STYLES, console, show_table
+from reports.terminal import STYLES, console, progress_bar, show_table
 
 
 def run_gate(directory: Path, baselines: Path, *, methods: Collection[str], strict: bool, quiet: bool) -> int:
@@ -47,7 +47,7 @@ def run_gate(directory: Path, baselines: Path, *, methods: Collection[str], stri
         InvalidInput: if there is no run or no baseline.
     """
     read_run(directory)
-    with locked(directory):
+    with locked(directory), progress_bar("comparing with the accepted numbers"):
         run = read_run(directory)
         result = _gated(run, baselines, methods or run.judged.methods)
         write_run(result.judged, directory)
@@ -122,7 +122,8 @@ def _accept(case: Case, run: Run, request: AcceptRequest) -> None:
         raise InvalidInput(f"{name} is not accepted: {'; '.join(reasons_against)}")
     terminal.print(f"{name}: repeating every solution with inputs one unit in the last place away ...")
     watched, suites = _watched(case, run), case.suites if case.scenes else ()
-    spreads = measured_spreads(case, watched.answers, jobs=request.jobs)
+    with progress_bar("repeating"):
+        spreads = measured_spreads(case, watched.answers, jobs=request.jobs)
     before = accepted_before(request.baselines, name)
     proposal = propose(watched, name, suites=suites, before=before, spreads=spreads, reason=request.reason)
     show_table(change_table(proposal), on=terminal)

@@ -1,6 +1,6 @@
 """`contact-verify fit`: what its options mean, and what is printed and written of a fit."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Literal
 
@@ -17,7 +17,7 @@ from mdr.curves.fit import DEFAULT_PARAMETERS
 from mdr.curves.reading import Cantilever, Direction, Measured, load_curves, read_map
 from reports.files import PICTURES, check_outputs, csv_writer, picture_writers, write_outputs
 from reports.fit_tables import fit_csv, fit_table, formula_table, map_csv, map_facts, shares_table
-from reports.terminal import console, show_facts, show_table
+from reports.terminal import console, progress_bar, show_facts, show_table
 from reports.words import small
 
 # Means: all that is fitted by default in addition to the modulus.
@@ -35,7 +35,6 @@ def fit_file(
     number: int | None,
     confidence: float,
     outputs: Sequence[Path],
-    progress: Callable[[int, int], None],
     **source: str,
 ) -> None:
     """Fit one curve of a file, or all of a map where its number is None; print what was found, and write the files.
@@ -52,31 +51,20 @@ def fit_file(
     curves = read_curves(file, scene, is_map=number is None, **source)
     options: Any = {"parameters": fitted_parameters(scene, fit, also), "confidence": confidence}
     if number is None:
-        positions = np.array([one.position for one in curves])
-        depths, forces = ([getattr(one, name) for one in curves] for name in ("depth", "force"))
-        of_map = fit_map(
-            scene, depths, forces, limit=read_limit(until), positions=positions, progress=progress, **options
-        )
-        show_facts(map_facts(of_map), on=console())
-        write_outputs(
-            outputs,
-            {
-                **csv_writer(lambda: map_csv(of_map)),
-                **picture_writers(lambda: _figures().map_figure(of_map), key="fit"),
-            },
-        )
+        _fit_map(scene, curves, outputs, limit=read_limit(until), **options)
         return
     if not 0 <= number < len(curves):
         raise InvalidInput(f"{file}: has no curve {number}; it has {len(curves)}, counted from 0")
     curve, shares = curves[number], []
-    if _relaxes(scene):
-        found = fit_history(scene, curve.time, curve.depth, curve.force, **options)
-    elif uncertain:
-        inputs = read_inputs(uncertain, scene, with_units=uses_units(scene_file))
-        carried = fit_uncertain(scene, curve.depth, curve.force, inputs, **options)
-        found, shares = carried.fit, [shares_table(carried)]
-    else:
-        found = fit_curve(scene, curve.depth, curve.force, limit=read_limit(until), **options)
+    with progress_bar("fitting"):
+        if _relaxes(scene):
+            found = fit_history(scene, curve.time, curve.depth, curve.force, **options)
+        elif uncertain:
+            inputs = read_inputs(uncertain, scene, with_units=uses_units(scene_file))
+            carried = fit_uncertain(scene, curve.depth, curve.force, inputs, **options)
+            found, shares = carried.fit, [shares_table(carried)]
+        else:
+            found = fit_curve(scene, curve.depth, curve.force, limit=read_limit(until), **options)
     # Warnings come first: nobody reads them below the numbers.
     show_facts([("warning", line) for line in found.warnings], on=console())
     for table in (fit_table(found), *shares, formula_table(found)):
@@ -85,10 +73,19 @@ def fit_file(
     facts += [("numerical error", f"{small(found.numerical_error)} of E, in its interval")]
     facts += [("note", line) for line in (*found.notes, *curve.notes)]
     show_facts(facts, on=console())
-    write_outputs(
-        outputs,
-        {**csv_writer(lambda: fit_csv(found)), **picture_writers(lambda: _figures().fit_figure(found), key="fit")},
-    )
+    pictures = picture_writers(lambda: _figures().fit_figure(found), key="fit")
+    write_outputs(outputs, {**csv_writer(lambda: fit_csv(found)), **pictures})
+
+
+def _fit_map(scene: Scene, curves: list[Measured], outputs: Sequence[Path], **options: Any) -> None:
+    """Fit all curves of a map, print what was found, and write the files."""
+    depths, forces = ([getattr(one, name) for one in curves] for name in ("depth", "force"))
+    positions = np.array([one.position for one in curves])
+    with progress_bar("fitting curves") as progress:
+        found = fit_map(scene, depths, forces, positions=positions, progress=progress, **options)
+    show_facts(map_facts(found), on=console())
+    pictures = picture_writers(lambda: _figures().map_figure(found), key="fit")
+    write_outputs(outputs, {**csv_writer(lambda: map_csv(found)), **pictures})
 
 
 def fitted_parameters(scene: Scene, fit: str, also: str) -> tuple[str, ...]:

@@ -1,7 +1,7 @@
 """The command `fit` with its options; what it needs is imported when it is called."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -73,23 +73,9 @@ def fit(
     Every number has an interval. Prints what Hertz, Dimitriadis and other formulas would have found on the same curve.
     """
     from reports.commands.bench import fit_file  # noqa: PLC0415 - where it is called
-    from reports.terminal import progress_bar  # noqa: PLC0415
 
     if uncertain and (curves or until):
         raise typer.BadParameter("--uncertain is for whole single curves; leave --map and --until out")
-    with progress_bar("curves") as progress:
-        fit_file(
-            curve,
-            scene,
-            fit=moduli,
-            also=also,
-            until=until,
-            uncertain=uncertain,
-            number=None if curves else number,
-            confidence=confidence,
-            outputs=write or [],
-            progress=progress,
-            units=units,
-            spring_constant=spring_constant,
-            sensitivity=sensitivity,
-        )
+    asked: Any = {"fit": moduli, "also": also, "until": until, "uncertain": uncertain, "confidence": confidence}
+    asked |= {"units": units, "spring_constant": spring_constant, "sensitivity": sensitivity}
+    fit_file(curve, scene, number=None if curves else number, outputs=write or [], **asked)

@@ -28,7 +28,7 @@ from reports.ci import annotation_lines, junit_text, summary_text
 from reports.findings import causes, findings, headline, nothing_ran, tone_of, who
 from reports.progress import RunDisplay
 from reports.tables import matrix_table, shortest_times
-from reports.terminal import STYLES, console, show_table
+from reports.terminal import STYLES, console, progress_bar, show_table
 from reports.words import Table, display_name
 
 # What methods of installed packages are compared with when no other method is named.
@@ -116,7 +116,8 @@ def list_cases(names: list[str], suite: str) -> None:
     if len(names) == 1:
         _show_case(*cases)
         return
-    tasks = len(plan(cases))
+    with progress_bar("checking cases"):
+        tasks = len(plan(cases))
     claims = sum(len(case.claims) for case in cases)
     table = Table(
         title="",
@@ -236,7 +237,8 @@ def write_pages(run: Run, directory: Path, *, single_file: bool = False) -> None
             raise
         console(stderr=True).print(f"no pages: {missing_extra(error)}, then contact-verify report {directory}")
     else:
-        write_report(run, directory, single_file=single_file)
+        with progress_bar("drawing pages"):
+            write_report(run, directory, single_file=single_file)
     write_summaries(run, directory)
 
 

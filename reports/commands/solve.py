@@ -1,7 +1,7 @@
 """`contact-verify solve`: one scene, one answer with its error bars; or a range, uncertain inputs, advice."""
 
 import inspect
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -33,7 +33,7 @@ from reports.answer import (
     sweep_table,
 )
 from reports.files import PICTURES, Writers, check_outputs, csv_writer, picture_writers, write_outputs, write_picture
-from reports.terminal import console, show_facts, show_table
+from reports.terminal import console, progress_bar, show_facts, show_table
 from reports.words import small, with_prefix
 
 MESHES = {".vtu": "VTU for ParaView", ".xdmf": "XDMF for ParaView"}
@@ -102,7 +102,7 @@ class Request:
         return build_guarded(name, {key: value for key, value in asked.items() if key in known and value is not None})
 
 
-def solve(scene_file: Path, request: Request, progress: Callable[[int, int], None] | None = None) -> None:
+def solve(scene_file: Path, request: Request) -> None:
     """Solve the scene of a TOML file, print what was asked for, and write the files.
 
     Raises:
@@ -113,33 +113,38 @@ def solve(scene_file: Path, request: Request, progress: Callable[[int, int], Non
     if request.advise:
         _advise(scene, request)
     elif request.over:
-        _sweep(scene, scene_file, request, progress)
+        _sweep(scene, scene_file, request)
     else:
-        solution = _uncertain(scene, scene_file, request) if request.uncertain else _answer(scene, scene_file, request)
+        solution = _uncertain(scene, scene_file, request) if request.uncertain else _answer(scene, request)
         write_outputs(request.outputs, _writers(solution))
 
 
-def _answer(scene: Scene, scene_file: Path, request: Request) -> Solution:
-    """Solve, with methods from cheap to fine where an accuracy is asked for and no method."""
-    facts: list[tuple[str, str]] = []
-    if request.accuracy is not None and not request.method:
-        from cases.accuracy import solve as solve_to_accuracy  # noqa: PLC0415 - where it is asked for
-
-        found = solve_to_accuracy(scene, accuracy=request.accuracy, pressure_accuracy=request.pressure_accuracy)
-        solution: Solution = found.answer
-        stated = f"stated error {small(found.stated_error)}, asked for {small(request.accuracy)}, by {found.method}"
-        facts = [("achieved", stated)]
-    else:
-        solution = request.solver().solve(scene)
-        if request.accuracy is not None:
-            _refuse_less(solution, request.accuracy, request.pressure_accuracy)
-            solution = told_where_less(solution, request.accuracy, request.pressure_accuracy)
+def _answer(scene: Scene, request: Request) -> Solution:
+    """Solve and print the answer, beside that of a second method where one is asked for."""
+    with progress_bar("solving"):
+        solution, facts = _solved(scene, request)
+        other = build_guarded(request.against, {}).solve(scene) if request.against else None
+        facts = solution_facts(solution) + facts + _notes(solution)
     _show_answer(solution)
-    if request.against:
-        other = build_guarded(request.against, {}).solve(scene)
+    if other is not None:
         show_table(difference_table(solution, other), on=console())
-    show_facts(solution_facts(solution) + facts + _notes(scene_file, solution), on=console())
+    show_facts(facts, on=console())
     return solution
+
+
+def _solved(scene: Scene, request: Request) -> tuple[Solution, list[tuple[str, str]]]:
+    """The answer; by methods from cheap to fine, with what they achieved, where an accuracy is asked for alone."""
+    if request.accuracy is None:
+        return request.solver().solve(scene), []
+    if request.method:
+        solution = request.solver().solve(scene)
+        _refuse_less(solution, request.accuracy, request.pressure_accuracy)
+        return told_where_less(solution, request.accuracy, request.pressure_accuracy), []
+    from cases.accuracy import solve as solve_to_accuracy  # noqa: PLC0415 - where it is asked for
+
+    found = solve_to_accuracy(scene, accuracy=request.accuracy, pressure_accuracy=request.pressure_accuracy)
+    stated = f"stated error {small(found.stated_error)}, asked for {small(request.accuracy)}, by {found.method}"
+    return found.answer, [("achieved", stated)]
 
 
 def _show_answer(solution: Solution) -> None:
@@ -150,19 +155,16 @@ def _show_answer(solution: Solution) -> None:
     show_table(solution_table(solution), on=console())
 
 
-def _notes(scene_file: Path, solution: Solution) -> list[tuple[str, str]]:
-    """How the file was read, what smoothing a tip changes, and where the theory is valid."""
+def _notes(solution: Solution) -> list[tuple[str, str]]:
+    """What smoothing a tip changes, and where the theory is valid."""
     from cases.advice import validity_lines  # noqa: PLC0415 - MDR only where it is asked for
 
-    lines: list[str] = []
+    told: list[tuple[str, str]] = []
     indenter = solution.scene.indenter
     if isinstance(indenter, Tabulated) and indenter.smoothing and isinstance(solution, ContactPath):
         moved = float(solution.contact_stiffness.max()) * indenter.smoothing
-        lines.append(
-            f"smoothing changed the tip by at most {with_prefix(indenter.smoothing, 'm')}, and so the force by at most "
-            f"about {with_prefix(moved, 'N')}"
-        )
-    told = [("note", line) for line in lines]
+        tip = f"smoothing changed the tip by at most {with_prefix(indenter.smoothing, 'm')}"
+        told = [("note", f"{tip}, and so the force by at most about {with_prefix(moved, 'N')}")]
     return told + [("validity", line) for line in validity_lines(solution.scene, solution)]
 
 
@@ -183,7 +185,8 @@ def _uncertain(scene: Scene, scene_file: Path, request: Request) -> Solution:
     from cases.run.propagation import propagate  # noqa: PLC0415 - only where it is asked for
 
     inputs = read_inputs(request.uncertain, scene, with_units=uses_units(scene_file))
-    found = propagate(scene, inputs, method=request.solver(), samples=request.samples)
+    with progress_bar("solving"):
+        found = propagate(scene, inputs, method=request.solver(), samples=request.samples)
     if request.accuracy is not None:
         _refuse_less(found.answer, request.accuracy, request.pressure_accuracy)
     _show_answer(found.answer)
@@ -195,12 +198,13 @@ def _advise(scene: Scene, request: Request) -> None:
     """Print which effects, and whether the finite thickness, change the answer by more than the accuracy."""
     from cases.advice import advise  # noqa: PLC0415 - only where it is asked for
 
-    method = build_guarded(request.method or "mdr", {})
-    for line in advise(method, scene, request.accuracy or ADVISED_AT).lines:
+    with progress_bar("solving without each effect"):
+        lines = advise(build_guarded(request.method or "mdr", {}), scene, request.accuracy or ADVISED_AT).lines
+    for line in lines:
         console().print(line, soft_wrap=True)
 
 
-def _sweep(scene: Scene, scene_file: Path, request: Request, progress: Callable[[int, int], None] | None) -> None:
+def _sweep(scene: Scene, scene_file: Path, request: Request) -> None:
     """Solve the scene over a range of one of its numbers, print the table and write the files.
 
     Raises:
@@ -209,7 +213,8 @@ def _sweep(scene: Scene, scene_file: Path, request: Request, progress: Callable[
     from cases.sweep import read_range, sweep  # noqa: PLC0415 - only where it is asked for
 
     swept = read_range(request.over, scene, with_units=uses_units(scene_file))
-    found = sweep(scene, swept, request.solver(), progress)
+    with progress_bar("solving") as progress:
+        found = sweep(scene, swept, request.solver(), progress)
     if not found.answers:
         raise InvalidInput(f"over {request.over}: no value was answered; the first refusal: {found.refused[0][1]}")
     pressed = [(answer.scene, depths_of(answer)) for _, answer in found.answers]

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from contact import Adhesion, ContactRadii, InvalidInput, Layer, Paraboloid, Scene
-from contact.records.record import Record, record
+from contact.records.record import Record
 
 LAYER = Layer(thickness=1e-3, youngs_modulus=1e6, poissons_ratio=0.45)
 SCENE = Scene(layer=LAYER, indenter=Paraboloid(radius_of_curvature=1e-2), loading=ContactRadii([1e-3, 2e-3]))
@@ -64,7 +64,6 @@ def test_moduli_of_a_layer():
     assert Layer.half_space(youngs_modulus=1.0, poissons_ratio=0.3).is_half_space
 
 
-@record
 class _Plate(Record):
     width: float
     height: float = 2.0

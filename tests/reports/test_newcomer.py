@@ -1,13 +1,20 @@
 """What a newcomer meets first: sweeps drawn over depth, and messages that say what to do next."""
 
+import io
+import re
+import time
+
 import numpy as np
 import pytest
 
 from cases.sweep import read_range, sweep
-from contact import IndentationDepths, Layer, Scene, Sphere
+from contact import FlatPunch, Friction, FrictionPath, IndentationDepths, Layer, Scene, Sphere, StageLog
 from mdr import Mdr
+from reports import terminal
+from reports.answer import solution_table
 from reports.command_line import run
 from reports.pictures import sweep_figure
+from reports.terminal import Terminal
 
 SCENE = Scene(
     layer=Layer(thickness=1.5e-3, youngs_modulus=0.8e6, poissons_ratio=0.45),
@@ -32,8 +39,67 @@ def test_a_sweep_of_more_depths_than_values_is_drawn_over_the_depth_with_a_line_
 
 def test_a_sweep_of_more_values_than_depths_is_drawn_over_the_value_with_a_line_per_depth():
     drawn = sweep_figure(sweep(SCENE, read_range("thickness=1e-3..2e-3:6", SCENE, with_units=False), Mdr()))
-    assert drawn.axes[1].get_xlabel() == "thickness [mm]"
-    assert len(drawn.axes[1].lines) == 5
+    axes = drawn.axes[1]
+    assert axes.get_xlabel() == "thickness [mm]"
+    depths = [f"indentation depth [µm]: {depth:g}" for depth in (0, 37.5, 75, 112.5, 150)]
+    assert [line.get_label() for line in axes.lines] == depths
+    assert axes.get_xscale() == "linear"
+
+
+def test_a_line_of_a_punch_is_named_by_its_load_and_not_by_its_own_radius():
+    pressed = SCENE.replace(indenter=FlatPunch(radius=1e-3), loading=IndentationDepths([1e-5, 2e-5]))
+    drawn = sweep_figure(sweep(pressed, read_range("thickness=1e-3..2e-3:3", pressed), Mdr()))
+    labels = [line.get_label() for line in drawn.axes[0].lines]
+    assert labels == ["indentation depth [µm]: 10", "indentation depth [µm]: 20"]
+
+
+def test_a_range_by_equal_factors_is_drawn_on_a_logarithmic_axis():
+    drawn = sweep_figure(sweep(SCENE, read_range("thickness=1e-3..1e-1:6:log", SCENE), Mdr()))
+    assert {axes.get_xscale() for axes in drawn.axes} == {"log"}
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        (["impact.toml"], "10 of 51 states; --write FILE.csv has all"),
+        (["afm_pyramid.toml", "--over", "thickness=4um..8um:30"], "10 of 60 rows; --write FILE.csv has all"),
+    ],
+)
+def test_at_most_ten_rows_are_printed_and_where_the_others_are(arguments, told, monkeypatch, capsys):
+    monkeypatch.chdir("examples/tasks")
+    assert run(["solve", *arguments]) == 0
+    out = capsys.readouterr().out
+    assert told in " ".join(out.split())
+    assert len([line for line in out.splitlines() if not re.search("[a-zA-Z]{2}", line)]) == 10
+
+
+def test_each_column_of_an_answer_is_explained(monkeypatch, capsys):
+    scene = SCENE.replace(loading=IndentationDepths([1e-5]), effects=[Friction(coefficient=0.1)])
+    numbers = dict.fromkeys((*FrictionPath.ARRAYS,), np.ones(1))
+    cost = StageLog().cost(unknowns=1)
+    answer = FrictionPath(scene=scene, method="fem", settings={}, error_estimate={}, cost=cost, **numbers)
+    note = solution_table(answer).note
+    assert "c: stick radius" in note
+    assert "E_diss: dissipated energy" in note
+
+
+@pytest.mark.parametrize("command", [["solve", "scene.toml"], ["run", "truncated_cone"]])
+def test_an_unknown_method_says_how_one_is_registered(command, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "scene.toml").write_text(TOML, encoding="utf-8")
+    assert run([*command, "--method", "mysolver"]) == 4
+    told = " ".join(capsys.readouterr().err.split())
+    assert "entry point of the group contact_verification.methods (examples/hertz_half_space)" in told
+
+
+@pytest.mark.parametrize(("seconds", "is_shown"), [(0.0, False), (0.3, True)])
+def test_a_long_computation_shows_on_a_terminal_that_it_goes_on(seconds, is_shown, monkeypatch):
+    stream = io.StringIO()
+    monkeypatch.setattr(terminal, "PATIENCE", 0.1)
+    monkeypatch.setattr(terminal, "console", lambda **_: Terminal(file=stream, force_terminal=True))
+    with terminal.progress_bar("solving"):
+        time.sleep(seconds)
+    assert ("solving" in stream.getvalue()) is is_shown
 
 
 @pytest.mark.parametrize(
