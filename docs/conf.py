@@ -11,8 +11,16 @@ from reports.book import write_book, write_equations
 
 HERE = Path(__file__).parent
 sys.path.insert(0, str(HERE.parent))  # scripts of the gallery import their common parts
+from docs.written import write_accuracy, write_case_figure, write_commands, write_tasks
+
 write_book(load_cases().values(), HERE / "book")
+for case in load_cases():
+    with (HERE / "book" / f"{case}.md").open("a", encoding="utf-8") as page:
+        page.write(write_case_figure(case, HERE / "book"))
 write_equations(HERE.parent, HERE / "generated" / "equations.md")
+write_accuracy(HERE / "generated" / "accuracy.md")
+write_commands(HERE / "commands")
+write_tasks(HERE / "tasks")
 
 project = "contact-verification"
 author = "contact-verification contributors"
@@ -35,6 +43,7 @@ html_theme_options = {"show_prev_next": False, "navigation_with_keys": False, "s
 html_show_sourcelink = False
 # Pages without neighbours of their own need no list of them.
 ALONE = (
+    "accuracy",
     "api",
     "contributing",
     "formulas",

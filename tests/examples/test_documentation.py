@@ -23,7 +23,7 @@ WRITTEN = ("book/", "generated/", "start/", "figures/")
 
 @pytest.mark.parametrize(
     "path",
-    [pytest.param(path, marks=pytest.mark.slow if path.stem == "6_relaxation" else ()) for path in TUTORIALS],
+    [pytest.param(path, marks=pytest.mark.slow if path.stem == "3_relaxation" else ()) for path in TUTORIALS],
     ids=lambda path: path.stem,
 )
 def test_a_tutorial_runs(path, capsys, monkeypatch):
