@@ -4,6 +4,7 @@ Accuracy and figures come from the accepted answers in `baselines/`; nothing is 
 """
 
 import json
+import re
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -40,10 +41,10 @@ def command_page(name: str, command: Any) -> str:
     """The help of one command as Markdown."""
     required = [one for one in command.params if one.param_type_name == "argument"]
     usage = " ".join(one.metavar or one.name.upper() for one in required)
-    rows = "\n".join(f"| {_parameter(one)} | {_cell(one.help)}{_default(one)} |" for one in command.params)
+    rows = "\n".join(f"{_parameter(one)}\n: {_cell(one.help)}{_default(one)}\n" for one in command.params)
     return (
         f"# {name}\n\n{_text(command.help)}\n\n```text\ncontact-verify {name} {usage} [options]\n```\n\n"
-        f"| argument or option | meaning |\n|---|---|\n{rows}\n\n{EXIT_CODES}\n"
+        f"{rows}\n{EXIT_CODES}\n"
     )
 
 
@@ -56,7 +57,7 @@ def _first(text: str) -> str:
 
 
 def _cell(text: str) -> str:
-    return " ".join(_text(text).split()).replace("|", "&#124;")
+    return re.sub(r"(?<![\w`-])--[a-z-]+", r"`\g<0>`", " ".join(_text(text).split()).replace("|", "&#124;"))
 
 
 def _parameter(one: Any) -> str:
