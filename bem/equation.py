@@ -42,6 +42,8 @@ from contact.records.validation import FloatArray
 # a/h beyond which A is factored by QR of its square root. Below 4 Cholesky is as good and faster; beyond 16 Cholesky
 # loses a digit of k_N at nu = 1/2.
 _ROOT_FROM = 8.0
+# Wave numbers over which c c^T turns into its mean: 24 periods. With half of them 1e-12 of k_N is lost.
+_TURNING = 24 * np.pi
 # Radius over a up to which tables of displacements outside are kept, and orders times largest wave number from which
 # on they are made anew: at 2e5 (a/h = 100) they take 10 MB.
 _FAR, _LARGEST_TABLE = 4.0, 2e5
@@ -154,7 +156,8 @@ class Radius:
         octave = max(int(np.ceil(np.log2(max(a, 1e-3)))), -3) if octave is None else octave
         self.count = sizes.polynomials(octave, is_graded=bool(kernel.tail), kinked=kinked)
         self.degree = np.sqrt(4 * np.arange(self.count) + 1)  # b_n(1)
-        self._waves = _Waves(self._lowest(octave), sizes.reach * 2.0**octave, self.count, sizes.nodes)
+        least = 5 * self.count + _TURNING if self.is_rooted else 0.0
+        self._waves = _Waves(self._lowest(octave), max(sizes.reach * 2.0**octave, least), self.count, sizes.nodes)
         kappa, w, table = _transforms(self._waves)
         use = slice(0, None if kernel.tail else int(np.searchsorted(kappa, sizes.reach * a)) + sizes.nodes)
         self._table, rest = table[:, use], kernel.one_minus_chi(kappa[use] / a)
@@ -210,12 +213,12 @@ class Radius:
         d made with Bessel functions of the second kind. The transition is smooth over 24 periods (erfc).
         """
         kappa, w, table = _transforms(self._waves)
-        ends, width = self._waves.ends, 24 * np.pi
+        ends, width = self._waves.ends, _TURNING
         last = ends[min(int(np.searchsorted(ends, max(3 * self.a, 5 * self.count) + width)), ends.size - 1)]
         near = kappa < last
         kappa, w, table = kappa[near], w[near], table[:, near]
         share = special().erfc(12 * ((kappa - last) / width + 0.5)) / 2  # 1 within, 0 at `last`
-        v, u = gauss(2 * self.sizes.nodes)
+        v, u = gauss(2 * self.sizes.nodes + self.count // 4)  # phases of c_m c_n turn by up to 0.4 count
         far = np.concatenate([kappa[share < 1], last / v])
         weight = np.concatenate([(w * (1 - share))[share < 1], u * last / v**2])
         size = _scale(self.count)[:, None] * np.sqrt(weight * self.kernel.chi(far / self.a) / np.pi)

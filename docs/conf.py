@@ -1,18 +1,28 @@
 """Sphinx settings of the documentation. `make docs` builds it with warnings as errors; nothing is downloaded."""
 
+import inspect
 import sys
 from pathlib import Path
 
 from docutils import nodes
 from latex2mathml.converter import convert
+from sphinx.util.inspect import stringify_signature
 
 from cases.declare.registry import load_cases
 from reports.book import write_book, write_equations
 
 HERE = Path(__file__).parent
 sys.path.insert(0, str(HERE.parent))  # scripts of the gallery import their common parts
+from docs.written import write_accuracy, write_case_figure, write_commands, write_tasks
+
 write_book(load_cases().values(), HERE / "book")
+for case in load_cases():
+    with (HERE / "book" / f"{case}.md").open("a", encoding="utf-8") as page:
+        page.write(write_case_figure(case, HERE / "book"))
 write_equations(HERE.parent, HERE / "generated" / "equations.md")
+write_accuracy(HERE / "generated" / "accuracy.md")
+write_commands(HERE / "commands")
+write_tasks(HERE / "tasks")
 
 project = "contact-verification"
 author = "contact-verification contributors"
@@ -24,9 +34,10 @@ extensions = [
     "sphinx_gallery.gen_gallery",
     "sphinxcontrib.bibtex",
 ]
-myst_enable_extensions = ["dollarmath", "colon_fence"]
+myst_enable_extensions = ["dollarmath", "colon_fence", "deflist"]
 myst_heading_anchors = 3
 bibtex_bibfiles = ["references.bib"]
+smartquotes = False  # "--option" keeps its two hyphens
 html_theme = "pydata_sphinx_theme"
 html_static_path = ["_static"]
 html_css_files = ["docs.css"]
@@ -35,6 +46,7 @@ html_theme_options = {"show_prev_next": False, "navigation_with_keys": False, "s
 html_show_sourcelink = False
 # Pages without neighbours of their own need no list of them.
 ALONE = (
+    "accuracy",
     "api",
     "contributing",
     "formulas",
@@ -47,7 +59,8 @@ ALONE = (
 )
 html_sidebars = {page: [] for page in ALONE}
 autodoc_member_order = "bysource"
-autodoc_typehints = "description"
+autodoc_typehints_format = "short"
+napoleon_use_ivar = True
 exclude_patterns = [
     "tutorials",
     "gallery",
@@ -75,6 +88,14 @@ suppress_warnings = ["config.cache", "myst.xref_missing"]
 def setup(app):
     """Formulas as MathML, which browsers draw themselves: pages need no script from elsewhere."""
     app.add_html_math_renderer("mathml", (_inline_math, None), (_display_math, None))
+    app.connect("autodoc-process-signature", _fields_without_validators)
+
+
+def _fields_without_validators(_app, what, _name, found, _options, _signature, _returned):
+    """Signatures of records without annotations, which hold validators; their fields follow with units."""
+    if what != "class":
+        return None
+    return stringify_signature(inspect.signature(found), show_annotation=False), None
 
 
 def _inline_math(translator, node):

@@ -35,7 +35,7 @@ from contact.answer.solution import Setting, StatedErrors
 from contact.records.validation import FloatArray
 from contact.stated import stated_error
 from mdr.admissible import refuse_pulling, refuse_touching_outside
-from mdr.contact_surface import Surface, is_hard, surface_of
+from mdr.contact_surface import Surface, is_slow, surface_of
 from mdr.profiles import FlatTip
 from mdr.radius_search import Quantity, RadiusSearch, refuse_too_wide
 from mdr.spring_bed import Springs, SpringValues, State
@@ -249,20 +249,20 @@ def _pressure_error(pair: Callable[[int], list[Surface]], seen: State) -> float:
 
 
 def surface_pair(springs: Springs, a: float, depth: float, *, is_singular: bool) -> list[Surface]:
-    """One contact at two resolutions: that of the answer, and a finer one.
+    """One contact at two resolutions: that of the answer, and another one whose change states its error.
 
-    Where patches would take long, the whole series is compared with one of half its resolution. Its error falls like a
-    power, so that this change exceeds what the patches of the answer err.
+    Where the error falls like a power of the resolution, the other one is coarser by a factor.
     """
-    if is_hard(springs, a):
-        coarse = springs.at_sizes(springs.sizes.scaled(0.5))
-        return [Surface(s, a, depth, is_singular=is_singular) for s in (springs, coarse)]
-    return [surface_of(s, a, depth, is_singular=is_singular) for s in (springs, springs.finer)]
+    other = springs.at_sizes(springs.sizes.scaled(0.5)) if is_slow(springs, a) else springs.finer
+    return [surface_of(one, a, depth, is_singular=is_singular) for one in (springs, other)]
 
 
 def compared_pressure(pair: list[Surface], scale: float) -> float:
     """Stated error of a contact's pressure over a pressure [Pa], by two resolutions."""
-    inside = pair[0].a * np.sin(np.pi / 2 * gauss(_INSIDE)[0])
+    a, unit = pair[0].a, pair[0].springs.unit
+    beside = np.add.outer(np.array(pair[0].tip.breaks[:_INSIDE]), [-unit, unit]).ravel()  # errors are largest there
+    beside = beside[(beside > 0) & (beside < a - unit) & ~np.isin(beside, pair[0].tip.breaks)]
+    inside = np.append(a * np.sin(np.pi / 2 * gauss(_INSIDE)[0]), beside)
     values = [surface.pressure(inside) for surface in pair]
     floor = _GRADED_EDGE if pair[0].kernel.tail and pair[0].edge else _FIELD_ROUNDING
     return float(stated_error(values[0], values[1], scale=scale, floor=floor).max())

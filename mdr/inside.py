@@ -31,7 +31,7 @@ from contact import ElasticLayer, InvalidInput
 from contact.answer.inside import InsideFields, KnownContact
 from contact.records.validation import FloatArray
 from contact.stated import SAFETY
-from mdr.contact_surface import Surface, surface_of
+from mdr.contact_surface import Surface, is_slow, surface_of
 from mdr.spring_bed import Springs
 
 # Fields take so many times more polynomials than k_N, which is stationary: with half of it they err by 1e-9 at a/h = 5.
@@ -327,12 +327,14 @@ def interior(
 ) -> Interior:
     """The body under one contact [m]; `is_singular`: whether phi(a) is not zero.
 
-    The contact has finer sizes, and in its companion the usual ones and a radius that is off by its error.
+    The contact has finer sizes, and in its companion the usual ones and a radius that is off by its error. Where errors
+    fall like a power of the sizes, the companion has half the resolution.
     """
     shifted = min(known.radius * (1 + known.radius_error), springs.tip.end)
-    finer = _surface(springs, springs.sizes.finer, known.radius, depth, is_singular)
-    usual = _surface(springs, springs.sizes, shifted, depth, is_singular)
-    return Interior(layer, (finer, usual), known, depth)
+    sizes = springs.sizes
+    fine, coarse = (sizes, sizes.scaled(0.5)) if is_slow(springs, known.radius) else (sizes.finer, sizes)
+    own = _surface(springs, fine, known.radius, depth, is_singular)
+    return Interior(layer, (own, _surface(springs, coarse, shifted, depth, is_singular)), known, depth)
 
 
 def field_sizes(sizes: Sizes) -> Sizes:

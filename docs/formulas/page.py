@@ -17,30 +17,28 @@ USELESS = 10.0
 LAYERS = (("bonded", 0.0), ("bonded", 0.3), ("bonded", 0.45), ("bonded", 0.49), ("bonded", 0.5), ("unbonded", 0.3))
 AT = [int(np.argmin(np.abs(RATIOS - ratio))) for ratio in SHOWN]
 
-HEAD = """# Formulas in circulation, and how right they are
+HEAD = """# Formulas in circulation, and where they are valid
 
 Written by `python -m docs.formulas.page`; the formulas are plain functions in `docs/formulas/`.
-The reference is MDR on the integral equation, which agrees with the same equation in extended precision to 1e-9 and
-with finite elements to 3e-6; the model is linear, frictionless and axisymmetric, as the formulas assume. Variables:
+The reference is MDR. It agrees with the same integral equation in extended precision to 1e-9 and with finite elements
+to 3e-6. The model is linear, frictionless and axisymmetric, as the formulas assume. Variables:
 x = sqrt(R delta)/h for a paraboloid, delta tan(alpha)/h for a cone of half angle alpha, t = a/h for a flat punch.
 A formula is judged at the Poisson's ratios that it claims.
 
-**Where the numbers come from.** No original paper could be read in full; the column "checked against" says what was
-read in its place on 2026-11-22. Public programs that cite the papers (AtomicJ; Python programs for force curves; a
-script for Long; an R package and a Python program for Hayes' table) were compared digit by digit; where several have a
-number, they agree. AtomicJ is by the author of Hermanowicz 2021, whose abstract says that the formulas hold for any
-thickness. Hertz, the cone and Clifford are those of nanite 4.2.3. Abstracts were found of Dimitriadis, of
-Gavara and Chadwick, and of Lin, Hui and Conway: finite elements of a punch that sticks and of one that slides, fitted
-by analytic compliances, without their numbers. Limits of thick and thin layers are tests with our own solver. From
-memory remain the numbers of the fit of Lin, Hui and Conway, the ranges of Dimitriadis, Garcia, Gavara and Managuli, and
-the numbers of sections and pages. What is said of a formula below holds for these numbers, and for its authors' only as
-far as programs copied them rightly.
+**Where the numbers come from.** No original paper was available in full. The column "checked against" names the source
+used in its place. Public programs that cite the papers (AtomicJ; Python programs for force curves; a script for Long; an
+R package and a Python program for Hayes' table) were compared digit by digit. Where several have a number, they agree.
+AtomicJ is by the author of Hermanowicz 2021, whose abstract claims validity for any thickness. Hertz, the cone and
+Clifford are those of nanite 4.2.3. Of Dimitriadis, of Gavara and Chadwick, and of Lin, Hui and Conway only abstracts
+were found, without numbers. Limits of thick and thin layers are tests with MDR. The numbers of the fit of Lin, Hui and
+Conway and the ranges of Dimitriadis, Garcia, Gavara and Managuli are quoted from memory. The statements below are about
+these numbers. They apply to the authors' own formulas as far as the programs copied them without error.
 
 - **Error of the force**: formula over exact force at the same depth, minus one.
 - **Error of the modulus**: Young's modulus that least squares find in an exact force curve from zero to the depth that
   belongs to a/h (points equally far apart in depth, contact point known), over the true one, minus one.
-- **Holds to**: a/h up to which the error of the force stays within the share; for limits of thin layers, from which on.
-  For paraboloids delta R/h^2 stands beside it in brackets. We tested a/h from 0.005 to 20.
+- **Valid to**: a/h up to which the error of the force is below the percentage; for limits of thin layers, a/h from
+  which on. For paraboloids delta R/h^2 follows in brackets. We tested a/h from 0.005 to 20.
 """
 
 LAST = """
@@ -49,15 +47,15 @@ LAST = """
 `docs/formulas/compact.py` gives `punch_factor(a/h, nu, support)`, that is k_N/(2 E* a), and
 `paraboloid_factor(sqrt(R delta)/h, nu, support)`, that is F over Hertz's force, for a/h up to 10, any nu from 0 to 1/2
 and both supports: half-space and thin layer, added, times the exponential of a polynomial. `fit_compact` makes the
-coefficients (`compact.toml`). On random points that the fit has not seen the error stays below 0.1 %
+coefficients (`compact.toml`). On random points outside the fitted ones the error is below 0.1 %
 (`tests/examples/test_formulas.py` checks 10 000).
 """
 
 
 def page() -> str:
     """Return the whole page."""
-    parts = [HEAD, "\n## Where each holds\n", _holding(), "\n## Error of the force\n", _errors(audit.force_errors)]
-    parts += ["\n## Error of the fitted modulus\n", _errors(audit.modulus_errors), "\n## What to know\n", *_facts()]
+    parts = [HEAD, "\n## Where each is valid\n", _holding(), "\n## Error of the force\n", _errors(audit.force_errors)]
+    parts += ["\n## Error of the fitted modulus\n", _errors(audit.modulus_errors), "\n## Remarks\n", *_facts()]
     parts += ["\n## Correct values\n", _values(), LAST]
     return "".join(parts)
 
@@ -75,7 +73,7 @@ def _holding() -> str:
         "source",
         "checked against",
         "claimed for",
-        *(f"holds to {100 * share:g} %" for share in SHARES),
+        *(f"valid to {100 * share:g} %" for share in SHARES),
     )
     return _table(heads, (_held(formula, nu) for formula in FORMULAS for nu in formula.poissons_ratios))
 

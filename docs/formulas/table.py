@@ -53,7 +53,7 @@ PROGRAMS = "two public programs, digit by digit"
 AUTHORS_PROGRAM = "the author's own program AtomicJ, digit by digit; the abstract has the range"
 OUR_LIMIT = "our own solver: its error falls with growing a/h (test)"
 NANITE = "nanite 4.2.3, digit by digit"
-THICK = "layers that are thick beside the contact"
+THICK = "layers that are thick compared with the contact radius"
 
 PARABOLOIDS = (
     _paraboloid(

@@ -140,3 +140,14 @@ def test_roundings_beside_an_equator_are_no_fall_of_the_profile():
     scene = Scene(layer=layer, indenter=Sphere(radius=1.0), loading=ContactRadii([1 - 1e-12]))
     path = Mdr().solve(scene)
     assert 1e-7 < path.error_estimate["indentation_depth"][0] < 1e-2
+
+
+def test_more_resolution_than_needed_changes_no_pressure():
+    """At a/h = 10 and nu = 1/2, far more polynomials than wave numbers of the default would resolve."""
+    scene = Scene(layer=LAYERS["bonded 0.5"], indenter=INDENTERS[0], loading=ContactRadii([10.0]))
+    scene = scene.replace(beyond_small_strains=True)
+    usual, finer = (
+        Mdr(flat_punch=IntegralEquation(nodes=nodes, panel_width=width)).solve(scene).pressure(np.array([0.0, 5.0]))
+        for nodes, width in ((24, 1.0), (64, 0.1))
+    )
+    np.testing.assert_allclose(finer, usual, rtol=1e-11)

@@ -1,0 +1,183 @@
+"""Pages that the build writes: one per command from its help, tasks with pictures, accuracy and figures of cases.
+
+Accuracy and figures come from the accepted answers in `baselines/`; nothing is copied by hand.
+"""
+
+import json
+import re
+from collections import defaultdict
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from statistics import median
+from typing import Any, NamedTuple
+
+from matplotlib.figure import Figure
+from typer.main import get_command
+
+from contact import load_scene
+from mdr import Mdr
+from reports.command_line import EXIT_CODES, app
+from reports.style import figure_style, look_of, mark_decades, svg_text
+from reports.words import display_name
+
+ROOT = Path(__file__).resolve().parents[1]
+# Differences below are drawn here: double precision has sixteen digits.
+SMALLEST = 1e-16
+
+
+def write_commands(folder: Path) -> None:
+    """Write a page per command, and their list."""
+    folder.mkdir(parents=True, exist_ok=True)
+    commands = get_command(app).commands
+    for name, command in commands.items():
+        (folder / f"{name}.md").write_text(command_page(name, command), encoding="utf-8")
+    entries = "\n".join(f"| [{name}]({name}.md) | {_first(one.help)} |" for name, one in commands.items())
+    contents = "\n".join(commands)
+    text = f"# Commands\n\n| command | what it does |\n|---|---|\n{entries}\n\n{EXIT_CODES}\n"
+    (folder / "index.md").write_text(f"{text}\n```{{toctree}}\n:hidden:\n\n{contents}\n```\n", encoding="utf-8")
+
+
+def command_page(name: str, command: Any) -> str:
+    """The help of one command as Markdown."""
+    required = [one for one in command.params if one.param_type_name == "argument"]
+    usage = " ".join(one.metavar or one.name.upper() for one in required)
+    rows = "\n".join(f"{_parameter(one)}\n: {_cell(one.help)}{_default(one)}\n" for one in command.params)
+    return (
+        f"# {name}\n\n{_text(command.help)}\n\n```text\ncontact-verify {name} {usage} [options]\n```\n\n"
+        f"{rows}\n{EXIT_CODES}\n"
+    )
+
+
+def _text(text: str) -> str:
+    return (text or "").replace("\b", "").replace("\f", "").strip().replace("<", "&lt;")
+
+
+def _first(text: str) -> str:
+    return _cell(_text(text).split("\n\n")[0])
+
+
+def _cell(text: str) -> str:
+    return re.sub(r"(?<![\w`-])--[a-z-]+", r"`\g<0>`", " ".join(_text(text).split()).replace("|", "&#124;"))
+
+
+def _parameter(one: Any) -> str:
+    if one.param_type_name == "argument":
+        return f"`{one.metavar or one.name.upper()}`"
+    return ", ".join(f"`{name}`" for name in [*one.opts, *one.secondary_opts])
+
+
+def _default(one: Any) -> str:
+    shown = one.default not in (None, False, "", [], ()) and not callable(one.default) and not one.required
+    return f" Default: {one.default}." if shown and one.param_type_name == "option" else ""
+
+
+def write_tasks(folder: Path) -> None:
+    """Write the page of tasks: each file of `examples/tasks`, scenes with the picture of their answer."""
+    folder.mkdir(parents=True, exist_ok=True)
+    tasks, parts = ROOT / "examples" / "tasks", ["# Tasks of ten lines"]
+    parts.append("Scenes are solved by `contact-verify solve FILE.toml`. The pictures are `Mdr().solve(..).plot()`.")
+    for file in sorted(tasks.glob("*.toml")):
+        text = file.read_text(encoding="utf-8").partition("\n")[2]
+        parts += [f"## {file.stem.replace('_', ' ')}", f"```toml\n{text}```", _picture(file, folder)]
+    for file in sorted(tasks.glob("*.py")):
+        text = file.read_text(encoding="utf-8")
+        parts += [f"## {file.stem.replace('_', ' ')}", f"```python\n{text}```"]
+    (folder / "index.md").write_text("\n\n".join(filter(None, parts)) + "\n", encoding="utf-8")
+
+
+def _picture(file: Path, folder: Path) -> str:
+    """The picture of a scene's answer, written into the folder; nothing where the answer is one state."""
+    answer: Any = Mdr(accuracy=1e-4).solve(load_scene(file))
+    if len(answer.normal_force) < 3:
+        return ""
+    with figure_style():
+        figure = Figure(figsize=(5.0, 3.0), layout="constrained")
+        answer.plot(axes=figure.subplots())
+        (folder / f"{file.stem}.svg").write_text(svg_text(figure, key=file.stem), encoding="utf-8")
+    return f"![{file.stem.replace('_', ' ')}]({file.stem}.svg)"
+
+
+class Compared(NamedTuple):
+    """One quantity of one method and scene: unit-free stated error, and difference from MDR with MDR's own."""
+
+    method: str
+    quantity: str
+    stated: float
+    difference: float | None
+    stated_by_both: float
+
+
+def accepted(case: str) -> Iterator[Compared]:
+    """The accepted answers of a case, relative to the scale of each quantity."""
+    file = ROOT / "baselines" / f"{case}.jsonl"
+    answers = [json.loads(line) for line in file.read_text(encoding="utf-8").splitlines()[1:]]
+    by_mdr = {answer["scene"]: answer["quantities"] for answer in answers if answer["method"] == "mdr"}
+    for answer in answers:
+        for name, one in answer["quantities"].items():
+            if len(one.get("error", ())) != len(one["values"]) or not one["values"]:
+                continue
+            stated, other = max(one["error"]) / one["scale"], by_mdr.get(answer["scene"], {}).get(name)
+            comparable = other and answer["method"] != "mdr" and len(other["values"]) == len(one["values"])
+            if not comparable:
+                yield Compared(answer["method"], name, stated, None, stated)
+                continue
+            pairs = zip(one["values"], other["values"], strict=True)
+            change = max(abs(x - y) for x, y in pairs) / one["scale"]
+            both = stated + max(other.get("error", [0.0])) / one["scale"]
+            yield Compared(answer["method"], name, stated, change, both)
+
+
+def write_case_figure(case: str, folder: Path) -> str:
+    """Write the picture of differences from MDR of a case; returns its section, empty without a second method."""
+    found = defaultdict(list)
+    for one in accepted(case) if (ROOT / "baselines" / f"{case}.jsonl").is_file() else ():
+        if one.difference is not None:
+            found[one.method].append((max(one.stated_by_both, SMALLEST), max(one.difference, SMALLEST)))
+    if not found:
+        return ""
+    with figure_style():
+        (folder / f"{case}.svg").write_text(svg_text(_agreement(found), key=case), encoding="utf-8")
+    text = "Accepted answers: each symbol is one quantity of one scene. Where methods agree it lies in the shaded half."
+    return f"\n## Differences from MDR\n\n{text}\n\n![Differences from MDR over stated errors]({case}.svg)\n"
+
+
+def _agreement(found: dict[str, list[tuple[float, float]]]) -> Figure:
+    figure = Figure(figsize=(5.0, 3.8), layout="constrained")
+    axes = figure.subplots()
+    axes.set(xscale="log", yscale="log", xlabel="error stated by both, relative", ylabel="relative difference from MDR")
+    for method, places in found.items():
+        look, (x, y) = look_of(method), zip(*places, strict=True)
+        label = display_name(method)
+        axes.plot(x, y, look.marker, color=look.colour, markersize=4, markerfacecolor="none", label=label)
+    ends = [SMALLEST / 3, 3 * max(max(place) for places in found.values() for place in places)]
+    axes.fill_between(ends, ends, ends[0], color="#eef4ee", zorder=0.5)
+    axes.set(xlim=ends, ylim=ends)
+    mark_decades(axes.xaxis, axes.yaxis)
+    figure.legend(loc="outside lower center", ncols=2)
+    return figure
+
+
+def write_accuracy(page: Path) -> None:
+    """Write one table per method: stated errors and differences from MDR by quantity, over all accepted answers."""
+    page.parent.mkdir(parents=True, exist_ok=True)
+    found: dict[str, dict[str, list[Compared]]] = defaultdict(lambda: defaultdict(list))
+    for file in sorted((ROOT / "baselines").glob("*.jsonl")):
+        for one in accepted(file.stem):
+            found[one.method][one.quantity].append(one)
+    parts = []
+    for method in sorted(found):
+        rows = [_accuracy_row(name, values) for name, values in sorted(found[method].items()) if len(values) >= 3]
+        if rows:
+            head = "| quantity | answers | stated error: median | largest | difference from MDR: median | largest |"
+            parts.append("\n".join([f"## {display_name(method)}\n", head, "|---|--:|--:|--:|--:|--:|", *rows]))
+    page.write_text("\n\n".join(parts) + "\n", encoding="utf-8")
+
+
+def _accuracy_row(name: str, values: Sequence[Compared]) -> str:
+    stated, change = [one.stated for one in values], [one.difference for one in values if one.difference is not None]
+    shown = f"{_small(median(change))} | {_small(max(change))}" if change else " | "
+    return f"| {name.replace('_', ' ')} | {len(values)} | {_small(median(stated))} | {_small(max(stated))} | {shown} |"
+
+
+def _small(value: float) -> str:
+    return "0" if value == 0 else f"{value:.0e}"
