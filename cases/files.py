@@ -2,7 +2,6 @@
 
 import csv
 import io
-import os
 from collections.abc import Iterable
 from pathlib import Path
 from typing import TypeVar
@@ -46,38 +45,6 @@ def validated(adapter: TypeAdapter[T], data: bytes, *, place: str, remedy: str) 
         where = ".".join(str(part) for part in first["loc"])
         wrong = f"{place}: {where:.200}: {first['msg']:.200}, got {shown(first['input'])}"
         raise InvalidInput(f"{wrong}; {remedy}") from None
-
-
-def write_whole(path: Path, content: str | bytes) -> None:
-    """Write a text or bytes so that a reader finds the old file or the new one, never a part (fsync, rename).
-
-    A link stays a link; a device or pipe is written to as it stands.
-
-    Raises:
-        InvalidInput: if the disk is full or does not let the file be written; nothing is left of it then.
-    """
-    data = content.encode("utf-8") if isinstance(content, str) else content
-    target = path.resolve()
-    special = target.exists() and not target.is_file()
-    try:
-        if special:
-            target.write_bytes(data)
-        else:
-            _replace(target, data)
-    except OSError as error:
-        raise InvalidInput(f"{path}: cannot be written ({error.strerror}); make room, or name another place") from None
-
-
-def _replace(path: Path, data: bytes) -> None:
-    unfinished = path.with_name(f".{path.name}.{os.getpid()}.partial")
-    try:
-        with unfinished.open("wb") as stream:
-            stream.write(data)
-            stream.flush()
-            os.fsync(stream.fileno())
-        unfinished.replace(path)
-    finally:
-        unfinished.unlink(missing_ok=True)
 
 
 def csv_text(heads: Iterable[str], rows: Iterable[Iterable[object]]) -> str:

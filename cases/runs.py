@@ -11,10 +11,11 @@ from pydantic import TypeAdapter
 from pydantic.dataclasses import dataclass
 
 from cases.answers import NAME, Table, read_answers
-from cases.files import read_record, write_whole
+from cases.files import read_record
 from cases.studies import Convergence, CostOfAccuracy, Effect, StressTest
 from cases.verdicts import RECORD, Kind, Mapping, NotNegative, Status, Verdict
 from contact import InvalidInput
+from contact.files.whole import write_whole
 
 RUN = "run.json"
 REMEDY = "run the cases again (with --resume finished solutions are kept)"

@@ -77,7 +77,7 @@ def solution_table(solution: Solution) -> Table:
 
 def _shown_rows(count: int, what: str) -> tuple[IntArray, str]:
     """At most ten rows of a table, the first and the last among them, and where the others are."""
-    rows = np.unique(np.linspace(0, count - 1, MOST_ROWS).round().astype(np.int64))
+    rows = np.linspace(0, count - 1, min(count, MOST_ROWS)).round().astype(np.int64)
     return rows, f"{len(rows)} of {count} {what}; --write FILE.csv has all. " * (len(rows) < count)
 
 

@@ -10,6 +10,8 @@ from matplotlib.figure import Figure
 from contact import UNITS, ForceHistory, Solution
 from contact.answer.evidence import SYMBOLS
 from contact.records.units import prefix_for
+from reports.style import BLACK, look_of
+from reports.words import display_name
 
 # More prescribed states than these are drawn as a line, fewer as symbols.
 _MOST_SYMBOLS: Final = 40
@@ -36,32 +38,49 @@ def plot(answer: Solution, y: str | None = None, x: str | None = None, axes: Axe
         from matplotlib import pyplot as plt  # noqa: PLC0415  # looks for a screen, which files need not
 
         axes = plt.subplots(layout="constrained")[1]
-    stated = answer.stated_error(y)
-    if stated is not None:
-        label = f"stated error, at most {np.max(stated):.1g} {UNITS[y]}"
-        ends = ((getattr(answer, y) + side * stated) * factor(answer, y) for side in (-1, 1))
-        axes.fill_between(getattr(answer, x) * factor(answer, x), *ends, alpha=0.25, linewidth=0, label=label)
-    _draw(answer, axes, x, y)
-    axes.set(xlabel=axis_label(answer, x), ylabel=axis_label(answer, y))
+    draw(answer, axes, x, y)
     axes.legend()
     return axes
 
 
-def _draw(answer: Solution, axes: Axes, x: str, y: str) -> None:
-    """The curve, or symbols at few prescribed states; of a detachment, the states stable under its control."""
-    across, up = (getattr(answer, name) * factor(answer, name) for name in (x, y))
+def draw(answer: Solution, axes: Axes, x: str, y: str, curve: Solution | None = None) -> None:
+    """One array over another with the stated error: a line with a band, or symbols with bars at few prescribed states.
+
+    Args:
+        answer: Of a detachment, the states stable under its control are a line and the whole branch is dotted.
+        axes: Where to draw.
+        x: Name of the array on the horizontal axis.
+        y: Name of the array on the vertical axis.
+        curve: The same scene with states between the prescribed ones, drawn as the line; None where there is none.
+    """
+    axes.set(xlabel=axis_label(answer, x), ylabel=axis_label(answer, y))
+    look, method = look_of(answer.method), display_name(answer.method)
+    prescribed = getattr(answer.scene.loading, "time", np.empty(_MOST_SYMBOLS)).size
+    is_curve = answer.CURVE_ALONE or len(answer) > prescribed
+    drawn = answer if curve is None else curve
+    across, up = (getattr(drawn, name) * factor(answer, name) for name in (x, y))
+    if (stated := drawn.stated_error(y)) is not None:
+        label, error = f"stated error, at most {np.max(stated):.1g} {UNITS[y]}", stated * factor(answer, y)
+        if is_curve or curve is not None:
+            axes.fill_between(across, up - error, up + error, color=look.colour, alpha=0.25, linewidth=0, label=label)
+        else:
+            axes.errorbar(across, up, error, fmt="none", ecolor=look.colour, label=label)
     control = getattr(answer.scene.loading, "control", None)
     stable = getattr(answer, f"stable_{control}_control", None)
-    if stable is None:
-        is_curve = answer.CURVE_ALONE or len(answer) > _MOST_SYMBOLS
-        axes.plot(across, up, "-" if is_curve else "o", label=answer.method)
+    if stable is not None:
+        label = f"{method}, stable under {control} control"
+        axes.plot(across, np.where(stable, up, np.nan), "-", color=look.colour, label=label)
+        axes.plot(across, up, ":", color=look.colour, label="whole branch", zorder=0)
+        if {x, y} <= _AT_LOSS.keys():
+            place = [getattr(answer, _AT_LOSS[name]) * factor(answer, name) for name in (x, y)]
+            axes.plot(*place, "o", color=look.colour, label="loss of contact")
         return
-    label = f"{answer.method}, stable under {control} control"
-    (line,) = axes.plot(across, np.where(stable, up, np.nan), "-", label=label)
-    axes.plot(across, up, ":", color=line.get_color(), label="whole branch", zorder=0)
-    if {x, y} <= _AT_LOSS.keys():
-        place = [getattr(answer, _AT_LOSS[name]) * factor(answer, name) for name in (x, y)]
-        axes.plot(*place, "o", color=line.get_color(), label="loss of contact")
+    if is_curve or curve is not None:
+        axes.plot(across, up, "-", color=look.colour, label=method)
+    if not is_curve:
+        x_states, y_states = (getattr(answer, name) * factor(answer, name) for name in (x, y))
+        label, colour = (method, look.colour) if curve is None else ("prescribed states", BLACK)
+        axes.plot(x_states, y_states, look.marker, color=colour, markerfacecolor="white", zorder=3, label=label)
 
 
 def factor(answer: Solution, name: str) -> float:

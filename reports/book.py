@@ -6,7 +6,7 @@ from pathlib import Path
 
 from cases.case import Case, CaseScene
 from cases.claims import Claim, Study
-from cases.files import write_whole
+from contact.files.whole import write_whole
 from reports.words import Table, display_name, file_name, small
 
 SOLVERS = ("contact", "bem", "mdr", "fem_reference")

@@ -36,7 +36,7 @@ Writers = Mapping[str, Callable[[Path], object]]
 
 def csv_writer(table: Callable[[], str]) -> Writers:
     """The writer of a table in CSV, by its ending."""
-    from cases.files import write_whole  # noqa: PLC0415 - storage only where a file is written
+    from contact.files.whole import write_whole  # noqa: PLC0415 - storage only where a file is written
 
     return {".csv": lambda path: write_whole(path, table())}
 
@@ -56,7 +56,7 @@ def write_outputs(paths: Sequence[Path], writers: Writers) -> None:
 
 def write_picture(path: Path, draw: Callable[[], "Figure"], *, key: str) -> None:
     """Draw a figure in the style of all figures and write it in the format of the ending of `path`."""
-    from cases.files import write_whole  # noqa: PLC0415 - as below
+    from contact.files.whole import write_whole  # noqa: PLC0415 - as below
     from reports.style import figure_bytes, figure_style  # noqa: PLC0415 - Matplotlib only where it is asked for
 
     with figure_style():

@@ -14,9 +14,10 @@ import jinja2
 from markupsafe import Markup, escape
 
 from cases.cost import cheapest
-from cases.files import csv_text, write_whole
+from cases.files import csv_text
 from cases.runs import Run
 from cases.verdicts import Kind, Status, Verdict, worst
+from contact.files.whole import write_whole
 from reports import findings, tables
 from reports.charts import Picture, front, of_case
 from reports.findings import grouped, severity, who

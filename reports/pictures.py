@@ -4,7 +4,6 @@ from typing import Any
 
 import numpy as np
 from matplotlib import colormaps
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from cases.sweep import Sweep
@@ -22,9 +21,9 @@ from contact import (
 )
 from contact.records.validation import FloatArray
 from reports.answer import GIVEN
-from reports.answer_plot import axis_label, factor
-from reports.style import BLACK, line_with_band, look_of, mark_decades, panels
-from reports.words import display_name, scaled_column
+from reports.answer_plot import draw
+from reports.style import mark_decades, panels
+from reports.words import scaled_column
 
 # Points of a line, about: half as many show corners in a printed figure.
 POINTS = 240
@@ -51,35 +50,9 @@ def solution_figure(solution: Solution, curve: Solution | None = None) -> Figure
     shown = ("normal_force", "indentation_depth", "contact_radius") if in_time else ("normal_force", "contact_radius")
     drawing, all_axes = panels(len(shown), size=SIZE)
     for axes, y in zip(all_axes, shown, strict=True):
-        axes.set(xlabel=axis_label(solution, x), ylabel=axis_label(solution, y))
-        _draw_answer(axes, solution, curve, (x, y))
+        draw(solution, axes, x, y, curve)
     drawing.legend(handles=all_axes[0].get_legend_handles_labels()[0], loc="outside lower center", ncols=2)
     return drawing
-
-
-def _draw_answer(axes: Axes, solution: Solution, curve: Solution | None, names: tuple[str, str]) -> None:
-    prescribed = getattr(solution.scene.loading, "time", None)
-    is_curve = solution.CURVE_ALONE or (prescribed is not None and len(solution) > prescribed.size)
-    look, method = look_of(solution.method), display_name(solution.method)
-    for drawn in ([] if curve is None else [curve]) + ([solution] if is_curve else []):
-        x, y, error = _in_units(drawn, solution, names)
-        line_with_band(axes, x, y, error, color=look.colour, label=method)
-    if not is_curve:
-        x, y, error = _in_units(solution, solution, names)
-        label = method if curve is None else "prescribed states"
-        colour = look.colour if curve is None else BLACK
-        axes.errorbar(
-            x, y, yerr=error, fmt=look.marker, color=colour, markerfacecolor="white", capsize=2.0, zorder=3, label=label
-        )
-
-
-def _in_units(
-    drawn: Solution, answer: Solution, names: tuple[str, str]
-) -> tuple[FloatArray, FloatArray, FloatArray | None]:
-    """States of `drawn` and the stated error of the second quantity, in the units of the axes of `answer`."""
-    x, y = (getattr(drawn, name) * factor(answer, name) for name in names)
-    stated = drawn.stated_error(names[1])
-    return x, y, None if stated is None else stated * factor(answer, names[1])
 
 
 def between(scene: Scene) -> Scene | None:

@@ -328,8 +328,8 @@ def concrete(base: type[Record]) -> list[type[Record]]:
     records = [value for _, value in sorted(vars(contact).items())]
     classes = [one for one in records if isinstance(one, type) and issubclass(one, base) and one is not base]
     classes = [one for one in classes if not issubclass(one, contact.Shape)]
-    kinds = [one for one in classes if dataclasses.is_dataclass(one) and "__dataclass_fields__" in vars(one)]
-    return kinds or ([base] if dataclasses.is_dataclass(base) else [])
+    bases = {parent for one in classes for parent in one.__mro__[1:]}
+    return [one for one in classes if one not in bases] or [base]
 
 
 def drawn_record(base: type[Record], s: Around, **fixed: Any) -> Any:

@@ -11,11 +11,12 @@ from pydantic import TypeAdapter
 from pydantic.dataclasses import dataclass
 
 from cases.answers import Answer, Values, read_answers
-from cases.files import validated, write_whole
+from cases.files import validated
 from cases.rules import SMALLEST_RELATIVE
 from cases.studies import StressTest
 from cases.verdicts import RECORD, Kind
 from contact import InvalidInput
+from contact.files.whole import write_whole
 
 REMEDY = "restore it from the repository, or accept the case anew"
 # Fraction of the accepted stated error by which a value may move. Processors round differently, and a searched radius

@@ -16,7 +16,6 @@ from typing import IO, Literal
 from cases.answers import NAME, Answer, Identity, Table, read_answers
 from cases.case import Case, Task
 from cases.declare.methods import registered
-from cases.files import write_whole
 from cases.run.executors import (
     ClusterLost,
     ExecutorFactory,
@@ -34,6 +33,7 @@ from cases.runs import CaseText, Judged, Run, Stamp, write_run
 from cases.studies import Convergence, CostOfAccuracy, Effect, StressTest
 from cases.verdicts import Status, worst
 from contact import InvalidInput
+from contact.files.whole import write_whole
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -140,9 +140,7 @@ class ContactPath(Solution):
         a flat punch at the same depth; that of the surface's displacement the depth, of the radius of stick the contact
         radius, of heat the product of force and depth.
         """
-        quantity = {"surface_displacement": "indentation_depth", "stick_radius": "contact_radius"}.get(
-            quantity, quantity
-        )
+        quantity = _SCALED_BY.get(quantity, quantity)
         if quantity in ("pressure", "tangential_traction"):
             return self._mean_pressure()
         if quantity == "dissipated_energy":

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import os
-import tempfile
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -12,6 +10,7 @@ from typing import Any, TypeAlias
 import h5py
 import numpy as np
 
+from contact.files.whole import write_whole
 from contact.records.errors import InvalidInput, shown
 
 # The values are arrays, numbers, strings, None, or mappings of the same.
@@ -31,27 +30,12 @@ def write_tree(path: str | Path, tree: Tree) -> None:
     Raises:
         InvalidInput: If the folder cannot be written, the disk is full, or an entry is of another type.
     """
-    file = Path(path)
     # The whole file is made in memory: HDF5 itself crashes when a disk fills up under it.
     with h5py.File("tree", "w", track_order=True, userblock_size=_BLOCK, driver="core", backing_store=False) as root:
         _write(root, tree)
         root.flush()
         content = bytes(root.id.get_file_image())
-    remedy = "check that the folder exists"
-    temporary = None
-    try:
-        handle, temporary = tempfile.mkstemp(dir=file.parent, prefix=f".{file.name}.")
-        remedy = "make room, or name another place"
-        with open(handle, "wb") as stream:
-            stream.write(_seal(content) + content)
-            stream.flush()
-            os.fsync(stream.fileno())
-        os.replace(temporary, file)
-    except OSError as error:
-        raise InvalidInput(f"{file}: cannot be written ({error.strerror}); {remedy}") from None
-    finally:
-        if temporary:
-            Path(temporary).unlink(missing_ok=True)
+    write_whole(Path(path), _seal(content) + content)
 
 
 def _seal(content: bytes) -> bytes:

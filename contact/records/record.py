@@ -168,10 +168,10 @@ R = TypeVar("R", bound=Record)
 class OneOf:
     """Annotation of a field: an instance of its class, or a table whose entry `kind` names one of these records."""
 
-    def __init__(self, *kinds: type[Record], plain: type[Record] | None = None, **further: type[Record]) -> None:
-        """`plain` is meant where the table has no kind; `further` are other names of kinds."""
+    def __init__(self, *kinds: type[Record], plain: type[Record] | None = None) -> None:
+        """`plain` is meant where the table has no kind."""
         self.kinds, self.plain = kinds, plain
-        self.names = {cls.kind(): cls for cls in kinds} | further
+        self.names = {cls.kind(): cls for cls in kinds}
 
     def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> Any:
         """A union of the kinds, by their names."""

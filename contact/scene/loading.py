@@ -151,12 +151,4 @@ EquilibriumLoading: TypeAlias = ContactRadii | IndentationDepths | NormalForces
 HistoryLoading: TypeAlias = DepthHistory | ForceHistory
 """Loadings that a `HistoryPath` answers."""
 
-LOADINGS: tuple[type[Loading], ...] = (
-    ContactRadii,
-    IndentationDepths,
-    NormalForces,
-    Detachment,
-    Impact,
-    DepthHistory,
-    ForceHistory,
-)
+LOADINGS = (ContactRadii, IndentationDepths, NormalForces, Detachment, Impact, DepthHistory, ForceHistory)

@@ -425,17 +425,6 @@ class Tabulated(Pointed):
         return float(self.radii[-1])
 
 
-PROFILES: tuple[type[Profile], ...] = (
-    FlatPunch,
-    Paraboloid,
-    Sphere,
-    Cone,
-    Spheroconical,
-    TruncatedCone,
-    TruncatedParaboloid,
-    PowerLaw,
-    Tabulated,
-)
-
 # Profiles whose slope never falls.
 CONVEX = (FlatPunch, Paraboloid, Sphere, Cone, Spheroconical, TruncatedCone, TruncatedParaboloid, PowerLaw)
+PROFILES: tuple[type[Profile], ...] = (*CONVEX, Tabulated)

@@ -12,7 +12,6 @@ from cases.case import Case
 from cases.declare.methods import check_known, registered
 from cases.declare.registry import load_cases, select
 from cases.declare.settings import Settings, ladder, read_settings, with_settings
-from cases.files import write_whole
 from cases.foreign import against, beside, with_registered
 from cases.run.executors import by_name
 from cases.run.lock import locked
@@ -21,6 +20,7 @@ from cases.runs import Run, read_run
 from cases.stress import summary
 from cases.verdicts import ExitCode, Status, exit_code
 from contact import InvalidInput
+from contact.files.whole import write_whole
 from contact.records.extras import missing_extra
 from reports import comparison
 from reports.book import claim_table, method_table, scene_table

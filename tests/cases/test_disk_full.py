@@ -9,10 +9,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cases.files import write_whole
 from cases.runs import write_run
 from contact import InvalidInput
 from contact.files.storage import read_tree, write_tree
+from contact.files.whole import write_whole
 from tests.cases.example_run import example_run
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -65,7 +65,7 @@ LIMITED = """
 import resource, signal, sys
 from pathlib import Path
 import numpy as np
-from cases.files import write_whole
+from contact.files.whole import write_whole
 from contact import InvalidInput
 from contact.files.storage import write_tree
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)

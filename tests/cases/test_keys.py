@@ -3,9 +3,9 @@
 import dataclasses
 
 from cases.declare.methods import MethodUse, TableEntry
-from cases.files import write_whole
 from cases.run import keys
 from cases.run.keys import code, question
+from contact.files.whole import write_whole
 from tests.cases.fake_case import fake_case
 
 

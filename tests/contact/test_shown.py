@@ -56,7 +56,7 @@ def test_an_answer_draws_its_force_with_units_error_and_legend(answer):
     labels = axes.get_legend_handles_labels()[1]
     assert re.search(r" F \[.?N\]$", axes.get_ylabel())
     assert re.search(r" (δ|t) \[.?[ms]\]$", axes.get_xlabel())
-    assert any(label.startswith("mdr") for label in labels)
+    assert any(label.startswith("MDR") for label in labels)
     assert any(re.fullmatch("stated error, at most .* N", label) for label in labels) == (
         "normal_force" in answer.error_estimate
     )
@@ -88,7 +88,7 @@ def test_a_second_answer_is_drawn_on_the_axes_of_the_first_and_a_wrong_array_is_
 def test_a_detachment_shows_what_is_stable_and_where_contact_is_lost():
     answer = ANSWERS[DetachmentPath]
     axes = answer.plot()
-    assert "mdr, stable under force control" in axes.get_legend_handles_labels()[1]
+    assert "MDR, stable under force control" in axes.get_legend_handles_labels()[1]
     loss = axes.lines[-1].get_xydata()[0]
     np.testing.assert_allclose(loss, [1e6 * answer.pull_off_depth, 1e6 * answer.force_at_loss])
     drawn = ~np.isnan(axes.lines[0].get_ydata())
