@@ -26,10 +26,10 @@ x = sqrt(R delta)/h for a paraboloid, delta tan(alpha)/h for a cone of half angl
 A formula is judged at the Poisson's ratios that it claims.
 
 **Where the numbers come from.** No original paper was available in full. The column "checked against" names the source
-used in its place. Public programs that cite the papers (AtomicJ; Python programs for force curves; a script for Long; an
-R package and a Python program for Hayes' table) were compared digit by digit. Where several have a number, they agree.
-AtomicJ is by the author of Hermanowicz 2021, whose abstract claims validity for any thickness. Hertz, the cone and
-Clifford are those of nanite 4.2.3. Of Dimitriadis, of Gavara and Chadwick, and of Lin, Hui and Conway only abstracts
+used in its place. Public programs that cite the papers (AtomicJ; Python programs for force curves; a script for Long;
+an R package and a Python program for Hayes' table) were compared digit by digit. Where several have a number, they
+agree. AtomicJ is by the author of Hermanowicz 2021, whose abstract claims validity for any thickness. Hertz, the cone
+and Clifford are those of nanite 4.2.3. Of Dimitriadis, of Gavara and Chadwick, and of Lin, Hui and Conway only abstracts
 were found, without numbers. Limits of thick and thin layers are tests with MDR. The numbers of the fit of Lin, Hui and
 Conway and the ranges of Dimitriadis, Garcia, Gavara and Managuli are quoted from memory. The statements below are about
 these numbers. They apply to the authors' own formulas as far as the programs copied them without error.

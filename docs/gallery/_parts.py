@@ -5,8 +5,10 @@ numbers. Ranges are those of the paper's text, since its axes are printed as pic
 """
 
 import importlib
+import json
 from dataclasses import dataclass, replace
-from typing import Literal
+from pathlib import Path
+from typing import Any, Literal
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -18,7 +20,9 @@ from contact.records.validation import FloatArray
 
 # Its errors of 1e-8 are far below the width of a line, in a third of the time of the default.
 SOURCE = IntegralEquation(nodes=16)
-MDR = "mdr"
+MDR, FEM = "mdr", "fem"
+# Thickness [m] and Young's modulus [Pa] of the cases.
+THICKNESS, YOUNGS_MODULUS = 1e-3, 1e6
 # The figures end at this a/h.
 LARGEST_RATIO = 100.0
 
@@ -152,6 +156,35 @@ def with_errors(figure: Figure) -> Figure:
         for panel in figure.panels
     )
     return replace(figure, panels=tuple(panels))
+
+
+def by_finite_elements(case: str) -> dict[str, dict[str, FloatArray]]:
+    """The accepted answers of finite elements in a case: arrays by scene and quantity, in SI units."""
+    file = Path(__file__).parents[2] / "baselines" / f"{case}.jsonl"
+    answers: list[dict[str, Any]] = [json.loads(line) for line in file.read_text(encoding="utf-8").splitlines()[1:]]
+    return {
+        one["scene"]: {name: np.array(found["values"]) for name, found in one["quantities"].items()}
+        for one in answers
+        if one["method"] == FEM
+    }
+
+
+def over_ratio(case: str, one: Layer, quantity: str, places: tuple[float, ...]) -> tuple[FloatArray, FloatArray]:
+    """The ratios a/h that finite elements answered on a layer, and the quantity there."""
+    found = by_finite_elements(case)
+    ratio = np.array([r for r in places if f"{name_of(one)} a/h={r:g}" in found])
+    return ratio, np.array([found[f"{name_of(one)} a/h={r:g}"][quantity][0] for r in ratio])
+
+
+def case_modulus(one: Layer) -> float:
+    """E* [Pa] of the layer of the cases; they have nu = 0.3 on unbonded layers."""
+    nu = one.poissons_ratio if one.support == "bonded" else 0.3
+    return YOUNGS_MODULUS / (1.0 - nu**2)
+
+
+def symbols(group: str, x: ArrayLike, y: ArrayLike) -> Series:
+    """Answers of finite elements; the group chooses their colour."""
+    return series(f"{group}, {FEM}", FEM, group, x, y, style="symbols")
 
 
 def closed_form(group: str, method: str, x: ArrayLike, y: ArrayLike) -> Series:
