@@ -12,6 +12,7 @@ from typing import Any, Literal
 
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
 from bem.flat_punch import FlatPunchValues, IntegralEquation
@@ -85,23 +86,37 @@ def paper_figure(number: int) -> Figure:
 
 
 def show(figure: Figure) -> None:
-    """Draw a figure: one colour per group, solid lines by MDR, dashed by other methods, and print its caption."""
-    width = 4.5 * len(figure.panels)
-    drawn, axes = plt.subplots(1, len(figure.panels), figsize=(width, 4.0), layout="constrained", squeeze=False)
-    for panel, one in zip(figure.panels, axes[0], strict=True):
-        groups = list(dict.fromkeys(line.group for line in panel.series))
-        for line in panel.series:
-            colour = f"C{groups.index(line.group) % 10}"
-            usual = "solid" if line.method.startswith(MDR) else "dashed"
-            look = {"marker": "o", "linestyle": "none"} if line.style == "symbols" else {"linestyle": usual}
-            if line.style in ("solid", "dashed", "dotted"):
-                look = {"linestyle": line.style}
-            one.plot(line.x, line.y, color=colour, linewidth=1.2, markersize=3, label=line.label, **look)
-        one.set(title=panel.title, xlabel=panel.x_label, ylabel=panel.y_label)
-        one.set(xscale=panel.x_scale, yscale=panel.y_scale, xlim=panel.x_range, ylim=panel.y_range)
-        one.legend(fontsize="xx-small")
+    """Draw a figure, at most two panels per row, and print its caption.
+
+    One colour and one entry of the legend per group: solid lines by MDR, dashed by other formulas, symbols by finite
+    elements.
+    """
+    columns = min(2, len(figure.panels))
+    rows = -(-len(figure.panels) // columns)
+    size = (4.5 * columns, 3.6 * rows)
+    drawn, axes = plt.subplots(rows, columns, figsize=size, layout="constrained", squeeze=False)
+    for panel, one in zip(figure.panels, axes.flat, strict=False):
+        _draw(panel, one)
     drawn.suptitle(figure.title)
-    print(figure.caption)
+    methods = {line.method for panel in figure.panels for line in panel.series if line.method.startswith(MDR)}
+    print(figure.caption, *(f"{method.replace(MDR, 'MDR', 1)} of its largest value." for method in methods))
+
+
+def _draw(panel: Panel, axes: Axes) -> None:
+    groups = list(dict.fromkeys(line.group for line in panel.series))
+    for line in panel.series:
+        usual = "solid" if line.method.startswith(MDR) else "dashed"
+        look = {"marker": "o", "linestyle": "none"} if line.style == "symbols" else {"linestyle": usual}
+        if line.style in ("solid", "dashed", "dotted"):
+            look = {"linestyle": line.style}
+        first = next(other for other in panel.series if other.group == line.group) is line
+        names = line.group or ", ".join(other.method for other in panel.series if not other.group)
+        label = names if first else f"_{line.label}"
+        colour = f"C{groups.index(line.group) % 10}"
+        axes.plot(line.x, line.y, color=colour, linewidth=1.2, markersize=4, label=label, **look)
+    axes.set(title=panel.title, xlabel=panel.x_label, ylabel=panel.y_label)
+    axes.set(xscale=panel.x_scale, yscale=panel.y_scale, xlim=panel.x_range, ylim=panel.y_range)
+    axes.legend(fontsize="x-small")
 
 
 def layer(poissons_ratio: float, *, support: Literal["bonded", "unbonded"] = "bonded") -> Layer:

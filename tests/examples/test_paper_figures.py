@@ -66,6 +66,7 @@ def test_a_figure_is_drawn_with_every_panel_and_its_caption(capsys):
     show(made(3))
     drawn = plt.gcf()
     assert len(drawn.axes) == len(made(3).panels)
+    assert len(drawn.axes[0].get_legend().get_texts()) == 6  # one entry per layer
     assert len(drawn.axes[0].lines) == len(made(3).panels[0].series)
     assert "thin-layer limits" in capsys.readouterr().out
     plt.close(drawn)
