@@ -62,7 +62,7 @@ class Method(Protocol):
         """Whether this method models the scene, with the reason if not."""
 
     def solve(self, scene: Scene) -> Solution:
-        """The answer with its evidence.
+        """The answer to a scene, with error estimates and cost.
 
         Raises:
             UnsupportedSceneError: If `supports` says no.
@@ -70,4 +70,4 @@ class Method(Protocol):
         """
 
     def refined(self) -> Self:
-        """A copy with half the discretisation length."""
+        """A copy of the method with half the discretisation length."""

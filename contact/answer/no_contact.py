@@ -83,7 +83,7 @@ def _with_zeros(path: ContactPath, scene: Scene, presses: BoolArray) -> ContactP
     """The path with zeros at the steps that do not press."""
 
     def filled(values: FloatArray) -> FloatArray:
-        """One value per step, zero where nothing presses."""
+        """One value per step, zero in steps without contact."""
         if np.size(values) != presses.sum():
             return values
         found = np.zeros(presses.size)

@@ -65,7 +65,7 @@ class Circle:
 
 
 def never_touches_beside(scene: Scene) -> bool:
-    """Whether no circle of contact of this scene can be touched outside: a convex indenter on one uniform layer."""
+    """Whether the indenter cannot touch the surface outside the contact: it is convex, on one uniform layer."""
     return scene.indenter.is_convex and scene.layer.is_uniform
 
 

@@ -187,7 +187,7 @@ class ContactPath(Solution):
         return np.asarray(of_fields(np.ravel(phi), step % len(self))).reshape(phi.shape)
 
     def inside(self, step: int = 0) -> Inside:
-        """The body under one step: `.at(radius, depth)` and `.largest("von_mises")`.
+        """Stresses and displacements inside the layer at one step: `.at(radius, depth)`, `.largest("von_mises")`.
 
         Raises:
             InvalidInput: If the path has no such step, or the method no fields inside.
@@ -416,8 +416,9 @@ class ImpactHistory(Solution):
         contact_radius: a [m], shape (n,).
         kinetic_energy: [J], shape (n,).
         stored_energy: Recoverable energy in the layer [J], shape (n,).
-        dissipated_energy: [J], shape (n,). What a part of the surface keeps when contact leaves it does no work on the
-            body any more: MDR counts it as dissipated at once, finite elements as stored until it has relaxed.
+        dissipated_energy: [J], shape (n,). Energy that is stored below a point of the surface when the contact leaves
+            it does no more work on the indenter. MDR counts it as dissipated at once, finite elements as stored until
+            it has relaxed.
         peak_force: max F_N [N], between samples too.
         peak_depth: max delta [m].
         peak_contact_radius: max a [m].

@@ -152,7 +152,7 @@ class Solution(Evidence):
         return frame
 
     def to_xarray(self) -> xr.Dataset:
-        """The arrays along `step` and the scalars, each with its unit in `attrs`.
+        """Dataset of the arrays along the dimension `step` and of the scalars, each with its unit in `attrs`.
 
         Raises:
             ImportError: If xarray is not installed.

@@ -81,7 +81,7 @@ class StageLog:
         self._counters[name] = self._counters.get(name, 0) + by
 
     def hold(self, *sizes: int) -> None:
-        """Declare bytes of arrays made by the stage that is open."""
+        """Add bytes of arrays to the memory of the open stage."""
         self._tallies[self._open[-1]][3] += sum(sizes)
 
     def _settle(self) -> None:

@@ -54,10 +54,10 @@ class Table:
     """Columns of equal lengths.
 
     Attributes:
-        columns: All of them.
+        columns: Columns in the order of the file.
         line: Number of the first line that is not empty.
         gaps: Numbers of the lines that are left out, since a number is missing there.
-        spring_constant: Of the cantilever [N/m], where a comment says it.
+        spring_constant: Spring constant of the cantilever [N/m], if a comment of the file has it.
     """
 
     columns: tuple[Column, ...]

@@ -69,7 +69,7 @@ def read_quantity(text: str, unit: str, place: str) -> Any:
 
 
 def factor_of(written: str, unit: str) -> Decimal:
-    """What a number in the written unit is multiplied by to be in the SI unit, exact for decimal prefixes.
+    """Factor from the written unit to the SI unit, exact for decimal prefixes.
 
     Raises:
         InvalidInput: If the unit is unknown, or of another kind than the SI unit.

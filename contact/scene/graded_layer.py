@@ -226,7 +226,7 @@ class GradedLayer(ElasticLayer):
 
     @property
     def title(self) -> str:
-        """As in: graded bonded layer."""
+        """Short name of the layer for titles, such as "graded bonded layer"."""
         return "graded layer on an elastic base" if self.has_elastic_base else f"graded {self.support} layer"
 
     def ratio_at(self, depth: ArrayLike) -> FloatArray:

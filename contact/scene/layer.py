@@ -92,7 +92,7 @@ class ElasticLayer(Record):
 
     @property
     def is_piecewise_uniform(self) -> bool:
-        """Whether it is of one material, or of several on top of each other."""
+        """Whether the layer is one uniform material or a stack of uniform layers."""
         return isinstance(self, Layer | LayerStack)
 
     @property
@@ -246,7 +246,7 @@ class LayerStack(ElasticLayer):
 
     @property
     def title(self) -> str:
-        """As in: stack of 3, elastic base."""
+        """Short name of the layer for titles, such as "stack of 3, elastic base"."""
         return f"stack of {len(self.sublayers)}, {'elastic base' if self.has_elastic_base else self.support}"
 
     def simplest(self) -> ElasticLayer:

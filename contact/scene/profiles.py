@@ -74,7 +74,7 @@ class Profile(Record, ABC):
 
     @property
     def upright_end(self) -> str:
-        """What has happened where the profile is upright, in the words of a user."""
+        """Reason of the message for a radius where the profile is upright."""
         return "the indenter is upright there"
 
     @property
@@ -370,10 +370,10 @@ class Tabulated(Pointed):
         return self
 
     def smoothed(self, *, noise: float) -> Tabulated:
-        """The profile by the smoothest cubic spline whose heights differ from the table's by the noise, in the mean.
+        """The smoothest cubic spline whose root mean square distance from the tabulated heights is the noise.
 
-        An indenter that is nowhere more than e lower or higher presses at each depth no less and no more than this one
-        does at depths that differ by e. So smoothing moves the force by at most about k_N times `smoothing`.
+        Where all heights change by at most e, the force changes by at most as much as between depths that differ by e.
+        So smoothing changes the force by at most about k_N times `smoothing`.
 
         Args:
             noise: Standard deviation [m] of the measured heights.

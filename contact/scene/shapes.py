@@ -115,7 +115,7 @@ class Flat(Shape):
 
     @cached_property
     def mean(self) -> FlatPunch:
-        """The circle of the mean radius."""
+        """The round punch whose radius is the mean of the outline."""
         angle, weight = self.sector()
         return FlatPunch(radius=float(weight @ self.outline(angle)))
 
@@ -217,7 +217,7 @@ class Pyramid(Sloped, Raised):
 
 
 class Averaged(Pointed):
-    """f_0 of a shape by quadrature over phi.
+    """Mean profile f_0(r) of a shape, by quadrature over phi.
 
     Attributes:
         shape: The shape.

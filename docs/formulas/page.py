@@ -25,14 +25,15 @@ to 3e-6. The model is linear, frictionless and axisymmetric, as the formulas ass
 x = sqrt(R delta)/h for a paraboloid, delta tan(alpha)/h for a cone of half angle alpha, t = a/h for a flat punch.
 A formula is judged at the Poisson's ratios that it claims.
 
-**Where the numbers come from.** No original paper was available in full. The column "checked against" names the source
-used in its place. Public programs that cite the papers (AtomicJ; Python programs for force curves; a script for Long; an
-R package and a Python program for Hayes' table) were compared digit by digit. Where several have a number, they agree.
-AtomicJ is by the author of Hermanowicz 2021, whose abstract claims validity for any thickness. Hertz, the cone and
-Clifford are those of nanite 4.2.3. Of Dimitriadis, of Gavara and Chadwick, and of Lin, Hui and Conway only abstracts
-were found, without numbers. Limits of thick and thin layers are tests with MDR. The numbers of the fit of Lin, Hui and
-Conway and the ranges of Dimitriadis, Garcia, Gavara and Managuli are quoted from memory. The statements below are about
-these numbers. They apply to the authors' own formulas as far as the programs copied them without error.
+**Where the numbers come from.** No original paper was available in full. The column "checked against" names the
+source used in its place. Public programs that cite the papers (AtomicJ; Python programs for force curves; a script
+for Long; an R package and a Python program for Hayes' table) were compared digit by digit. Where several have a
+number, they agree. AtomicJ is by the author of Hermanowicz 2021, whose abstract claims validity for any thickness.
+Hertz, the cone and Clifford are those of nanite 4.2.3. Of Dimitriadis, of Gavara and Chadwick, and of Lin, Hui and
+Conway only abstracts were found, without numbers. Limits of thick and thin layers are tests with MDR. The numbers of
+the fit of Lin, Hui and Conway and the ranges of Dimitriadis, Garcia, Gavara and Managuli are quoted from memory. The
+statements below are about these numbers. They apply to the authors' own formulas as far as the programs copied them
+without error.
 
 - **Error of the force**: formula over exact force at the same depth, minus one.
 - **Error of the modulus**: Young's modulus that least squares find in an exact force curve from zero to the depth that

@@ -5,11 +5,14 @@ numbers. Ranges are those of the paper's text, since its axes are printed as pic
 """
 
 import importlib
+import json
 from dataclasses import dataclass, replace
-from typing import Literal
+from pathlib import Path
+from typing import Any, Literal
 
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
 from bem.flat_punch import IntegralEquation
@@ -19,7 +22,9 @@ from docs.gallery._flat_punch import FlatPunchValues
 
 # Its errors of 1e-8 are far below the width of a line, in a third of the time of the default.
 SOURCE = IntegralEquation(nodes=16)
-MDR = "mdr"
+MDR, FEM = "mdr", "fem"
+# Thickness [m] and Young's modulus [Pa] of the cases.
+THICKNESS, YOUNGS_MODULUS = 1e-3, 1e6
 # The figures end at this a/h.
 LARGEST_RATIO = 100.0
 
@@ -82,23 +87,37 @@ def paper_figure(number: int) -> Figure:
 
 
 def show(figure: Figure) -> None:
-    """Draw a figure: one colour per group, solid lines by MDR, dashed by other methods, and print its caption."""
-    width = 4.5 * len(figure.panels)
-    drawn, axes = plt.subplots(1, len(figure.panels), figsize=(width, 4.0), layout="constrained", squeeze=False)
-    for panel, one in zip(figure.panels, axes[0], strict=True):
-        groups = list(dict.fromkeys(line.group for line in panel.series))
-        for line in panel.series:
-            colour = f"C{groups.index(line.group) % 10}"
-            usual = "solid" if line.method.startswith(MDR) else "dashed"
-            look = {"marker": "o", "linestyle": "none"} if line.style == "symbols" else {"linestyle": usual}
-            if line.style in ("solid", "dashed", "dotted"):
-                look = {"linestyle": line.style}
-            one.plot(line.x, line.y, color=colour, linewidth=1.2, markersize=3, label=line.label, **look)
-        one.set(title=panel.title, xlabel=panel.x_label, ylabel=panel.y_label)
-        one.set(xscale=panel.x_scale, yscale=panel.y_scale, xlim=panel.x_range, ylim=panel.y_range)
-        one.legend(fontsize="xx-small")
+    """Draw a figure, at most two panels per row, and print its caption.
+
+    One colour and one entry of the legend per group: solid lines by MDR, dashed by other formulas, symbols by finite
+    elements.
+    """
+    columns = min(2, len(figure.panels))
+    rows = -(-len(figure.panels) // columns)
+    size = (4.5 * columns, 3.6 * rows)
+    drawn, axes = plt.subplots(rows, columns, figsize=size, layout="constrained", squeeze=False)
+    for panel, one in zip(figure.panels, axes.flat, strict=False):
+        _draw(panel, one)
     drawn.suptitle(figure.title)
-    print(figure.caption)
+    methods = {line.method for panel in figure.panels for line in panel.series if line.method.startswith(MDR)}
+    print(figure.caption, *(f"{method.replace(MDR, 'MDR', 1)} of its largest value." for method in methods))
+
+
+def _draw(panel: Panel, axes: Axes) -> None:
+    groups = list(dict.fromkeys(line.group for line in panel.series))
+    for line in panel.series:
+        usual = "solid" if line.method.startswith(MDR) else "dashed"
+        look = {"marker": "o", "linestyle": "none"} if line.style == "symbols" else {"linestyle": usual}
+        if line.style in ("solid", "dashed", "dotted"):
+            look = {"linestyle": line.style}
+        first = next(other for other in panel.series if other.group == line.group) is line
+        names = line.group or ", ".join(other.method for other in panel.series if not other.group)
+        label = names if first else f"_{line.label}"
+        colour = f"C{groups.index(line.group) % 10}"
+        axes.plot(line.x, line.y, color=colour, linewidth=1.2, markersize=4, label=label, **look)
+    axes.set(title=panel.title, xlabel=panel.x_label, ylabel=panel.y_label)
+    axes.set(xscale=panel.x_scale, yscale=panel.y_scale, xlim=panel.x_range, ylim=panel.y_range)
+    axes.legend(fontsize="x-small")
 
 
 def layer(poissons_ratio: float, *, support: Literal["bonded", "unbonded"] = "bonded") -> Layer:
@@ -153,6 +172,35 @@ def with_errors(figure: Figure) -> Figure:
         for panel in figure.panels
     )
     return replace(figure, panels=tuple(panels))
+
+
+def by_finite_elements(case: str) -> dict[str, dict[str, FloatArray]]:
+    """The accepted answers of finite elements in a case: arrays by scene and quantity, in SI units."""
+    file = Path(__file__).parents[2] / "baselines" / f"{case}.jsonl"
+    answers: list[dict[str, Any]] = [json.loads(line) for line in file.read_text(encoding="utf-8").splitlines()[1:]]
+    return {
+        one["scene"]: {name: np.array(found["values"]) for name, found in one["quantities"].items()}
+        for one in answers
+        if one["method"] == FEM
+    }
+
+
+def over_ratio(case: str, one: Layer, quantity: str, places: tuple[float, ...]) -> tuple[FloatArray, FloatArray]:
+    """The ratios a/h that finite elements answered on a layer, and the quantity there."""
+    found = by_finite_elements(case)
+    ratio = np.array([r for r in places if f"{name_of(one)} a/h={r:g}" in found])
+    return ratio, np.array([found[f"{name_of(one)} a/h={r:g}"][quantity][0] for r in ratio])
+
+
+def case_modulus(one: Layer) -> float:
+    """E* [Pa] of the layer of the cases; they have nu = 0.3 on unbonded layers."""
+    nu = one.poissons_ratio if one.support == "bonded" else 0.3
+    return YOUNGS_MODULUS / (1.0 - nu**2)
+
+
+def symbols(group: str, x: ArrayLike, y: ArrayLike) -> Series:
+    """Answers of finite elements; the group chooses their colour."""
+    return series(f"{group}, {FEM}", FEM, group, x, y, style="symbols")
 
 
 def closed_form(group: str, method: str, x: ArrayLike, y: ArrayLike) -> Series:

@@ -10,17 +10,21 @@ from contact import Layer
 from contact.records.validation import FloatArray
 from docs.gallery._parts import (
     LARGEST_RATIO,
+    THICKNESS,
     UNBONDED,
     Figure,
     Panel,
     Series,
+    case_modulus,
     closed_form,
     layer,
     mdr_line,
     name_of,
+    over_ratio,
     percent,
     punch,
     show,
+    symbols,
 )
 
 LAYERS = (UNBONDED, layer(0.0), layer(0.3), layer(0.4), layer(0.45), layer(0.5))
@@ -51,6 +55,9 @@ def figure() -> Figure:
             mdr_line(name_of(one), RATIOS, data.normalized_contact_stiffness(RATIOS), data.relative_error(RATIOS))
         )
         lines.append(closed_form(name_of(one), "thin layer", thin, thin_layer_stiffness(one, thin)))
+        ratio, stiffness = over_ratio("flat_punch_stiffness", one, "contact_stiffness", (0.2, 1.0, 2.0))
+        if ratio.size:
+            lines.append(symbols(name_of(one), ratio, stiffness / (2.0 * case_modulus(one) * ratio * THICKNESS)))
     panel = Panel(
         title="",
         x_label="$a/h$",
@@ -76,7 +83,7 @@ def _caption() -> str:
     ]
     drift = ", ".join(f"{percent(hayes_over_ours(ratio))} at a/h = {ratio:g}" for ratio in (1.0, 2.0, 8.0))
     return (
-        "Lines: MDR with the integral equation. Dashed: thin-layer limits. The table of Hayes et al. (1972) "
+        "Lines: MDR. Symbols: finite elements. Dashed: thin-layer limits. The table of Hayes et al. (1972) "
         f"drifts low on the thin incompressible layer: {drift}. The paper calls the half-space a good "
         f"approximation below a/h = 0.1; there k is already higher by {half[0]} (bonded, nu = 0.5) and {half[1]} "
         f"(unbonded). It calls the thin layer good beyond 50; there it is off by {thin[0]} and {thin[1]}."

@@ -7,7 +7,19 @@ import numpy as np
 
 from contact import ContactPath, ContactRadii, Layer, Profile, Scene, TruncatedCone
 from contact.records.validation import FloatArray
-from docs.gallery._parts import SOURCE, UNBONDED, Figure, Panel, layer, mdr_line, name_of, show
+from docs.gallery._parts import (
+    SOURCE,
+    THICKNESS,
+    UNBONDED,
+    Figure,
+    Panel,
+    layer,
+    mdr_line,
+    name_of,
+    over_ratio,
+    show,
+    symbols,
+)
 from docs.gallery._truncated_cone_limits import pressure_limits, profile_limits
 from mdr.equilibria import solve_elastic
 
@@ -15,6 +27,7 @@ LAYERS = (UNBONDED, layer(0.45), layer(0.5))
 RATIOS = (0.1, 1.0, 2.0, 5.0, 20.0)
 FLAT = 0.5  # b/a
 SLOPE = 0.01
+CASE_SLOPE = 0.1  # of the case, which has the same b/a
 # Places x over a, denser where g starts like a square root.
 _X = FLAT + (1.0 - FLAT) * np.linspace(0.0, 1.0, 101) ** 2
 _STEPS = np.linspace(0.0, 1.0, 61)[1:] ** 2
@@ -53,6 +66,10 @@ def _profile(one: Layer, ratio: float) -> tuple[FloatArray, float]:
 
 def _profiles(one: Layer) -> Panel:
     lines = [mdr_line(f"a/h={ratio:g}", _X, *_profile(one, ratio)) for ratio in RATIOS]
+    ratio, depth = over_ratio("truncated_cone", one, "indentation_depth", RATIOS)
+    if ratio.size:
+        at_edge = depth / (CASE_SLOPE * (1.0 - FLAT) * ratio * THICKNESS)  # g(a) = depth, Eq. (5)
+        lines.append(symbols("at the edge", np.ones(ratio.size), at_edge))
     return Panel(
         title=name_of(one),
         x_label="$x/a$",
@@ -83,8 +100,8 @@ def _pressures(one: Layer) -> Panel:
 def _caption() -> str:
     two = [depth_over_height(one, 2.0) for one in (layer(0.5), layer(0.45))]
     return (
-        "Lines: MDR with the integral equation. Dashed: thin layer, dotted: half-space. Symbols: the methods, each at "
-        "radii of its own. The paper finds g(a)/f(a) < 1 "
+        "Lines: MDR. Symbols: depths by finite elements. Dashed: thin layer and half-space. "
+        "The paper finds g(a)/f(a) < 1 "
         "for high Poisson's ratios and a/h >= 2; "
         f"at a/h = 2 it is {two[0]:.3f} for nu = 0.5 but {two[1]:.3f} for nu = 0.45."
     )

@@ -1,5 +1,5 @@
 """
-Fig. 8: normalised elongation of the outermost spring before it lets go, Eq. (42)
+Fig. 8: normalised elongation of the outermost spring before it detaches, Eq. (42)
 =================================================================================
 """
 
@@ -11,16 +11,20 @@ from contact.records.validation import FloatArray
 from docs.gallery._parts import (
     LARGEST_RATIO,
     SOURCE,
+    THICKNESS,
     UNBONDED,
     Figure,
     Panel,
     Series,
+    by_finite_elements,
+    case_modulus,
     closed_form,
     layer,
     mdr_line,
     name_of,
     punch,
     show,
+    symbols,
 )
 from docs.gallery.figure_03 import thin_layer_stiffness
 from mdr.detachment import solve_detachment
@@ -32,6 +36,7 @@ RATIOS = np.geomspace(1e-2, LARGEST_RATIO, 241)
 _WORK = 1.0 / (2.0 * np.pi)
 # Reversals of stability are searched up to this a/h.
 _SEARCHED = 20.0
+CASE_WORK = 0.05  # work of adhesion of the case [J/m^2]
 
 
 def elongation(one: Layer, ratio: FloatArray) -> FloatArray:
@@ -69,6 +74,10 @@ def figure() -> Figure:
         # Eq. (10): c_bar = k_bar + xi k_bar'.
         springs = (1.0 + power) * thin_layer_stiffness(one, thin)
         lines.append(closed_form(name_of(one), "thin layer", thin, np.sqrt(thin / springs)))
+    unit = np.sqrt(2.0 * np.pi * CASE_WORK * THICKNESS / case_modulus(layer(0.5)))
+    found = by_finite_elements("flat_punch_adhesion").values()
+    edge = np.array([one["pull_off_contact_radius"][0] for one in found]) / THICKNESS
+    lines.append(symbols("bonded nu=0.5", edge, [-one["pull_off_depth"][0] / unit for one in found]))
     lines.append(closed_form("half-space", "half-space", RATIOS, np.sqrt(RATIOS)))
     panel = Panel(
         title="",
@@ -80,7 +89,7 @@ def figure() -> Figure:
         series=tuple(lines),
     )
     return Figure(
-        name="fig_8", title="Fig. 8: elongation at which the edge lets go", caption=_caption(), panels=(panel,)
+        name="fig_8", title="Fig. 8: elongation at which the edge detaches", caption=_caption(), panels=(panel,)
     )
 
 
@@ -88,7 +97,7 @@ def _caption() -> str:
     high = ", ".join(f"{reversals(layer(nu))[0][1]:.4f} (nu = {nu:g})" for nu in (0.5, 0.45, 0.4))
     (_, low_minimum, _), (_, low_maximum, _) = reversals(layer(0.365))
     return (
-        "Lines: MDR with the integral equation. Dashed: thin layer, dotted: half-space. The maximum, which the paper "
+        "Lines: MDR. Symbols: finite elements. Dashed: thin layer and half-space. The maximum, which the paper "
         f"places at a/h = 0.46 to 0.92, is at {high}. The paper separates nu <= 0.3 (monotone) from nu >= 0.4 (a "
         "maximum); the maximum appears at nu = 0.361, and up to about 0.369 a minimum follows: nu = 0.365 "
         "has its maximum at "

@@ -10,13 +10,15 @@ import numpy as np
 
 from cases.library.sphere_impact import IMPACT_NUMBER, VELOCITY, scene_of
 from contact import ImpactHistory, StandardSolid
-from docs.gallery._parts import SOURCE, Figure, Panel, Series, mdr_line, show
+from docs.gallery._parts import SOURCE, Figure, Panel, Series, by_finite_elements, mdr_line, show, symbols
 from mdr.impact.solver import solve_impact
 
 # Zero stands for the half-space. [m]
 THICKNESSES = (0.0, 3e-3, 2e-3, 1e-3)
 # Thicknesses of the panels over h [m].
 SWEPT = np.geomspace(5e-4, 1e-2, 11)
+# Thicknesses that finite elements solved [mm].
+SOLVED = (1, 2, 3)
 ELASTIC = "elastic"
 # With a viscosity so much smaller, the opposite trend: the solid relaxes within the impact, which thin layers shorten.
 OTHER_NUMBER = 0.1
@@ -86,7 +88,7 @@ def kind_name(kind: float | str) -> str:
 
 def _over_thickness() -> tuple[Panel, ...]:
     """Contact time, largest contact radius and restitution of the kinds over the thickness."""
-    elastic = elastic_half_space()
+    elastic, solved = elastic_half_space(), by_finite_elements("sphere_impact")
     units = {
         "contact_time": (elastic.contact_time, r"$T/T^\mathrm{HS}$"),
         "peak_contact_radius": (elastic.peak_contact_radius, r"$a_\mathrm{max}/a_\mathrm{max}^\mathrm{HS}$"),
@@ -99,8 +101,13 @@ def _over_thickness() -> tuple[Panel, ...]:
             y_label=label,
             x_scale="log",
             x_range=(0.5, 10.0),
-            series=tuple(
-                _swept(kind, name, unit) for kind in KINDS if name != "coefficient_of_restitution" or kind != ELASTIC
+            series=(
+                *(
+                    _swept(kind, name, unit)
+                    for kind in KINDS
+                    if name != "coefficient_of_restitution" or kind != ELASTIC
+                ),
+                symbols(kind_name(IMPACT_NUMBER), SOLVED, [solved[f"bonded h={h} mm"][name][0] / unit for h in SOLVED]),
             ),
         )
         for letter, (name, (unit, label)) in zip("DEF", units.items(), strict=True)
@@ -123,7 +130,7 @@ def _caption() -> str:
     thin, thick = hit(1e-3), hit(0.0)
     falling = [hit(t, OTHER_NUMBER).coefficient_of_restitution for t in (0.0, 1e-3)]
     return (
-        "Lines: MDR, high-order integration; dotted: elastic layers. Units: maxima of the elastic half-space with "
+        "Lines: MDR; dotted: elastic layers. Symbols: finite elements. Units: maxima of the elastic half-space with "
         "G = G_inf + G_1. Restitution: "
         + ", ".join(f"{value:.5f} ({_name(t)})" for t, value in bounce.items())
         + f" (the paper reads 0.45 and 0.6). Largest a/h on 1 mm: {thin.peak_contact_radius / 1e-3:.3f} (the paper: "

@@ -1,6 +1,6 @@
 """
-A cycle of depth with dry friction: force over depth, what friction makes of it, tangential tractions, heat
-===========================================================================================================
+A cycle of depth with dry friction: force over depth, effect of friction, tangential tractions, heat
+====================================================================================================
 """
 
 from dataclasses import replace

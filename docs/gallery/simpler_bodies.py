@@ -1,6 +1,6 @@
 """
-Force over depth and pressure over radius with each simplification of a layered body beside the full answer
-===========================================================================================================
+Force over depth and pressure over radius: each simplification of a stack compared with the full answer
+=======================================================================================================
 """
 
 from collections.abc import Iterator

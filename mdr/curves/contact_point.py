@@ -54,7 +54,7 @@ class Data:
 
     @classmethod
     def of(cls, depth: FloatArray, force: FloatArray, names: Sequence[str]) -> Data:
-        """The data with their background projected out."""
+        """Data of a curve with the fitted background subtracted from the force."""
         parts = [np.ones_like(depth)] * ("baseline" in names) + [depth - depth.mean()] * ("tilt" in names)
         columns = np.linalg.qr(np.stack(parts, axis=1))[0] if parts else np.zeros((depth.size, 0))
         return cls(depth, force, tuple(names), columns, force - columns @ (columns.T @ force))

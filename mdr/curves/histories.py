@@ -157,13 +157,13 @@ def _turn(depth: FloatArray) -> int:
 
 
 class Parameter(NamedTuple):
-    """A fitted number, `scale` times x, or exp(x) of a time.
+    """A fitted number: `scale` times x, or exp(x) for a relaxation time.
 
     Attributes:
-        name: As in the scene.
-        scale: In SI.
-        low: Least x.
-        high: Largest x.
+        name: Name of the field in the scene.
+        scale: Unit of x, in SI units.
+        low: Lower bound of x.
+        high: Upper bound of x.
     """
 
     name: str
@@ -172,12 +172,12 @@ class Parameter(NamedTuple):
     high: float = math.inf
 
     def value(self, x: float) -> float:
-        """The number in SI."""
+        """Value in SI units."""
         return math.exp(x) if self.is_time else self.scale * x
 
     @property
     def is_time(self) -> bool:
-        """Whether x is its logarithm."""
+        """Whether the number is a relaxation time, so that x is its logarithm."""
         return self.name.startswith("relaxation_time")
 
 

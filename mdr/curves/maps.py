@@ -77,13 +77,13 @@ def fit_map(
         depth: Measured depths [m] of each curve, n arrays of any lengths, or one array if all curves share them.
         force: Measured forces [N], n arrays of the lengths of their depths.
         parameters: As for `fit_curve`.
-        confidence: Of the intervals.
+        confidence: Confidence of the intervals.
         limit: As for `fit_curve`.
-        positions: Of the curves in the map [m], shape (n, 2).
-        progress: Called with how many of how many curves are done.
+        positions: Places x, y of the curves in the map [m], shape (n, 2).
+        progress: Called with the number of fitted curves and the number of all curves.
 
     Raises:
-        InvalidInput: For what is no map, or a scene or parameters that no curve can be fitted with.
+        InvalidInput: If depths and forces are no map, or no curve can be fitted with the scene and parameters.
     """
     check_parameters(scene, parameters)
     if not len(force) or np.ndim(force[0]) != 1:

@@ -22,15 +22,31 @@ def test_every_figure_has_finite_labelled_curves_with_errors(number):
         assert panel.x_label
         assert panel.y_label
         for one in panel.series:
-            assert len(one.x) == len(one.y) > 1
+            assert len(one.x) == len(one.y) > (0 if one.style == "symbols" else 1)
             assert np.all(np.isfinite(one.x))
             assert np.all(np.isfinite(one.y))
             name, _, error = one.method.partition(", error below ")
-            assert name in {"mdr", "thin layer", "half-space", "closed form"}
+            assert name in {"mdr", "fem", "thin layer", "half-space", "closed form"}
             if name == "mdr":
                 assert max(one.half_width) <= float(error) * max(map(abs, one.y))
                 assert len(one.half_width) == len(one.y)
                 assert max(one.half_width) < 1e-5 * max(map(abs, one.y))
+
+
+@pytest.mark.parametrize("number", [*(n for n in NUMBERS if isinstance(n, int) and n != 4), *NUMBERS[-3:]])
+def test_symbols_of_finite_elements_lie_on_the_lines(number):
+    shown = [(panel, one) for panel in made(number).panels for one in panel.series if one.style == "symbols"]
+    assert shown
+    for panel, one in shown:
+        lines = [line for line in panel.series if line.style != "symbols" and len(line.x) > 5]
+        for x, y in zip(one.x, one.y, strict=True):
+            near = [np.interp(x, *sorted_by_x(line)) for line in lines if min(line.x) <= x <= max(line.x)]
+            assert min(abs(value - y) for value in near) < 0.03 * max(map(abs, one.y)), (panel.title, one.label, x)
+
+
+def sorted_by_x(line):
+    order = np.argsort(line.x)
+    return np.array(line.x)[order], np.array(line.y)[order]
 
 
 def test_captions_give_the_numbers_behind_loose_statements():
@@ -50,6 +66,7 @@ def test_a_figure_is_drawn_with_every_panel_and_its_caption(capsys):
     show(made(3))
     drawn = plt.gcf()
     assert len(drawn.axes) == len(made(3).panels)
+    assert len(drawn.axes[0].get_legend().get_texts()) == 6  # one entry per layer
     assert len(drawn.axes[0].lines) == len(made(3).panels[0].series)
     assert "thin-layer limits" in capsys.readouterr().out
     plt.close(drawn)
