@@ -310,7 +310,11 @@ class Number:
 
 def validity_lines(scene: Scene, answer: Solution) -> list[str]:
     """How far the theory of an answer reaches, in sentences; none for other layers than a plain one, or no contact."""
-    if not isinstance(scene.layer, Layer) or not _largest(answer, "contact_radius"):
+    if (
+        not isinstance(scene.layer, Layer)
+        or "contact_radius" not in answer.ARRAYS
+        or not _largest(answer, "contact_radius")
+    ):
         return []
     found = [_tip_share(scene, answer)]
     try:

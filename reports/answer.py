@@ -9,10 +9,6 @@ from cases.files import csv_text
 from contact import (
     UNITS,
     ContactPath,
-    DetachmentPath,
-    FrictionHistory,
-    FrictionPath,
-    HistoryPath,
     ImpactHistory,
     InvalidInput,
     Layer,
@@ -50,20 +46,12 @@ DIGITS = 6
 # Rows of a printed table: half as many hide a curve, twice as many push what stands above off the screen.
 MOST_ROWS = 10
 
-PRINTED = {
-    ContactPath: ("contact_radius", "indentation_depth", "normal_force", "contact_stiffness"),
-    DetachmentPath: ("contact_radius", "indentation_depth", "normal_force"),
-    FrictionPath: ("contact_radius", "indentation_depth", "normal_force", "stick_radius", "dissipated_energy"),
-    FrictionHistory: ("time", "indentation_depth", "normal_force", "contact_radius", "dissipated_energy"),
-    HistoryPath: ("time", "indentation_depth", "normal_force", "contact_radius"),
-    ImpactHistory: ("time", "indentation_depth", "velocity", "normal_force", "contact_radius"),
-}
-
 
 def solution_table(solution: Solution) -> Table:
     """At most ten states of an answer, each number with the uncertainty that the method states."""
     shown, where = _shown_rows(len(solution), "states")
-    names = PRINTED[type(solution)]
+    # Energies of an impact stand in files alone.
+    names = [n for n in solution.ARRAYS if not (isinstance(solution, ImpactHistory) and n.endswith("energy"))]
     heads, columns = [], []
     for name in names:
         factor, prefix = prefix_for(getattr(solution, name))
@@ -127,7 +115,7 @@ def difference_table(solution: Solution, other: Solution) -> Table:
             "themselves; prescribe radii, depths or forces to compare them"
         )
     rows = []
-    for name in PRINTED[type(solution)]:
+    for name in solution.ARRAYS:
         values, others = getattr(solution, name), getattr(other, name)
         step = int(np.argmax(np.abs(values - others)))
         scale = float(np.max(np.abs(values))) or 1.0

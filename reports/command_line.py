@@ -224,10 +224,9 @@ def accept(
 
     Refused: numbers that are not finite, uncommitted changes, failing claims of closed forms or orders of convergence.
     """
-    from reports.commands.baselines import AcceptRequest, accept_cases  # noqa: PLC0415
+    from reports.commands.baselines import accept_cases  # noqa: PLC0415
 
-    request = AcceptRequest(reason=reason, run=run, baselines=baseline, loosen=loosen, write=write, jobs=jobs)
-    accept_cases(cases or [], request)
+    accept_cases(cases or [], run, baseline, reason=reason, loosen=loosen, write=write, jobs=jobs)
 
 
 @app.command(epilog=EXIT_CODES)

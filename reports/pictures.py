@@ -47,7 +47,8 @@ def solution_figure(solution: Solution, curve: Solution | None = None) -> Figure
     """
     in_time = isinstance(solution, HistoryPath | FrictionHistory | ImpactHistory)
     x = "time" if in_time else "indentation_depth"
-    shown = ("normal_force", "indentation_depth", "contact_radius") if in_time else ("normal_force", "contact_radius")
+    wanted = ("normal_force", "indentation_depth", "contact_radius")
+    shown = [name for name in wanted if name in solution.ARRAYS and name != x]
     drawing, all_axes = panels(len(shown), size=SIZE)
     for axes, y in zip(all_axes, shown, strict=True):
         draw(solution, axes, x, y, curve)

@@ -1,8 +1,9 @@
 """`contact-verify gate` and `accept`: a finished run against the accepted numbers, and new numbers to accept."""
 
 from collections.abc import Collection
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from cases.answers import Answer, Table
 from cases.case import Case
@@ -69,34 +70,19 @@ def _gated(run: Run, baselines: Path, methods: Collection[str]) -> Run:
     return gate(run, accepted, methods=methods, watched=watched)
 
 
-@dataclass(frozen=True, kw_only=True)
-class AcceptRequest:
-    """What the user asks for.
-
-    Attributes:
-        reason: why these numbers are right.
-        run: folder of the run they come from.
-        baselines: folder they are written to.
-        loosen: whether a tolerance may grow or a record be withdrawn.
-        write: whether to write at all.
-        jobs: repetitions at a time.
-    """
-
-    reason: str
-    run: Path
-    baselines: Path
-    loosen: bool
-    write: bool
-    jobs: int
-
-
-def accept_cases(names: list[str], request: AcceptRequest) -> None:
+def accept_cases(names: list[str], directory: Path, baselines: Path, **asked: Any) -> None:
     """Show for each case (all of the run if none is named) what would change; write it when told to.
+
+    Args:
+        names: of cases.
+        directory: of the run that the numbers come from.
+        baselines: folder they are written to.
+        asked: reason, loosen, write and jobs, as `_accept` takes them.
 
     Raises:
         InvalidInput: naming every case that may not be accepted and why; the others are written all the same.
     """
-    run = read_run(request.run)
+    run = read_run(directory)
     solved_by = {answer.method for answer in run.answers}
     library = {name: with_registered(case, solved_by) for name, case in load_cases().items()}
     ran = [case.name for case in run.judged.cases]
@@ -106,32 +92,42 @@ def accept_cases(names: list[str], request: AcceptRequest) -> None:
     refused: list[str] = []
     for name in names or [name for name in ran if name in library and name in watched]:
         if name not in ran:
-            raise InvalidInput(f"the run in {request.run} does not have {name}; run it first")
+            raise InvalidInput(f"the run in {directory} does not have {name}; run it first")
         try:
-            _accept(select(library, names=[name])[0], run, request)
+            _accept(select(library, names=[name])[0], run, baselines, **asked)
         except InvalidInput as error:
             refused.append(str(error))
     if refused:
         raise InvalidInput("\n".join(refused))
 
 
-def _accept(case: Case, run: Run, request: AcceptRequest) -> None:
-    """Accept a case; one without scenes, such as the stress tests, need not be part of a suite's runs."""
-    name, now, terminal = case.name, write_conditions(repository(), request.baselines), console()
+def _accept(case: Case, run: Run, baselines: Path, *, reason: str, loosen: bool, write: bool, jobs: int) -> None:
+    """Accept a case; one without scenes, such as the stress tests, need not be part of a suite's runs.
+
+    Args:
+        case: That ran.
+        run: Its answers and verdicts.
+        baselines: Folder that its numbers are written to.
+        reason: Why these numbers are right.
+        loosen: Whether a tolerance may grow or a record be withdrawn.
+        write: Whether to write at all.
+        jobs: Repetitions at a time.
+    """
+    name, now, terminal = case.name, write_conditions(repository(), baselines), console()
     if reasons_against := refusals_beforehand(name, run, now):
         raise InvalidInput(f"{name} is not accepted: {'; '.join(reasons_against)}")
     terminal.print(f"{name}: repeating every solution with inputs one unit in the last place away ...")
     watched, suites = _watched(case, run), case.suites if case.scenes else ()
     with progress_bar("repeating"):
-        spreads = measured_spreads(case, watched.answers, jobs=request.jobs)
-    before = accepted_before(request.baselines, name)
-    proposal = propose(watched, name, suites=suites, before=before, spreads=spreads, reason=request.reason)
+        spreads = measured_spreads(case, watched.answers, jobs=jobs)
+    before = accepted_before(baselines, name)
+    proposal = propose(watched, name, suites=suites, before=before, spreads=spreads, reason=reason)
     show_table(change_table(proposal), on=terminal)
-    for reason in refusals(proposal, run, now, loosen=request.loosen):
-        terminal.print(f"refused: {reason}", style=STYLES["bad"])
-    if request.write:
-        accept(request.baselines, proposal, run, now, loosen=request.loosen)
-        terminal.print(f"{name}: written to {request.baselines}", style=STYLES["good"])
+    for refusal in refusals(proposal, run, now, loosen=loosen):
+        terminal.print(f"refused: {refusal}", style=STYLES["bad"])
+    if write:
+        accept(baselines, proposal, run, now, loosen=loosen)
+        terminal.print(f"{name}: written to {baselines}", style=STYLES["good"])
     else:
         terminal.print(f"{name}: nothing written; say --write to write it", style=STYLES["warn"])
 

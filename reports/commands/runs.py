@@ -60,16 +60,21 @@ def run(asked: Asked, options: RunOptions, *, executor: str, quiet: bool, strict
     settings = read_settings(asked.settings, methods)
     cases = [with_settings(case, settings) for case in _cases(asked, options.suite)]
     chosen = tuple(dict.fromkeys((*methods, *asked.others)))
-    options = dataclasses.replace(options, methods=chosen, executor=by_name(executor))
-    with locked(options.out):
-        with RunDisplay(console(), quiet=quiet) as display:
-            found = run_cases(cases, dataclasses.replace(options, progress=display))
-        write_pages(found, options.out)
+    found = _solved(cases, dataclasses.replace(options, methods=chosen, executor=by_name(executor)), quiet=quiet)
     show_verdict(found, page_of(options.out), quiet=quiet)
     if not found.judged.complete:
         return ExitCode.INTERRUPTED
     code = exit_code(found.statuses, strict=strict)
     return ExitCode.NOTHING_RAN if found.unjudged and code is not ExitCode.GATE_FAILED else code
+
+
+def _solved(cases: Sequence[Case], options: RunOptions, *, quiet: bool) -> Run:
+    """Solve and judge cases with their progress shown, and write the pages; no other run may use the folder."""
+    with locked(options.out):
+        with RunDisplay(console(), quiet=quiet) as display:
+            found = run_cases(cases, dataclasses.replace(options, progress=display))
+        write_pages(found, options.out)
+    return found
 
 
 def _cases(asked: Asked, suite: str) -> Sequence[Case]:
@@ -162,12 +167,8 @@ def cost(names: list[str], options: RunOptions, *, methods: list[str], settings:
     timed = [case for case in (_of_methods(case, methods, asked) for case in chosen) if case.costs]
     if methods and not timed:
         raise InvalidInput(f"{', '.join(case.name for case in chosen)}: nothing times {' or '.join(methods)} there")
-    options = dataclasses.replace(options, methods=tuple(methods))
+    result = _solved(timed, dataclasses.replace(options, methods=tuple(methods), only_costs=True), quiet=quiet)
     terminal = console()
-    with locked(options.out):
-        with RunDisplay(terminal, quiet=quiet) as display:
-            result = run_cases(timed, dataclasses.replace(options, only_costs=True, progress=display))
-        write_pages(result, options.out)
     if (table := shortest_times(result)) is not None:
         show_table(table, on=terminal)
     terminal.print(f"report: {options.out / 'report.html'}")
@@ -194,13 +195,8 @@ def stress(names: list[str], methods: list[str], options: RunOptions, *, quiet: 
     chosen = tuple(test for test in case.claims if not names or any(name in test.name for name in names))
     if not chosen:
         raise InvalidInput(f"no stress test {names[0]!r}; there are {', '.join(test.name for test in case.claims)}")
+    result = _solved([dataclasses.replace(case, claims=chosen)], options, quiet=quiet)
     terminal = console()
-    with locked(options.out):
-        with RunDisplay(terminal, quiet=quiet) as display:
-            result = run_cases(
-                [dataclasses.replace(case, claims=chosen)], dataclasses.replace(options, progress=display)
-            )
-        write_pages(result, options.out)
     for test in result.judged.stress_tests:
         stopped = (step for step in test.steps if step.status is not Status.PASS)
         refusals = (f"  {test.parameter} = {step.value:g}: {step.status}: {step.reason}" for step in stopped)

@@ -1,4 +1,4 @@
-"""Every scene comes back the same through TOML, JSON and HDF5, and so does every answer that is saved with it."""
+"""Every scene follows the schema and comes back the same through TOML, JSON and HDF5, as do saved answers."""
 
 import json
 
@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 
 from contact import ContactPath, Cost, InvalidInput, Scene, Solution, load_scene, scene_from_mapping, scene_to_mapping
 from tests.contact.test_mutated_scenes import file_of
+from tests.contact.test_scene_schema import VALIDATOR
 from tests.random_scenes import EFFECTS, INDENTERS, LAYERS, LOADINGS, drawn_scene
 
 COST = Cost(wall_seconds=0.1, cpu_seconds=0.1, peak_memory_bytes=1, unknowns=3, counters={"solves": 1})
@@ -28,13 +29,14 @@ def scenes(draw):
 @given(scenes())
 def test_a_scene_survives_toml_and_json(tmp_path, scene):
     tables = scene_to_mapping(scene)
+    assert VALIDATOR.is_valid(tables)
     (tmp_path / "scene.toml").write_text(file_of(tables), encoding="utf-8")
     assert load_scene(tmp_path / "scene.toml") == scene
     assert scene_from_mapping(json.loads(json.dumps(tables, allow_nan=False))) == scene
     assert all(scene.replace(**{part: getattr(scene, part)}) == scene for part in ("layer", "indenter", "effects"))
 
 
-@each_example
+@settings(each_example, max_examples=25)
 @given(scenes(), st.lists(st.floats(allow_nan=False, allow_infinity=False), min_size=1, max_size=5))
 def test_an_answer_survives_hdf5_with_its_scene(tmp_path, scene, numbers):
     arrays = dict.fromkeys(ContactPath.ARRAYS, np.array(numbers))

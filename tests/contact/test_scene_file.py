@@ -2,34 +2,18 @@
 
 from __future__ import annotations
 
-import json
-
-import numpy as np
 import pytest
 
 from contact import (
     Adhesion,
-    Cone,
     ContactRadii,
-    DepthHistory,
-    Detachment,
-    FlatPunch,
-    ForceHistory,
-    Impact,
-    IndentationDepths,
     InvalidInput,
     Layer,
-    NormalForces,
-    Paraboloid,
-    PronySeries,
     Scene,
-    Tabulated,
     TruncatedCone,
     load_scene,
     scene_from_mapping,
-    scene_to_mapping,
 )
-from contact.records.tables import MAX_BYTES
 
 GOOD = """
 [layer]
@@ -59,44 +43,6 @@ SCENE = Scene(
     effects=(Adhesion(work_of_adhesion=0.05),),
 )
 
-SOFT = Layer.incompressible(thickness=1 / 3, shear_modulus=0.3)
-PRONY = PronySeries(long_term_shear_modulus=0.1, shear_moduli=[0.1, 0.1], relaxation_times=[1.0, 10.0])
-ADHESION = Adhesion(work_of_adhesion=0.1)
-SCENES = (
-    SCENE,
-    Scene(
-        layer=Layer.half_space(youngs_modulus=1.0, poissons_ratio=0.1),
-        indenter=Cone(slope=0.1),
-        loading=IndentationDepths([0.1]),
-    ),
-    Scene(layer=SOFT, indenter=FlatPunch(radius=0.1), loading=NormalForces([-0.1, 0.3]), effects=(ADHESION,)),
-    Scene(layer=SOFT, indenter=FlatPunch(radius=0.1), loading=Detachment(control="force"), effects=(ADHESION,)),
-    Scene(
-        layer=SOFT,
-        indenter=Paraboloid(radius_of_curvature=1.0),
-        loading=Detachment(initial_contact_radius=0.2),
-        effects=(ADHESION,),
-    ),
-    Scene(
-        layer=SOFT,
-        indenter=Tabulated(radii=[0.0, 0.1, 0.3], heights=[0.0, 0.1, 0.2]),
-        loading=Impact(mass=0.1, velocity=2.0),
-        effects=(PRONY,),
-    ),
-    Scene(
-        layer=SOFT,
-        indenter=Cone(slope=0.1),
-        loading=DepthHistory(time=[0.0, 0.1], depth=[0.0, 0.3]),
-        effects=(PRONY,),
-    ),
-    Scene(
-        layer=SOFT,
-        indenter=Cone(slope=0.1),
-        loading=ForceHistory(time=[0.0, 0.1], force=[0.0, 0.3]),
-        effects=(PRONY,),
-    ),
-)
-
 
 EXAMPLE_SCENE_TABLES = """
 [layer]
@@ -122,17 +68,10 @@ def test_a_good_file_is_the_scene_it_describes(tmp_path):
     assert load_scene(write(tmp_path, GOOD)) == SCENE
 
 
-@pytest.mark.parametrize("scene", SCENES, ids=lambda s: f"{type(s.indenter).__name__}-{type(s.loading).__name__}")
-def test_every_scene_survives_a_round_trip_through_json(scene):
-    assert scene_from_mapping(json.loads(json.dumps(scene_to_mapping(scene), allow_nan=False))) == scene
-
-
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        ("poissons_ratio = 0.45", "poissons_ratio = nan", r"layer\.poissons_ratio = nan: must lie in"),
         ("values = [1e-3, 2e-3]", "values = [2e-3, 1e-3]", r"loading\.values = .*must increase strictly"),
-        ("values = [1e-3, 2e-3]", 'values = "1e-3"', r"loading\.values = '1e-3': must be a list"),
         ("work_of_adhesion = 0.05", "work_of_adhesion = -1", r"effects\[0\]\.work_of_adhesion = -1: must be finite"),
         (
             "thickness = 1e-3",
@@ -195,20 +134,6 @@ def test_numbers_whose_products_leave_double_precision_are_refused(tmp_path, val
         load_scene(file)
 
 
-def test_a_huge_file_is_refused_before_it_is_read(tmp_path):
-    file = tmp_path / "huge.toml"
-    with file.open("wb") as stream:
-        stream.truncate(MAX_BYTES + 1)  # sparse: takes no disk
-    with pytest.raises(InvalidInput, match="more than a scene can have"):
-        load_scene(file)
-
-
 def test_deep_nesting_is_refused(tmp_path):
     with pytest.raises(InvalidInput):
         load_scene(write(tmp_path, "a = " + "[" * 50_000))
-
-
-def test_numbers_survive_to_the_last_bit(tmp_path):
-    thickness = float(np.nextafter(1e-3, 1.0))
-    file = write(tmp_path, GOOD.replace("thickness = 1e-3", f"thickness = {thickness!r}"))
-    assert load_scene(file).layer.thickness == thickness

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import codecs
-import os
-import threading
 
 import pytest
 
@@ -57,27 +55,6 @@ def test_every_error_of_the_project_is_plain_whatever_it_is_given():
 
 def test_letters_of_all_languages_and_thin_spaces_stay():
     assert printable("µm, 1\u202f000 ± 2 \u00b7 é 漢") == "µm, 1\u202f000 ± 2 \u00b7 é 漢"
-
-
-@pytest.mark.parametrize(
-    "text",
-    [
-        "# " + "a.b." * 50,
-        "# don't\n# see \"" + "a.b." * 50,
-        "#:schema ../../../../../../../../../scene.schema.json",
-    ],
-)
-def test_dots_in_comments_are_no_keys(tmp_path, text):
-    assert load_scene(written(tmp_path, f"{text}\n{GOOD}")) == SCENE
-
-
-def test_a_scene_comes_through_a_pipe(tmp_path):
-    pipe = tmp_path / "scene.toml"
-    os.mkfifo(pipe)
-    writer = threading.Thread(target=lambda: pipe.write_text(GOOD))
-    writer.start()
-    assert load_scene(pipe) == SCENE
-    writer.join()
 
 
 def test_a_byte_order_mark_is_accepted(tmp_path):

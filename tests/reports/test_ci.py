@@ -67,7 +67,7 @@ def test_summary_shows_text_as_it_stands_and_the_page_says_the_same(text, place,
     assert len(cells) == 8
     shown = html.unescape(" ".join(cells)).replace("\\|", "|")
     assert printable(" ".join(text.split())) in shown
-    if place != "methods":  # the page has names of its own for methods
+    if place == "message":  # a page escapes all texts alike, and takes long
         assert html.escape(text.split()[0]) in write_report(run, tmp_path).read_text(encoding="utf-8")
 
 

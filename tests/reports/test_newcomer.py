@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from cases.sweep import read_range, sweep
-from contact import FlatPunch, Friction, FrictionPath, IndentationDepths, Layer, Scene, Sphere, StageLog
+from contact import FlatPunch, ForcePath, Friction, FrictionPath, IndentationDepths, Layer, Scene, Sphere, StageLog
 from mdr import Mdr
 from reports import terminal
 from reports.answer import solution_table
@@ -62,7 +62,7 @@ def test_a_range_by_equal_factors_is_drawn_on_a_logarithmic_axis():
     ("arguments", "told"),
     [
         (["impact.toml"], "10 of 51 states; --write FILE.csv has all"),
-        (["afm_pyramid.toml", "--over", "thickness=4um..8um:30"], "10 of 60 rows; --write FILE.csv has all"),
+        (["afm_pyramid.toml", "--over", "thickness=4um..8um:6"], "10 of 12 rows; --write FILE.csv has all"),
     ],
 )
 def test_at_most_ten_rows_are_printed_and_where_the_others_are(arguments, told, monkeypatch, capsys):
@@ -81,6 +81,27 @@ def test_each_column_of_an_answer_is_explained(monkeypatch, capsys):
     note = solution_table(answer).note
     assert "c: stick radius" in note
     assert "E_diss: dissipated energy" in note
+
+
+class ForceAlone:
+    """A method of another package that gives no contact radius."""
+
+    name = "force_alone"
+
+    def solve(self, scene):
+        found = Mdr().solve(scene)
+        numbers = {name: getattr(found, name) for name in ForcePath.ARRAYS}
+        return ForcePath(scene=scene, method=self.name, settings={}, error_estimate={}, cost=found.cost, **numbers)
+
+
+def test_an_answer_without_a_contact_radius_is_printed_and_drawn(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr("reports.commands.solve.build_guarded", lambda *_: ForceAlone())
+    monkeypatch.setattr("reports.commands.solve.load", lambda *_: ForceAlone)
+    files = [tmp_path / "scene.toml", tmp_path / "a.svg"]
+    files[0].write_text(TOML, encoding="utf-8")
+    assert run(["solve", str(files[0]), "--method", "force_alone", "--write", str(files[1])]) == 0
+    assert "F [mN]" in capsys.readouterr().out
+    assert files[1].is_file()
 
 
 @pytest.mark.parametrize("command", [["solve", "scene.toml"], ["run", "truncated_cone"]])
