@@ -30,7 +30,9 @@ from cases.verdicts import Kind, Origin, Status, Verdict, Why
 from contact import InvalidInput, Scene
 from contact.records.validation import FloatArray
 
-Expected: TypeAlias = Mapping[str, Sequence[float]] | Callable[[Scene], float | Sequence[float] | FloatArray]
+# One number, one per step, or either of them by quantity.
+Numbers: TypeAlias = float | Sequence[float] | FloatArray | Mapping[str, float] | Mapping[str, FloatArray]
+Expected: TypeAlias = Mapping[str, Numbers] | Callable[[Scene], Numbers]
 Norm: TypeAlias = Literal["", "weighted L2", "ring loads", "largest", "root mean square"]
 
 # On the half-space, MDR on a table uses no table and equals MDR by construction.
@@ -195,6 +197,12 @@ class Claim(Study, ABC):
         )
 
 
+def numbers_of(found: Numbers, quantity: str) -> list[float]:
+    """Return the numbers of a quantity, one per step."""
+    own = found[quantity] if isinstance(found, Mapping) else found
+    return [float(value) for value in np.atleast_1d(np.asarray(own))]
+
+
 def first_missing(*answers: Answer, quantity: str = "") -> Judgement | None:
     """Return why the first of the answers without numbers (of ``quantity``) cannot be compared, or None."""
     for answer in answers:
@@ -260,11 +268,10 @@ class Equal(PerScene):
 
     def values(self, scene: CaseScene) -> list[float]:
         """Return the expected values on one scene."""
-        if not isinstance(self.to, Mapping):
-            return [float(value) for value in np.atleast_1d(np.asarray(self.to(scene.scene)))]
-        if scene.name not in self.to:
+        if isinstance(self.to, Mapping) and scene.name not in self.to:
             raise InvalidInput(f"claim {self.name!r}: no expected value for scene {scene.name!r}")
-        return list(self.to[scene.name])
+        found = self.to[scene.name] if isinstance(self.to, Mapping) else self.to(scene.scene)
+        return numbers_of(found, self.quantity)
 
     def needed(self, case: Case, scene: CaseScene, use: MethodUse) -> Iterator[Task]:
         """Yield the scene with each uncertain input one standard deviation up and down."""
@@ -543,7 +550,7 @@ class Approach(Claim):
     # The band of an observed order around the formal one.
     tolerance: float = 0.2
     parameter: Callable[[Scene], float]
-    limit: Callable[[Scene], float]
+    limit: Callable[[Scene], Numbers]
     formal_order: float = 1.0
     largest: float
 
@@ -576,7 +583,7 @@ class Approach(Claim):
     def _limit(self, scenes: tuple[CaseScene, CaseScene], answers: tuple[Answer, Answer]) -> Judgement:
         """Judge the rate; a failure that the stated error explains is inconclusive."""
         pairs = [
-            (answer.quantities[self.quantity], self.limit(scene.scene))
+            (answer.quantities[self.quantity], numbers_of(self.limit(scene.scene), self.quantity)[0])
             for scene, answer in zip(scenes, answers, strict=True)
         ]
         far, near = (q.values[-1] / limit - 1 for q, limit in pairs)

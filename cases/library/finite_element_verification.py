@@ -1,6 +1,7 @@
-"""The finite elements verified as a program: manufactured solutions, inf-sup constants, patch test, locking.
+"""Code verification of the finite elements.
 
-Before finite elements judge anybody else they are judged themselves, by problems whose answers need no other method.
+The finite elements verified as a program: manufactured solutions, inf-sup constants, patch test, locking. Before finite
+elements judge anybody else they are judged themselves, by problems whose answers need no other method.
 
 Manufactured solutions: u = (-r^3 cos z, 4 r^2 sin z), which has no divergence, with p = cos r cos z at nu = 1/2; at
 nu = 0.3 the gradient of (r^4/4) sin z is added, and p is minus K times the divergence. The body force that belongs to
@@ -27,7 +28,7 @@ import numpy as np
 
 from bem.direct_method import IntegralEquationMethod
 from cases.answers import Table, Values
-from cases.case import Case, Task, text_of
+from cases.case import Case, Task, paper
 from cases.claims import Study
 from cases.convergence import behaviour_of_errors, order_of_errors
 from cases.library import _common as c
@@ -314,12 +315,11 @@ def _claim(name: str, judged: Judgement, *, source: str, because: str, derived_f
     )
 
 
-CASE = Case(
-    name="finite_element_verification",
-    title="Code verification of the finite elements",
+CASE = paper(
+    __name__,
+    __doc__,
     question="Do the finite elements solve their own equations, at formal orders and at every Poisson's ratio?",
     equations=("Taylor, Simo, Zienkiewicz, Chan 1986",),
-    text=text_of(__doc__),
     scenes=(),
     methods=(c.FEM,),
     claims=(Verified(name="the program solves its equations"),),
