@@ -188,8 +188,8 @@ def _grid(case: Case, scene: CaseScene, use: MethodUse) -> Task:
 
 def _shown(length: float, level: list[Answer], q: Values, error: float | None) -> Grid:
     first, stated = level[0], q.error[-1] if q.error else None
-    place = {"length": length, "unknowns": first.unknowns, "seconds": first.seconds}
-    return Grid(**place, value=_size(q.values), error=error, stated=stated)
+    size, seconds = first.unknowns, first.seconds
+    return Grid(length=length, unknowns=size, seconds=seconds, value=_size(q.values), error=error, stated=stated)
 
 
 def _last(answer: Answer, name: str) -> Values:
