@@ -119,6 +119,14 @@ class Claim(Study, ABC):
         for label in self.methods:
             if label not in solving:
                 case.use(scenes[0], label)
+        for scene in scenes if self.together else ():
+            for label in self.together:
+                case.use(scene, label)
+
+    @property
+    def together(self) -> tuple[str, ...]:
+        """Labels of the methods that must all solve a scene, the judged one first; empty where each is judged alone."""
+        return ()
 
     def scenes_of(self, case: Case) -> tuple[CaseScene, ...]:
         """Return the scenes of the case that this claim is about."""
@@ -127,9 +135,10 @@ class Claim(Study, ABC):
     def places(self, case: Case) -> Iterator[tuple[CaseScene, MethodUse]]:
         """Yield each scene of the claim with each method of the claim that solves it."""
         for scene in self.scenes_of(case):
-            for use in case.methods_of(scene):
-                if not self.methods or use.label in self.methods:
-                    yield scene, use
+            uses = {use.label: use for use in case.methods_of(scene)}
+            asked = self.together[:1] or self.methods or tuple(uses)
+            if set(self.together) <= set(uses):
+                yield from ((scene, use) for label, use in uses.items() if label in asked)
 
     def tasks(self, case: Case) -> Iterator[Task]:
         """Yield the tasks that the verdicts need in addition to the case's own."""
@@ -344,18 +353,10 @@ class Agree(PerScene):
     norm: Norm = ""
     refined: tuple[str, ...] = ()
 
-    def check(self, case: Case) -> None:
-        """Refuse scenes that one of the methods does not solve."""
-        for scene in [case.scene(name) for name in self.scenes] or case.scenes:
-            for label in (self.fast, self.reference):
-                case.use(scene, label)
-
-    def places(self, case: Case) -> Iterator[tuple[CaseScene, MethodUse]]:
-        """Yield each scene that both methods solve, with the fast one."""
-        for scene in self.scenes_of(case):
-            uses = {use.label: use for use in case.methods_of(scene)}
-            if self.fast in uses and self.reference in uses:
-                yield scene, uses[self.fast]
+    @property
+    def together(self) -> tuple[str, ...]:
+        """Both methods."""
+        return self.fast, self.reference
 
     def tasks(self, case: Case) -> Iterator[Task]:
         """Yield the refined solutions that stand for a missing error."""
@@ -432,7 +433,7 @@ class Agree(PerScene):
 
     def labels(self, use: MethodUse) -> tuple[str, ...]:
         """Return both labels."""
-        return self.fast, self.reference
+        return self.together
 
     def tolerance_of(self, label: str) -> float:
         """Return the tolerance of the pair."""

@@ -55,19 +55,10 @@ class Order(Claim):
     reference_uncertainty: float = 0.0
     floor: float = 1e-14
 
-    def check(self, case: Case) -> None:
-        """Refuse scenes that the method or its reference does not solve."""
-        for scene in [case.scene(name) for name in self.scenes] or case.scenes:
-            for label in (self.method, self.against if isinstance(self.against, str) else ""):
-                if label:
-                    case.use(scene, label)
-
-    def places(self, case: Case) -> Iterator[tuple[CaseScene, MethodUse]]:
-        """Yield each scene with the method, where its reference solves it, too."""
-        for scene in self.scenes_of(case):
-            uses = {use.label: use for use in case.methods_of(scene)}
-            if self.method in uses and (not isinstance(self.against, str) or self.against in {"", *uses}):
-                yield scene, uses[self.method]
+    @property
+    def together(self) -> tuple[str, ...]:
+        """The method, and its reference where the case has it."""
+        return (self.method, self.against) if self.against and isinstance(self.against, str) else (self.method,)
 
     def needed(self, case: Case, scene: CaseScene, use: MethodUse) -> Iterator[Task]:
         """Yield the grids, coarsest first, then the reference; claims about other quantities share them."""
