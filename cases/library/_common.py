@@ -42,6 +42,9 @@ HAYES: dict[str, dict[float, float]] = {
     label: dict(zip(column["a_over_h"], column["kbar"], strict=True)) for label, column in _table("hayes.toml").items()
 }
 
+# Fits as printed, and loads that are prescribed.
+FURTHER = _table("further_numbers.toml")
+
 # -- reasons ----------------------------------------------------------------------------------------------------------
 # Why claims hold, by case and name.
 REASONS = _table("reasons.toml")

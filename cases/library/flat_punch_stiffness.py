@@ -61,26 +61,11 @@ def on_walk(scene: c.AnyScene, kbar: c.Ratios) -> FloatArray:
     return np.asarray(2 * c.contact_modulus(scene.layer) * scene.loading.values * np.array(kbar))
 
 
-# Coefficients of kbar - 1 by powers of a/h, as fitted up to the first ratio and beyond it.
-HERMANOWICZ = {
-    "bonded": (
-        1.2,
-        (0.0, 1.127294838473304, 1.2534743855684407, 0.7845575578931572, -0.8066500581952372, 0.25992549153472266),
-        (-0.32200988000179354, 1.9372155069019295, 0.8542206369854419, 0.1474038965378127),
-    ),
-    "unbonded": (
-        1.65,
-        (0.0, 0.7426462444663599, 0.5708600467411756, 0.008619952995014581, -0.1799716509234812, 0.0574929480459991),
-        (-0.3838553953270864, 1.553893809221951, 0.00138818040746098, -3.107802923772486e-5),
-    ),
-}
-
-
 def fitted(scene: c.AnyScene) -> FloatArray:
     """Return k_N of the fit along a walk."""
-    turn, near, far = HERMANOWICZ[scene.layer.support]
-    t, polynomial = HERMANOWICZ_RATIOS, np.polynomial.polynomial.polyval
-    return on_walk(scene, 1 + np.where(t <= turn, polynomial(t, near), polynomial(t, far)))
+    fit, t = c.FURTHER["hermanowicz"][scene.layer.support], HERMANOWICZ_RATIOS
+    near, far = (np.polynomial.polynomial.polyval(t, fit[piece]) for piece in ("near", "far"))
+    return on_walk(scene, 1 + np.where(t <= fit["turn"], near, far))
 
 
 def by_exponent(walk: CaseScene, label: str, ratio: float) -> tuple[float, float]:

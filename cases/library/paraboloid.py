@@ -19,18 +19,10 @@ WHY = c.reasons("paraboloid")
 RADIUS_OF_CURVATURE = 1e-2  # m
 # At this a/h every method finds the contact radius in the suite ci, too.
 QUICK_RATIO = 1.0
-# Depths delta R/h^2 and forces F R/(E* h^3) that are prescribed, by a/h: those that belong to it, to seven digits.
-PRESCRIBED: dict[str, dict[float, tuple[float, float]]] = {
-    "bonded nu=0.5": {
-        0.2: (0.034253, 0.010733),
-        1.0: (0.559415, 1.880667),
-        2.0: (1.819611, 27.71329),
-        5.0: (8.978117, 1657.7172),
-        10.0: (31.22602, 54813.51),
-    },
-    "unbonded": {1.0: (0.673981, 1.578123), 2.0: (2.360922, 17.83896), 5.0: (13.397682, 564.7204)},
+# Depths delta R/h^2 and forces F R/(E* h^3) that belong to a layer and a/h.
+PRESCRIBED: dict[tuple[str, float], tuple[float, float]] = {
+    (label, float(ratio)): numbers for label, rows in c.FURTHER["prescribed"].items() for ratio, numbers in rows.items()
 }
-PLACES = tuple((label, ratio) for label, rows in PRESCRIBED.items() for ratio in rows)
 
 
 def unit(scene: c.AnyScene) -> dict[str, float]:
@@ -58,18 +50,18 @@ def at(label: str, ratio: float) -> CaseScene:
 
 def by_depth(label: str, ratio: float) -> CaseScene:
     """Return the scene at the depth that belongs to a contact radius."""
-    depth = PRESCRIBED[label][ratio][0] * unit(at(label, ratio).scene)["indentation_depth"]
+    depth = PRESCRIBED[label, ratio][0] * unit(at(label, ratio).scene)["indentation_depth"]
     return pressed(label, ratio, IndentationDepths([depth]), " by depth")
 
 
 def by_force(label: str, ratio: float) -> CaseScene:
     """Return the scene under the force that belongs to a contact radius."""
-    force = PRESCRIBED[label][ratio][1] * unit(at(label, ratio).scene)["normal_force"]
+    force = PRESCRIBED[label, ratio][1] * unit(at(label, ratio).scene)["normal_force"]
     return pressed(label, ratio, NormalForces([force]), " by force")
 
 
 BY_RADIUS = tuple(at(label, ratio) for label in c.LAYERS for ratio in (0.2, 1.0, 2.0, 5.0, 10.0))
-BY_DEPTH, BY_FORCE = (tuple(make(*place) for place in PLACES) for make in (by_depth, by_force))
+BY_DEPTH, BY_FORCE = (tuple(make(*place) for place in PRESCRIBED) for make in (by_depth, by_force))
 SEARCHED = (*BY_DEPTH, *BY_FORCE)
 RESOLVED, COARSE = (
     tuple(s for s in BY_RADIUS if (float(s.parameters["a_over_h"]) > 2) is thin) for thin in (False, True)
@@ -89,7 +81,7 @@ def fitted_force(scene: c.AnyScene) -> float:
     return force * (polynomial - 7.1702772387228935 * x * root + 8.227673152332168 * x**2 + math.pi / 2 * x**3)
 
 
-REFERENCE = c.known("paraboloid", [at(*place) for place in PLACES], unit)
+REFERENCE = c.known("paraboloid", [at(*place) for place in PRESCRIBED], unit)
 LOOSER: c.Words = {"tolerance": 1e-9, "fem": 3e-6, "bem": 1e-3, "mdr_table": 5e-3}
 FOUND = LOOSER | {"tolerance": 3e-5, "fem": 4e-5}
 FITTED: c.Words = {"tolerance": 1e-3, "bem": 2e-3, "mdr_table": 1.5e-2}
