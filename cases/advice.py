@@ -2,43 +2,39 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
-
-from contact import InvalidInput, Method, Scene, Solution
-
-if TYPE_CHECKING:
-    from cases.studies import Effect
-
-from collections.abc import Sequence
-from functools import partial
-from typing import TYPE_CHECKING
-
-from cases.declare.quantities import relative_change, single_numbers, values_of
-from cases.run.timing import forget
-from contact import Adhesion, ContactError, Detachment, ElasticLayer
-
-if TYPE_CHECKING:
-    from cases.studies import Effect
 import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from cases.declare.quantities import IMPACT_NUMBERS, single_numbers, values_of
+from cases.run.timing import forget
 from contact import (
+    Adhesion,
+    ContactError,
     ContactPath,
     DepthHistory,
+    Detachment,
+    DetachmentPath,
     ElasticBase,
+    ElasticLayer,
     ForceHistory,
     GradedLayer,
     Impact,
     ImpactHistory,
     IndentationDepths,
+    InvalidInput,
     Layer,
     LayerStack,
+    Method,
     NotConvergedError,
     Paraboloid,
+    Scene,
     Shape,
+    Solution,
     Sphere,
     UnsupportedSceneError,
     Viscoelasticity,
@@ -46,6 +42,9 @@ from contact import (
 from contact.records.validation import FloatArray
 from mdr import Mdr
 from mdr.friction.statement import friction_effect
+
+if TYPE_CHECKING:
+    from cases.studies import Effect
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -94,7 +93,7 @@ def advise(method: Method, scene: Scene, accuracy: float) -> Advice:
     if not 0.0 < accuracy < 1.0:
         raise InvalidInput(f"accuracy = {accuracy:g}: must lie between 0 and 1; it is a relative change")
     whole = first_solution(method, scene)
-    parts = ablations_of(method, whole)
+    parts = tuple(ablation(method, whole, part) for part in parts_of(scene))
     droppable = tuple(part for part in parts if part.may_be_dropped(accuracy))
     together, droppable = _together(method, whole, droppable, accuracy)
     needed = tuple(part for part in parts if part not in droppable)
@@ -118,6 +117,8 @@ def _together(
 # A solution of more seconds than this hides the imports.
 _IMPORTS_COUNT = 2.0
 NOTHING_PULLS = "without it nothing pulls, and there is no detachment"
+# Compared are the single numbers of impacts and detachments, else the path.
+SINGLE = (*IMPACT_NUMBERS, *DetachmentPath.SCALARS)
 STATIC = ("contact_radius", "indentation_depth", "normal_force")
 
 
@@ -125,15 +126,10 @@ def first_solution(method: Method, scene: Scene) -> Solution:
     """The answer at the cost it has without anything kept from earlier scenes; without imports where they count."""
     forget()
     answer = method.solve(scene)
-    if _seconds(answer) > _IMPORTS_COUNT:
+    if answer.cost.cpu_seconds > _IMPORTS_COUNT:
         return answer
     forget()
     return method.solve(scene)
-
-
-def ablations_of(method: Method, whole: Solution) -> list[Effect]:
-    """Cost and change of each part of a solved scene, left out in turn."""
-    return [_ablation(method, whole, part) for part in parts_of(whole.scene)]
 
 
 def parts_of(scene: Scene) -> tuple[str, ...]:
@@ -149,7 +145,7 @@ def nothing_left(scene: Scene, part: str) -> bool:
 def change_without(method: Method, whole: Solution, parts: Sequence[str]) -> float:
     """Largest relative change of any quantity with all these parts left out at once."""
     less = method.solve(without(whole.scene, parts))
-    return max(_changes(whole, less).values())
+    return max(changes(_numbers(whole), _numbers(less)).values(), default=0.0)
 
 
 def without(scene: Scene, parts: Sequence[str]) -> Scene:
@@ -161,29 +157,37 @@ def without(scene: Scene, parts: Sequence[str]) -> Scene:
     return scene.replace(effects=effects, layer=layer)
 
 
-def _ablation(method: Method, whole: Solution, part: str) -> Effect:
-    """The change of the answer when the scene is solved without a part."""
+def ablation(method: Method, whole: Solution, part: str) -> Effect:
+    """The change of a solved scene when it is solved without a part."""
     from cases.studies import Effect  # noqa: PLC0415 - a single answer needs no records of runs
 
-    entry = partial(Effect, case="", scene="", method=method.name, part=part, seconds=_seconds(whole))
+    entry = Effect(case="", scene="", method=method.name, part=part, seconds=whole.cost.cpu_seconds)
     if nothing_left(whole.scene, part):
-        return entry(seconds_without=None, remark=NOTHING_PULLS)
+        return replace(entry, remark=NOTHING_PULLS)
     try:
         forget()
         less = method.solve(without(whole.scene, [part]))
     except ContactError as error:
-        return entry(seconds_without=None, remark=f"no answer without it ({error!s:.120})")
-    return entry(changes=_changes(whole, less), seconds_without=_seconds(less))
+        return replace(entry, remark=f"no answer without it ({error!s:.120})")
+    return replace(entry, changes=changes(_numbers(whole), _numbers(less)), seconds_without=less.cost.cpu_seconds)
 
 
-def _changes(whole: Solution, less: Solution) -> dict[str, float]:
-    """Relative change of what the answer ends with, or of its path."""
-    names = single_numbers(whole) or STATIC
-    return {name: relative_change(values_of(whole, name), values_of(less, name)) for name in names}
+def changes(whole: Mapping[str, FloatArray], less: Mapping[str, FloatArray]) -> dict[str, float]:
+    """Largest change over the steps relative to the largest value, of the single numbers of an answer or of its path.
+
+    A quantity that is zero, or has another number of steps without the part, is left out.
+    """
+    names = [name for name in SINGLE if name in whole] or STATIC
+    pairs = {name: (whole[name], less[name]) for name in names if name in whole and name in less}
+    return {
+        name: float(np.max(np.abs(values - others)) / np.max(np.abs(values)))
+        for name, (values, others) in pairs.items()
+        if values.shape == others.shape and np.any(values)
+    }
 
 
-def _seconds(answer: Solution) -> float:
-    return answer.cost.cpu_seconds
+def _numbers(answer: Solution) -> dict[str, FloatArray]:
+    return {name: values_of(answer, name) for name in single_numbers(answer) or STATIC}
 
 
 THICKNESS = "finite thickness"
@@ -193,73 +197,34 @@ GRADING = "grading (the surface's material instead)"
 
 def layer_parts(layer: ElasticLayer) -> tuple[str, ...]:
     """Names of what may be left out, the finite thickness last; none of a half-space."""
-    if layer.is_half_space:
-        return ()
-    names = [ELASTIC_BASE] if layer.has_elastic_base else []
-    if isinstance(layer, LayerStack):
-        names += [_buried(n) for n, pair in enumerate(_pairs(layer)) if pair[0] != pair[1]]
-        names += [_slip(n) for n, face in enumerate(layer.interfaces) if face == "unbonded"]
-    if isinstance(layer, GradedLayer):
-        names.append(GRADING)
-    return (*names, THICKNESS)
+    return tuple(name for name, _ in _simpler_layers(layer))
 
 
 def simpler(layer: ElasticLayer, part: str) -> ElasticLayer:
     """The layer without one part; parts that it does not have change nothing."""
-    change = {THICKNESS: _half_space, ELASTIC_BASE: _on_rigid_base, GRADING: _ungraded}.get(part)
-    if change is not None:
-        return change(layer)
-    if isinstance(layer, LayerStack):
-        for n in range(len(layer.interfaces)):
-            change = {_buried(n): partial(_as_above, number=n), _slip(n): partial(_bonded, number=n)}.get(part)
-            layer = layer if change is None else change(layer)
-    return layer
+    return dict(_simpler_layers(layer)).get(part, layer)
 
 
-def _half_space(layer: ElasticLayer) -> ElasticLayer:
-    """The half-space of the surface's material."""
-    top = layer.surface
-    return Layer.half_space(youngs_modulus=top.youngs_modulus, poissons_ratio=top.poissons_ratio)
-
-
-def _on_rigid_base(layer: ElasticLayer) -> ElasticLayer:
-    """The layer on a rigid base, with the interface of the elastic one."""
+def _simpler_layers(layer: ElasticLayer) -> Iterator[tuple[str, ElasticLayer]]:
+    """Each part by name, with the layer without it."""
+    if layer.is_half_space:
+        return
     if isinstance(layer, LayerStack | GradedLayer) and isinstance(layer.support, ElasticBase):
-        return layer.replace(support=layer.support.interface)
-    return layer
-
-
-def _ungraded(layer: ElasticLayer) -> ElasticLayer:
-    """The uniform layer of the surface's material."""
-    if not isinstance(layer, GradedLayer):
-        return layer
-    return LayerStack(sublayers=(layer.surface,), support=layer.support).simplest()
-
-
-def _as_above(layer: LayerStack, number: int) -> LayerStack:
-    """The stack with the material of one sublayer in the next one."""
-    above, below = layer.sublayers[number : number + 2]
-    taken = above.replace(thickness=below.thickness)
-    return layer.replace(sublayers=(*layer.sublayers[: number + 1], taken, *layer.sublayers[number + 2 :]))
-
-
-def _bonded(layer: LayerStack, number: int) -> LayerStack:
-    faces = (*layer.interfaces[:number], "bonded", *layer.interfaces[number + 1 :])
-    return layer.replace(interfaces=faces)
-
-
-def _pairs(layer: LayerStack) -> list[tuple[tuple[float, float], tuple[float, float]]]:
-    """Materials of neighbours, from the top."""
-    materials = [(one.youngs_modulus, one.poissons_ratio) for one in layer.sublayers]
-    return list(pairwise(materials))
-
-
-def _buried(number: int) -> str:
-    return f"sublayer {number + 2} (the material above it instead)"
-
-
-def _slip(number: int) -> str:
-    return f"slip below sublayer {number + 1} (bonded instead)"
+        yield ELASTIC_BASE, layer.replace(support=layer.support.interface)
+    if isinstance(layer, LayerStack):
+        for n, (above, below) in enumerate(pairwise(layer.sublayers)):
+            alike = above.replace(thickness=below.thickness)
+            if alike != below:
+                sublayers = (*layer.sublayers[: n + 1], alike, *layer.sublayers[n + 2 :])
+                yield f"sublayer {n + 2} (the material above it instead)", layer.replace(sublayers=sublayers)
+        for n, face in enumerate(layer.interfaces):
+            if face == "unbonded":
+                faces = (*layer.interfaces[:n], "bonded", *layer.interfaces[n + 1 :])
+                yield f"slip below sublayer {n + 1} (bonded instead)", layer.replace(interfaces=faces)
+    if isinstance(layer, GradedLayer):
+        yield GRADING, LayerStack(sublayers=(layer.surface,), support=layer.support).simplest()
+    top = layer.surface
+    yield THICKNESS, Layer.half_space(youngs_modulus=top.youngs_modulus, poissons_ratio=top.poissons_ratio)
 
 
 # That of soft layers [kg/m^3]; a scene knows none.

@@ -246,6 +246,13 @@ class Case:
         return frozenset((scene.name, label) for scene in self.scenes for label in scene.nightly)
 
 
-def text_of(docstring: str | None) -> str:
-    """Return the text of a case from the docstring of its module: everything after the first line."""
-    return (docstring or "").partition("\n")[2].strip()
+def paper(module: str, text: str | None, /, **fields: Any) -> Case:
+    """Return the case of a module: the first line of its docstring is the title, the rest the text.
+
+    Args:
+        module: name of the module, which is that of the case.
+        text: its docstring.
+        fields: others of `Case`.
+    """
+    title, _, body = (text or "").partition("\n")
+    return Case(name=module.rpartition(".")[2], title=title.strip().removesuffix("."), text=body.strip(), **fields)

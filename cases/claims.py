@@ -30,7 +30,9 @@ from cases.verdicts import Kind, Origin, Status, Verdict, Why
 from contact import InvalidInput, Scene
 from contact.records.validation import FloatArray
 
-Expected: TypeAlias = Mapping[str, Sequence[float]] | Callable[[Scene], float | Sequence[float] | FloatArray]
+# One number, one per step, or either of them by quantity.
+Numbers: TypeAlias = float | Sequence[float] | FloatArray | Mapping[str, float] | Mapping[str, FloatArray]
+Expected: TypeAlias = Mapping[str, Numbers] | Callable[[Scene], Numbers]
 Norm: TypeAlias = Literal["", "weighted L2", "ring loads", "largest", "root mean square"]
 
 # On the half-space, MDR on a table uses no table and equals MDR by construction.
@@ -117,6 +119,14 @@ class Claim(Study, ABC):
         for label in self.methods:
             if label not in solving:
                 case.use(scenes[0], label)
+        for scene in scenes if self.together else ():
+            for label in self.together:
+                case.use(scene, label)
+
+    @property
+    def together(self) -> tuple[str, ...]:
+        """Labels of the methods that must all solve a scene, the judged one first; empty where each is judged alone."""
+        return ()
 
     def scenes_of(self, case: Case) -> tuple[CaseScene, ...]:
         """Return the scenes of the case that this claim is about."""
@@ -125,9 +135,10 @@ class Claim(Study, ABC):
     def places(self, case: Case) -> Iterator[tuple[CaseScene, MethodUse]]:
         """Yield each scene of the claim with each method of the claim that solves it."""
         for scene in self.scenes_of(case):
-            for use in case.methods_of(scene):
-                if not self.methods or use.label in self.methods:
-                    yield scene, use
+            uses = {use.label: use for use in case.methods_of(scene)}
+            asked = self.together[:1] or self.methods or tuple(uses)
+            if set(self.together) <= set(uses):
+                yield from ((scene, use) for label, use in uses.items() if label in asked)
 
     def tasks(self, case: Case) -> Iterator[Task]:
         """Yield the tasks that the verdicts need in addition to the case's own."""
@@ -195,6 +206,12 @@ class Claim(Study, ABC):
         )
 
 
+def numbers_of(found: Numbers, quantity: str) -> list[float]:
+    """Return the numbers of a quantity, one per step."""
+    own = found[quantity] if isinstance(found, Mapping) else found
+    return [float(value) for value in np.atleast_1d(np.asarray(own))]
+
+
 def first_missing(*answers: Answer, quantity: str = "") -> Judgement | None:
     """Return why the first of the answers without numbers (of ``quantity``) cannot be compared, or None."""
     for answer in answers:
@@ -260,11 +277,10 @@ class Equal(PerScene):
 
     def values(self, scene: CaseScene) -> list[float]:
         """Return the expected values on one scene."""
-        if not isinstance(self.to, Mapping):
-            return [float(value) for value in np.atleast_1d(np.asarray(self.to(scene.scene)))]
-        if scene.name not in self.to:
+        if isinstance(self.to, Mapping) and scene.name not in self.to:
             raise InvalidInput(f"claim {self.name!r}: no expected value for scene {scene.name!r}")
-        return list(self.to[scene.name])
+        found = self.to[scene.name] if isinstance(self.to, Mapping) else self.to(scene.scene)
+        return numbers_of(found, self.quantity)
 
     def needed(self, case: Case, scene: CaseScene, use: MethodUse) -> Iterator[Task]:
         """Yield the scene with each uncertain input one standard deviation up and down."""
@@ -337,18 +353,10 @@ class Agree(PerScene):
     norm: Norm = ""
     refined: tuple[str, ...] = ()
 
-    def check(self, case: Case) -> None:
-        """Refuse scenes that one of the methods does not solve."""
-        for scene in [case.scene(name) for name in self.scenes] or case.scenes:
-            for label in (self.fast, self.reference):
-                case.use(scene, label)
-
-    def places(self, case: Case) -> Iterator[tuple[CaseScene, MethodUse]]:
-        """Yield each scene that both methods solve, with the fast one."""
-        for scene in self.scenes_of(case):
-            uses = {use.label: use for use in case.methods_of(scene)}
-            if self.fast in uses and self.reference in uses:
-                yield scene, uses[self.fast]
+    @property
+    def together(self) -> tuple[str, ...]:
+        """Both methods."""
+        return self.fast, self.reference
 
     def tasks(self, case: Case) -> Iterator[Task]:
         """Yield the refined solutions that stand for a missing error."""
@@ -425,7 +433,7 @@ class Agree(PerScene):
 
     def labels(self, use: MethodUse) -> tuple[str, ...]:
         """Return both labels."""
-        return self.fast, self.reference
+        return self.together
 
     def tolerance_of(self, label: str) -> float:
         """Return the tolerance of the pair."""
@@ -543,7 +551,7 @@ class Approach(Claim):
     # The band of an observed order around the formal one.
     tolerance: float = 0.2
     parameter: Callable[[Scene], float]
-    limit: Callable[[Scene], float]
+    limit: Callable[[Scene], Numbers]
     formal_order: float = 1.0
     largest: float
 
@@ -576,7 +584,7 @@ class Approach(Claim):
     def _limit(self, scenes: tuple[CaseScene, CaseScene], answers: tuple[Answer, Answer]) -> Judgement:
         """Judge the rate; a failure that the stated error explains is inconclusive."""
         pairs = [
-            (answer.quantities[self.quantity], self.limit(scene.scene))
+            (answer.quantities[self.quantity], numbers_of(self.limit(scene.scene), self.quantity)[0])
             for scene, answer in zip(scenes, answers, strict=True)
         ]
         far, near = (q.values[-1] / limit - 1 for q, limit in pairs)

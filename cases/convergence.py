@@ -1,7 +1,7 @@
 """The observed order of convergence of one method on one scene, against a reference or from three grids alone."""
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any, ClassVar, TypeAlias
@@ -16,7 +16,7 @@ from cases.declare.methods import MethodUse
 from cases.rules import Judgement, judge_digits, judge_order, nothing_compared
 from cases.studies import Convergence, Grid
 from cases.verdicts import Kind, Status, Verdict
-from contact import InvalidInput, Scene
+from contact import InvalidInput
 from contact.records.validation import FloatArray
 
 # The settings of one grid, or of several grids that make one refinement.
@@ -37,9 +37,8 @@ class Order(Claim):
         formal_order: p_f of this case, quantity and mesh family; None claims spectral convergence.
         least_digits: digits per refinement, for spectral convergence.
         mesh_family: what the formal order belongs to.
-        reference: the value at vanishing length, or None.
-        against: the method whose answer is the reference, where there is no such value: its label in the case, or one
-            with settings of its own.
+        against: the method whose answer is the reference: its label in the case, or one with settings of its own;
+            empty for none.
         reference_uncertainty: relative, of the reference; zero for what the method itself states.
         floor: round-off floor, relative.
     """
@@ -52,58 +51,47 @@ class Order(Claim):
     formal_order: float | None = None
     least_digits: float = 1.0
     mesh_family: str
-    reference: Callable[[Scene], float] | None = None
     against: str | MethodUse = ""
     reference_uncertainty: float = 0.0
     floor: float = 1e-14
 
-    def check(self, case: Case) -> None:
-        """Refuse scenes that the method or its reference does not solve."""
-        for scene in [case.scene(name) for name in self.scenes] or case.scenes:
-            for label in (self.method, self.against if isinstance(self.against, str) else ""):
-                if label:
-                    case.use(scene, label)
-
-    def places(self, case: Case) -> Iterator[tuple[CaseScene, MethodUse]]:
-        """Yield each scene with the method, where its reference solves it, too."""
-        for scene in self.scenes_of(case):
-            uses = {use.label: use for use in case.methods_of(scene)}
-            if self.method in uses and (not isinstance(self.against, str) or self.against in {"", *uses}):
-                yield scene, uses[self.method]
+    @property
+    def together(self) -> tuple[str, ...]:
+        """The method, and its reference where the case has it."""
+        return (self.method, self.against) if self.against and isinstance(self.against, str) else (self.method,)
 
     def needed(self, case: Case, scene: CaseScene, use: MethodUse) -> Iterator[Task]:
         """Yield the grids, coarsest first, then the reference; claims about other quantities share them."""
         for level in self._levels(case, scene, use):
             yield from level
-        yield from self._references(case, scene)
+        if isinstance(self.against, MethodUse):
+            yield _grid(case, scene, self.against)
+        elif self.against:
+            yield case.task(scene, case.use(scene, self.against))
 
     def _levels(self, case: Case, scene: CaseScene, use: MethodUse) -> Iterator[tuple[Task, ...]]:
         for level in self.ladder:
             grids = (level,) if isinstance(level, Mapping) else level
             yield tuple(_grid(case, scene, replace(use, settings=settings)) for settings in grids)
 
-    def _references(self, case: Case, scene: CaseScene) -> Iterator[Task]:
-        """The task whose answer is the reference, if the reference is an answer."""
-        if isinstance(self.against, MethodUse):
-            yield _grid(case, scene, self.against)
-        elif self.against:
-            yield case.task(scene, case.use(scene, self.against))
-
     def judge(self, case: Case, answers: Table) -> Iterator[Verdict]:
         """Yield the verdict of each scene whose grids and reference were all run; the first failed answer fails it."""
-        for scene, use in self.places(case):
-            solved = [answers.get(task.identity) for task in self.needed(case, scene, use)]
-            if None not in solved:
-                found = [answer for answer in solved if answer is not None]
-                judged = first_missing(*found) or self._order(self._study(case, scene, use, answers))
-                yield self.verdict(case, scene, use, found[0], judged=judged)
+        for scene, use, found in self._answered(case, answers):
+            judged = first_missing(*found) or self._order(self._study(case, scene, use, found))
+            yield self.verdict(case, scene, use, found[0], judged=judged)
 
     def records(self, case: Case, answers: Table) -> Iterator[Convergence]:
         """Yield the study of each scene whose grids were all solved."""
+        for scene, use, found in self._answered(case, answers):
+            if all(answer.solved for answer in found):
+                yield self._study(case, scene, use, found)
+
+    def _answered(self, case: Case, answers: Table) -> Iterator[tuple[CaseScene, MethodUse, list[Answer]]]:
+        """Each scene whose grids and reference were all run, with these answers."""
         for scene, use in self.places(case):
-            solved = [answers.get(task.identity) for task in self.needed(case, scene, use)]
-            if all(answer is not None and answer.solved for answer in solved):
-                yield self._study(case, scene, use, answers)
+            found = [answers.get(task.identity) for task in self.needed(case, scene, use)]
+            if None not in found:
+                yield scene, use, [answer for answer in found if answer is not None]
 
     def expected(self, scene: CaseScene) -> float | None:
         """Return the formal order."""
@@ -116,30 +104,20 @@ class Order(Claim):
             return nothing_compared(Status.INCONCLUSIVE, "every grid is at the floor: start coarser")
         return judge_digits(study.digits, self.least_digits)
 
-    def _study(self, case: Case, scene: CaseScene, use: MethodUse, answers: Table) -> Convergence:
-        levels = [
-            [one for task in level if (one := answers.get(task.identity))] for level in self._levels(case, scene, use)
-        ][::-1]
-        firsts = [level[0] for level in levels]
-        found = [_last(one, self.quantity) for one in firsts]
-        reference, uncertainty, source = self._reference(case, scene, answers)
+    def _study(self, case: Case, scene: CaseScene, use: MethodUse, solved: list[Answer]) -> Convergence:
+        rest = iter(solved)
+        levels = [[next(rest) for _ in level] for level in self._levels(case, scene, use)][::-1]
+        found = [_last(level[0], self.quantity) for level in levels]
         lengths = [self.ratio**level for level in range(1 - len(levels), 1)]
-        values = [_size(q.values) for q in found]
-        errors = [self._distance(level, reference) for level in levels] if reference is not None else []
-        scale = found[0].scale
+        values, scale = [_size(q.values) for q in found], found[0].scale
+        reference, uncertainty, errors = None, self.reference_uncertainty, list[float]()
+        if self.against:
+            q = _last(next(rest), self.quantity)
+            reference, uncertainty = _size(q.values), uncertainty or (q.error or (0.0,))[-1] / q.scale
+            errors = [self._distance(level, np.array(q.values)) for level in levels]
         kind, order, digits = self._behaviour(values, errors, lengths, scale, uncertainty)
         shown = errors or self._indices(values, lengths, order, scale)
-        grids = tuple(
-            Grid(
-                length=length,
-                unknowns=answer.unknowns,
-                seconds=answer.seconds,
-                value=value,
-                error=shown[i],
-                stated=found[i].error[-1] if found[i].error else None,
-            )
-            for i, (length, answer, value) in enumerate(zip(lengths, firsts, values, strict=True))
-        )
+        label = self.against.label if isinstance(self.against, MethodUse) else self.against
         return Convergence(
             case=case.name,
             scene=scene.name,
@@ -148,14 +126,14 @@ class Order(Claim):
             unit=found[0].unit,
             refined=self.mesh_family,
             kind=kind,
-            grids=grids,
+            grids=tuple(map(_shown, lengths, levels, found, shown)),
             scale=scale,
             formal_order=self.formal_order,
             observed_order=order,
             digits=digits,
-            reference=None if reference is None else _size(reference),
+            reference=reference,
             reference_error=uncertainty * scale,
-            source=source,
+            source=label or self.why.source,
         )
 
     def _behaviour(
@@ -188,17 +166,6 @@ class Order(Claim):
         )
         return [*found, None]
 
-    def _reference(self, case: Case, scene: CaseScene, answers: Table) -> tuple[FloatArray | None, float, str]:
-        """The value or field at vanishing length, its relative error, and its source."""
-        for task in self._references(case, scene):
-            answer = answers.get(task.identity)
-            if answer is not None:
-                q = _last(answer, self.quantity)
-                stated = (q.error or (0.0,))[-1] / q.scale
-                return np.array(q.values), self.reference_uncertainty or stated, task.use.label
-        exact = np.array([self.reference(scene.scene)]) if self.reference else None
-        return exact, self.reference_uncertainty, self.why.source
-
     def _distance(self, level: Sequence[Answer], reference: FloatArray) -> float:
         """Root mean square distance of the grids of one refinement, at all points of a field."""
         squares = [np.mean((np.array(_last(one, self.quantity).values) - reference) ** 2) for one in level]
@@ -208,6 +175,12 @@ class Order(Claim):
 def _grid(case: Case, scene: CaseScene, use: MethodUse) -> Task:
     words = ", ".join(f"{name}={value}" for name, value in use.settings.items())
     return case.task(scene, use).changed(f"grid {words}")
+
+
+def _shown(length: float, level: list[Answer], q: Values, error: float | None) -> Grid:
+    first, stated = level[0], q.error[-1] if q.error else None
+    size, seconds = first.unknowns, first.seconds
+    return Grid(length=length, unknowns=size, seconds=seconds, value=_size(q.values), error=error, stated=stated)
 
 
 def _last(answer: Answer, name: str) -> Values:

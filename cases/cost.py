@@ -3,7 +3,7 @@
 import math
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import ClassVar, Final
+from typing import Any, ClassVar, Final
 
 from cases.answers import Answer, Table
 from cases.case import Case, Task
@@ -91,24 +91,13 @@ class Cost(Study):
         return replace(
             point,
             error=error,
-            bound=error_bound(error, u_ref),
+            bound=error + u_ref,
             seconds=timing.median,
             quartiles=(timing.lower_quartile, timing.upper_quartile),
             cold_seconds=answer.cold_seconds,
             unknowns=answer.unknowns,
             memory=answer.memory,
         )
-
-
-def error_bound(error: float, reference_error: float) -> float:
-    """Return U = e + u_ref.
-
-    Raises:
-        InvalidInput: unless both are finite and not negative.
-    """
-    if not (math.isfinite(error) and math.isfinite(reference_error) and min(error, reference_error) >= 0):
-        raise InvalidInput(f"error {error} and error of the reference {reference_error} must be finite, not < 0")
-    return error + reference_error
 
 
 def bound_of(point: Point) -> float:
@@ -143,7 +132,9 @@ def price_of_a_digit(cheap: Point, accurate: Point) -> float:
     return math.log10(accurate.seconds / cheap.seconds) / math.log10(bound_of(cheap) / bound_of(accurate))
 
 
-def _each(method: str, setting: str, values: Sequence[float], label: str, **fixed: float) -> tuple[MethodUse, ...]:
+def _each(
+    method: str, setting: str, values: Sequence[float], label: str, **fixed: float | str
+) -> tuple[MethodUse, ...]:
     """A method with each value of one setting, in this order."""
     return tuple(
         MethodUse(label=label.format(value), method=method, settings={setting: value, **fixed}) for value in values
@@ -174,18 +165,14 @@ FEM_BESIDE_OTHERS: Final = _each("fem", "accuracy", (1e-2, 1e-3, 1e-4, 1e-5, 1e-
 FEM_DETACHING: Final = _each("fem", "accuracy", (1e-2, 1e-3, 1e-4), "accuracy {:g}")
 FEM_IN_TIME: Final = _each("fem", "growth", (1.0, 0.5, 0.25), "growth {:g}")
 BEM: Final = _each("bem", "points", (128, 256, 512, 1024), "{} cells")
-PERIODIC: Final = MethodUse(label="256 cells, periodic", method="bem", settings={"points": 256, "boundary": "periodic"})
+PERIODIC: Final = _each("bem", "points", (256,), "{} cells, periodic", boundary="periodic")
 TABLE: Final = _each("mdr_table", "cells", (64, 128), "{} cells", ratios=60, radii=200)
 # The route of the paper: 400 rows of a/h, 500 radii.
-PUBLISHED_TABLE: Final = MethodUse(
-    label="256 cells, 400 x 500", method="mdr_table", settings={"cells": 256, "ratios": 400, "radii": 500}
-)
+PUBLISHED_TABLE: Final = _each("mdr_table", "cells", (256,), "{} cells, 400 x 500", ratios=400, radii=500)
 
-FINEST_EQUATION: Final = MethodUse(label="24 nodes", method="integral_equation", settings={"nodes": 24})
-FINEST_MDR: Final = MethodUse(label="32 nodes", method="mdr", settings={"nodes": 32})
-FINEST_MDR_IN_TIME: Final = MethodUse(
-    label="32 nodes, accuracy 1e-12", method="mdr", settings={"nodes": 32, "accuracy": 1e-12}
-)
+(FINEST_EQUATION,) = _each("integral_equation", "nodes", (24,), "{} nodes")
+(FINEST_MDR,) = _each("mdr", "nodes", (32,), "{} nodes")
+(FINEST_MDR_IN_TIME,) = _each("mdr", "nodes", (32,), "{} nodes, accuracy 1e-12", accuracy=1e-12)
 
 
 def elastic_costs(
@@ -206,36 +193,30 @@ def elastic_costs(
         periodic: whether boundary elements are tried without padding too: the contact is as wide as the layer is thick.
     """
     cheap = (*MDR[1:], *FEM[5:7]) if in_ci else MDR[2:3]
-    grids = (*BEM, PERIODIC) if periodic else BEM
-    tables = (*TABLE, PUBLISHED_TABLE) if as_published else TABLE
-    return _studies(scene, quantities, (*MDR, *EQUATION, *FEM, *grids, *tables), FINEST_EQUATION, cheap)
+    ladder = (*MDR, *EQUATION, *FEM, *BEM, *PERIODIC[:periodic], *TABLE, *PUBLISHED_TABLE[:as_published])
+    return _studies(scene, quantities, ladder, FINEST_EQUATION, cheap)
 
 
 def costs_beside_others(scene: str) -> tuple[Cost, ...]:
     """What a force costs by our methods and by solvers of others; theirs run in a process whose start counts."""
-    ladder = (*MDR, *FEM_BESIDE_OTHERS, *BEM[:4], *OTHERS)
-    return _studies(scene, ("normal_force",), ladder, FINEST_EQUATION, MDR[2:3])
+    return _studies(scene, ("normal_force",), (*MDR, *FEM_BESIDE_OTHERS, *BEM[:4], *OTHERS), FINEST_EQUATION)
 
 
 def inside_costs(scene: str) -> tuple[Cost, ...]:
     """What stresses inside cost at the last of a scene's points, with the fields at all of them in the time."""
-    quantities = ("von_mises_inside", "axial_stress_inside")
-    return _studies(scene, quantities, (*MDR, *FEM), FINEST_MDR, MDR[2:3])
+    return _studies(scene, ("von_mises_inside", "axial_stress_inside"), (*MDR, *FEM), FINEST_MDR)
 
 
 def detachment_costs(scene: str) -> tuple[Cost, ...]:
-    """What the pull-off costs."""
-    # A branch by finite elements takes a second, ten times over.
-    cheap = MDR[2:3]
-    quantities = ("pull_off_force", "pull_off_depth")
-    return _studies(scene, quantities, (*MDR, *FEM_DETACHING, *BEM[:2], *TABLE), FINEST_MDR, cheap)
+    """What the pull-off costs; a branch by finite elements takes a second, ten times over."""
+    ladder = (*MDR, *FEM_DETACHING, *BEM[:2], *TABLE)
+    return _studies(scene, ("pull_off_force", "pull_off_depth"), ladder, FINEST_MDR)
 
 
 def impact_costs(scene: str) -> tuple[Cost, ...]:
     """What restitution and peak force of an impact cost."""
-    cheap = (*MDR_IN_TIME[1:3], FEM_IN_TIME[0])
-    quantities = ("coefficient_of_restitution", "peak_force")
-    return _studies(scene, quantities, (*MDR_IN_TIME, *FEM_IN_TIME, *TABLE), FINEST_MDR_IN_TIME, cheap)
+    ladder, cheap = (*MDR_IN_TIME, *FEM_IN_TIME, *TABLE), (*MDR_IN_TIME[1:3], FEM_IN_TIME[0])
+    return _studies(scene, ("coefficient_of_restitution", "peak_force"), ladder, FINEST_MDR_IN_TIME, cheap)
 
 
 def _studies(
@@ -243,16 +224,8 @@ def _studies(
     quantities: Sequence[str],
     ladder: tuple[MethodUse, ...],
     reference: MethodUse,
-    cheap: tuple[MethodUse, ...],
+    cheap: tuple[MethodUse, ...] = MDR[2:3],
 ) -> tuple[Cost, ...]:
-    return tuple(
-        Cost(
-            name=f"cost of {quantity}, {scene}",
-            scene=scene,
-            quantity=quantity,
-            ladder=ladder,
-            reference=reference,
-            cheap=cheap,
-        )
-        for quantity in quantities
-    )
+    """One study per quantity; the suite ci times the cheap settings alone."""
+    words: dict[str, Any] = {"scene": scene, "ladder": ladder, "reference": reference, "cheap": cheap}
+    return tuple(Cost(name=f"cost of {quantity}, {scene}", quantity=quantity, **words) for quantity in quantities)

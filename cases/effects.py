@@ -4,15 +4,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import ClassVar
 
-from cases.advice import NOTHING_PULLS, STATIC, nothing_left, parts_of, without
+import numpy as np
+
+from cases.advice import NOTHING_PULLS, changes, nothing_left, parts_of, without
 from cases.answers import Answer, Table
 from cases.case import Case, Task
 from cases.claims import Study
-from cases.declare.quantities import IMPACT_NUMBERS
 from cases.studies import Effect
-from contact import DetachmentPath
-
-_COMPARED = (*IMPACT_NUMBERS, *DetachmentPath.SCALARS, *STATIC)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -76,22 +74,11 @@ def _effect(whole: Answer, part: str, less: Answer) -> Effect:
     """Effect of a part: the changes from the answer to the whole scene to that without the part, and its run time."""
     if not less.solved:
         return _unanswered(whole, part, less.reason)
-    return replace(_unanswered(whole, part, ""), seconds_without=less.seconds, changes=dict(_changes(whole, less)))
+    found = changes(*({name: np.array(q.values) for name, q in one.quantities.items()} for one in (whole, less)))
+    return replace(_unanswered(whole, part, ""), seconds_without=less.seconds, changes=found)
 
 
 def _unanswered(whole: Answer, part: str, remark: str) -> Effect:
     """An effect without changes; the remark says why the scene without the part was not solved."""
-    return Effect(
-        case=whole.case, scene=whole.scene, method=whole.method, part=part, seconds=whole.seconds, remark=remark
-    )
-
-
-def _changes(whole: Answer, less: Answer) -> Iterator[tuple[str, float]]:
-    """Largest change over the steps relative to the largest value; of single numbers where an answer has any."""
-    single = any(len(q.values) == 1 and name in _COMPARED for name, q in whole.quantities.items())
-    for name, q in whole.quantities.items():
-        others = less.quantities[name].values if name in less.quantities else ()
-        if name in _COMPARED and len(q.values) == len(others) and (len(q.values) == 1 or not single):
-            largest = max(map(abs, q.values))
-            if largest > 0:
-                yield name, max(abs(x - y) for x, y in zip(q.values, others, strict=True)) / largest
+    place = {name: getattr(whole, name) for name in ("case", "scene", "method", "seconds")}
+    return Effect(**place, part=part, remark=remark)

@@ -25,8 +25,3 @@ def values_of(answer: Solution, quantity: str) -> FloatArray:
 def single_numbers(answer: Solution) -> tuple[str, ...]:
     """Names of single numbers of an answer: restitution and peaks of an impact, pull-off of a detachment."""
     return IMPACT_NUMBERS if isinstance(answer, ImpactHistory) else answer.SCALARS
-
-
-def relative_change(values: FloatArray, others: FloatArray) -> float:
-    """The largest difference over the largest of the first values."""
-    return float(np.max(np.abs(values - others)) / max(float(np.max(np.abs(values))), np.finfo(float).tiny))

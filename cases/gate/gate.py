@@ -128,82 +128,70 @@ def _not_installed(answers: Iterable[Answer]) -> dict[str, str]:
 def checks(new: Answer | None, old: Answer | None) -> Iterator[_Check]:
     """Yield the comparison of an answer with the accepted one: values, counters, the stated error that changed most."""
     solved = kept(new) if new is not None and new.solved else None
-    before = old.quantities if old is not None else {}
-    after = solved.quantities if solved is not None else {}
+    before, after = ({} if one is None else one.quantities for one in (old, solved))
     for name in dict.fromkeys([*before, *after]):
-        a, b = after.get(name), before.get(name)
-        if not (a.at if a is not None else b is not None and b.at):
-            yield _value(name, a, b, new, old)
+        now, then = after.get(name), before.get(name)
+        shown = then or now
+        if shown and not shown.at:
+            absent = _absent(name, now, then, new, old)
+            other = _Check(what=name, judged=absent, basis=VALUES, unit=shown.unit) if absent else None
+            yield other or _value(name, now or shown, then or shown, new, old)
     if old is not None:
-        yield from _counts(_counters(solved), old, new)
+        counts, counted = _counters(old), _counters(solved)
+        for name in sorted({*counts, *counted}):
+            value, accepted = counted.get(name), counts.get(name)
+            absent = _absent(name, value, accepted, new, old)
+            yield _count(name, value or 0, accepted, absent)
         if solved is not None and solved.question == old.question:
             yield from _stated(after, before)
 
 
-def _value(name: str, now: Values | None, then: Values | None, new: Answer | None, old: Answer | None) -> _Check:
-    """Judge the worst step; another question, unit or number of steps cannot be compared."""
+def _absent(what: str, now: object, then: object, new: Answer | None, old: Answer | None) -> Judgement | None:
+    """Why there is nothing to compare: nobody accepted it, or this run does not have it."""
     if then is None or old is None:
-        return _Check(what=name, judged=_extra(name, new), basis=VALUES, unit=now.unit if now else "1")
+        scene = new.scene if new else ""
+        message = f"extra: {what} of {scene!r} has no accepted value; look at it, then accept the case"
+        return nothing_compared(Status.INCOMPARABLE, message)
     if now is None or new is None:
-        return _Check(what=name, judged=_missing(name, new, old), basis=VALUES, unit=then.unit)
+        status = new.status if new and new.status.is_failure else Status.INCOMPARABLE
+        reason = f": {new.method} ended with {new.status}, {new.reason}" if new and not new.solved else ""
+        return nothing_compared(status, f"missing: {what} of {old.scene!r} was accepted, this run has none{reason}")
+    return None
+
+
+def _value(name: str, now: Values, then: Values, new: Answer | None, old: Answer | None) -> _Check:
+    """Judge the worst step; another question, unit or number of steps cannot be compared."""
     for what, a, b in (
-        ("scene or settings", new.question, old.question),
+        ("scene or settings", new and new.question, old and old.question),
         ("unit", now.unit, then.unit),
         ("number of steps", len(now.values), len(then.values)),
     ):
         if a != b:
             message = f"{what} changed: {a}, accepted {b}; accept the case if that was meant"
-            return _Check(
-                what=name, judged=nothing_compared(Status.INCOMPARABLE, message), basis=VALUES, unit=then.unit
-            )
-    pairs = enumerate(zip(now.values, then.values, strict=True))
-    steps = [judge_regression(x, b, permitted=permitted_change(then, step)) for step, (x, b) in pairs]
+            judged = nothing_compared(Status.INCOMPARABLE, message)
+            return _Check(what=name, judged=judged, basis=VALUES, unit=then.unit)
+    permitted = [permitted_change(then, step) for step in range(len(then.values))]
+    rows = zip(now.values, then.values, permitted, strict=True)
+    steps = [judge_regression(x, b, permitted=most) for x, b, most in rows]
     worst = worst_judgement(steps)
     step = steps.index(worst)
-    return _Check(
-        what=name,
-        judged=worst,
-        basis=VALUES,
-        unit=then.unit,
-        tolerance=permitted_change(then, step),
-        expected=then.values[step],
-    )
-
-
-def _extra(what: str, answer: Answer | None) -> Judgement:
-    scene = answer.scene if answer else ""
-    message = f"extra: {what} of {scene!r} has no accepted value; look at it, then accept the case"
-    return nothing_compared(Status.INCOMPARABLE, message)
-
-
-def _missing(what: str, new: Answer | None, old: Answer) -> Judgement:
-    status = new.status if new and new.status.is_failure else Status.INCOMPARABLE
-    reason = f": {new.method} ended with {new.status}, {new.reason}" if new and not new.solved else ""
-    return nothing_compared(status, f"missing: {what} of {old.scene!r} was accepted, this run has none{reason}")
+    more = {"tolerance": permitted[step], "expected": then.values[step]}
+    return _Check(what=name, judged=worst, basis=VALUES, unit=then.unit, **more)
 
 
 def _counters(answer: Answer | None) -> dict[str, int]:
     return {} if answer is None else {UNKNOWNS: answer.unknowns, **answer.counters}
 
 
-def _counts(now: dict[str, int], old: Answer, new: Answer | None) -> Iterator[_Check]:
-    """Judge deterministic counters, which no noise on the machine changes."""
-    then = _counters(old)
-    for name in sorted({*then, *now}):
-        accepted, value = then.get(name), now.get(name)
-        permitted = permitted_count_change(name, accepted or 0)
-        if accepted is None:
-            judged = _extra(name, new)
-        elif value is None:
-            judged = _missing(name, new, old)
-        else:
-            change = abs(value - accepted)
-            message = f"{name} {value} against accepted {accepted}, permitted change {permitted:g}"
-            fraction = change / permitted if permitted > 0 else float(change)
-            judged = decided(change <= permitted, float(value), fraction, message, Status.DIFF)
-        # Half a count permits not a single one.
-        tolerance, expected = max(permitted, 0.5), None if accepted is None else float(accepted)
-        yield _Check(what=name, judged=judged, basis=COUNTS, tolerance=tolerance, expected=expected)
+def _count(name: str, value: int, accepted: int | None, absent: Judgement | None) -> _Check:
+    """Judge a deterministic counter, which no noise on the machine changes; half a count permits not a single one."""
+    permitted = permitted_count_change(name, accepted or 0)
+    change = abs(value - (accepted or 0))
+    message = f"{name} {value} against accepted {accepted}, permitted change {permitted:g}"
+    fraction = change / permitted if permitted > 0 else float(change)
+    judged = absent or decided(change <= permitted, float(value), fraction, message, Status.DIFF)
+    expected = None if accepted is None else float(accepted)
+    return _Check(what=name, judged=judged, basis=COUNTS, tolerance=max(permitted, 0.5), expected=expected)
 
 
 def permitted_count_change(name: str, accepted: int) -> float:
@@ -213,24 +201,25 @@ def permitted_count_change(name: str, accepted: int) -> float:
 
 def _stated(now: dict[str, Values], then: dict[str, Values]) -> Iterator[_Check]:
     """Judge the stated error that changed most: it may neither grow nor shrink unnoticed."""
-    found: dict[str, Judgement] = {}
-    for name, b in then.items():
-        a = now.get(name)
-        if a is None or len(a.values) != len(b.values) or not (a.error or b.error):
-            continue
-        what = f"uncertainty of {name}"
-        if len(a.error) != len(b.error):
-            words = f"extra: nobody accepted an {what}" if a.error else f"missing: this run does not state the {what}"
-            found[name] = nothing_compared(Status.INCOMPARABLE, words)
-            continue
-        sizes = [1.0] if b.at else [max(abs(value), b.scale) for value in b.values]
-        triples = zip(a.error, b.error, sizes, strict=True)
-        found[name] = worst_judgement([judge_stated(what, x, y, SMALLEST_RELATIVE * size) for x, y, size in triples])
+    found = {
+        f"uncertainty of {name}": _stated_error(f"uncertainty of {name}", now[name], b)
+        for name, b in then.items()
+        if name in now and len(now[name].values) == len(b.values) and (now[name].error or b.error)
+    }
     if found:
         worst = worst_judgement(list(found.values()))
-        name = next(name for name, judged in found.items() if judged is worst)
-        what = f"uncertainty of {name}"
+        what = next(name for name, judged in found.items() if judged is worst)
         yield _Check(what=what, judged=worst, basis=ERRORS, tolerance=LARGEST_RATIO, expected=1.0)
+
+
+def _stated_error(what: str, now: Values, then: Values) -> Judgement:
+    """Judge the stated error of the worst step, or of a field."""
+    if len(now.error) != len(then.error):
+        words = f"extra: nobody accepted an {what}" if now.error else f"missing: this run does not state the {what}"
+        return nothing_compared(Status.INCOMPARABLE, words)
+    sizes = [1.0] if then.at else [max(abs(value), then.scale) for value in then.values]
+    rows = zip(now.error, then.error, sizes, strict=True)
+    return worst_judgement([judge_stated(what, x, y, SMALLEST_RELATIVE * size) for x, y, size in rows])
 
 
 def judge_stated(name: str, stated: float, accepted: float, floor: float) -> Judgement:
@@ -295,29 +284,24 @@ def _stress_tests(case: str, tests: list[StressTest], accepted: Iterable[StressT
     before = {(test.name, test.method): test for test in accepted}
     now = {(test.name, test.method): test for test in tests}
     names, methods = {name for name, _ in now}, {method for _, method in now}
-    for place in dict.fromkeys([*now, *sorted(before)]) if before else ():
-        then, test = before.get(place), now.get(place)
-        if test is None and (then is None or place[0] not in names or place[1] not in methods):
-            continue
-        yield _stress_test(case, test, then)
-
-
-def _stress_test(case: str, test: StressTest | None, then: StressTest | None) -> Verdict:
-    if then is None:
-        message = "extra: this stress test was never accepted; look at it, then accept the run"
-        judged = nothing_compared(Status.INCOMPARABLE, message)
-    else:
-        worse = worse_than(test or replace(then, steps=()), then)
-        words = "; ".join(worse) or "no step lost, no more than one digit lost"
-        judged = replace(judge_residual(float(len(worse)), tolerance=0.5, failure=Status.DIFF), message=words)
-    (shown, *_) = [one for one in (test, then) if one is not None]
-    expected = None if then is None else 0.0
-    check = _Check(what="steps and digits", judged=judged, basis=DIGITS, tolerance=0.5, expected=expected)
-    return replace(_verdict(case, shown.name, (shown.method,), check), quantity=shown.quantity)
+    lost = {place: test for place, test in sorted(before.items()) if place[0] in names and place[1] in methods}
+    for place, shown in ({**lost, **now} if before else {}).items():
+        then = before.get(place)
+        if then is None:
+            message = "extra: this stress test was never accepted; look at it, then accept the run"
+            judged = nothing_compared(Status.INCOMPARABLE, message)
+        else:
+            worse = worse_than(now.get(place, replace(then, steps=())), then)
+            words = "; ".join(worse) or "no step lost, no more than one digit lost"
+            judged = replace(judge_residual(float(len(worse)), tolerance=0.5, failure=Status.DIFF), message=words)
+        expected = None if then is None else 0.0
+        check = _Check(what="steps and digits", judged=judged, basis=DIGITS, tolerance=0.5, expected=expected)
+        yield replace(_verdict(case, shown.name, (shown.method,), check), quantity=shown.quantity)
 
 
 def _verdict(case: str, scene: str, methods: tuple[str, ...], check: _Check) -> Verdict:
     source, because = f"baselines/{case}.jsonl", "an accepted number should not change unnoticed"
+    own = {name: value for name, value in vars(check).items() if name in ("unit", "tolerance", "expected")}
     return Verdict(
         case=case,
         claim=f"accepted {check.what}",
@@ -325,12 +309,7 @@ def _verdict(case: str, scene: str, methods: tuple[str, ...], check: _Check) -> 
         scene=scene,
         methods=methods,
         quantity=check.what,
-        unit=check.unit,
-        status=check.judged.status,
-        error=check.judged.error,
-        fraction=check.judged.fraction,
-        expected=check.expected,
-        tolerance=check.tolerance,
         why=Why(Origin.OWN_EARLIER_OUTPUT, source, because, check.basis),
-        message=check.judged.message,
+        **own,
+        **vars(check.judged),
     )

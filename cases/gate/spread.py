@@ -8,6 +8,7 @@ machine may differ by as much.
 import math
 import os
 from collections.abc import Iterator, Mapping
+from concurrent.futures import Executor, Future
 from contextlib import contextmanager, nullcontext
 from functools import partial
 
@@ -16,7 +17,7 @@ import numpy as np
 from cases.answers import Answer, Table
 from cases.case import Case, Task
 from cases.rules import relative_spread
-from cases.run.executors import Window, ahead, closing, process_pool
+from cases.run.executors import ahead, closing, completed, process_pool
 from cases.run.solve_task import job_of, solve
 from contact import (
     ContactRadii,
@@ -64,20 +65,21 @@ def measured_spreads(case: Case, answers: Table, *, jobs: int = 2) -> Spreads:
 
 def _repeated(tasks: list[Task], towards: float, jobs: int) -> Iterator[tuple[Task, Answer]]:
     """Solve each task's nudged scene, in fresh processes."""
-    nudged = {task.identity: task.changed("one ulp away", nudged_scene(task.problem, towards)) for task in tasks}
     with closing(process_pool(jobs)) as executor:
-        window: Window[Task, Answer] = Window(
-            lambda task: executor.submit(solve, job_of(nudged[task.identity], estimates=False)),
-            partial(ahead, executor, jobs),
-        )
-        for task, answer in window.results(tasks):
+        broken: list[Task] = []
+        for task, answer in completed(partial(_submit, executor, towards), tasks, ahead(executor, jobs), broken):
             if not answer.solved:
                 raise InvalidInput(
                     f"{task.label}: this repetition should change nothing, but {answer.status}: {answer.reason}"
                 )
             yield task, answer
-    for task in window.broken:
+    for task in broken:
         raise InvalidInput(f"{task.label}: the process that repeated it died; accept nothing from such a run")
+
+
+def _submit(executor: Executor, towards: float, task: Task) -> Future[Answer]:
+    nudged = task.changed("one ulp away", nudged_scene(task.problem, towards))
+    return executor.submit(solve, job_of(nudged, estimates=False))
 
 
 def _spreads(task: Task, answers: list[Answer]) -> Iterator[tuple[tuple[str, str, str], float]]:

@@ -9,14 +9,14 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import fields, replace
 from functools import partial
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import Any, TypeAlias, TypeVar
 
 import numpy as np
 from numpy.polynomial import chebyshev
 
 from cases.answers import Answer
 from cases.case import CaseScene, Sampling
-from cases.claims import Agree, Approach, Equal, Expected, Law, Norm, Zero
+from cases.claims import Agree, Approach, Bound, Claim, Equal, Expected, Law, Norm, Numbers, Zero
 from cases.declare.methods import MethodUse
 from cases.verdicts import Origin, Why
 from contact import ContactRadii, ElasticLayer, InvalidInput, Layer, Loading, NormalForces, Profile, Scene
@@ -27,6 +27,8 @@ AnyScene: TypeAlias = Scene[Any, Any]
 Scenes: TypeAlias = Iterable[CaseScene]
 # Named arguments that several calls share.
 Words: TypeAlias = dict[str, Any]
+Points: TypeAlias = tuple[tuple[float, float], ...]
+Ratios: TypeAlias = tuple[float, ...] | list[float] | FloatArray
 
 
 def _table(name: str) -> dict[str, Any]:
@@ -39,6 +41,9 @@ NUMBERS: dict[str, dict[str, list[float]]] = _table("reference_numbers.toml")
 HAYES: dict[str, dict[float, float]] = {
     label: dict(zip(column["a_over_h"], column["kbar"], strict=True)) for label, column in _table("hayes.toml").items()
 }
+
+# Fits as printed, and loads that are prescribed.
+FURTHER = _table("further_numbers.toml")
 
 # -- reasons ----------------------------------------------------------------------------------------------------------
 # Why claims hold, by case and name.
@@ -65,12 +70,6 @@ def _reason(place: str, entry: Mapping[str, str]) -> Why:
 
 
 SHARED = reasons("shared")
-
-
-def with_tolerance(why: Why, derived_from: str) -> Why:
-    """Return the reason with another origin of its tolerance."""
-    return replace(why, tolerance=derived_from)
-
 
 # -- layers and scenes ------------------------------------------------------------------------------------------------
 THICKNESS = 1e-3  # m
@@ -187,25 +186,31 @@ def half_space_stiffness(scene: AnyScene) -> float:
     return 2 * contact_modulus(scene.layer) * radius(scene)
 
 
-def part(values: Callable[[AnyScene], Mapping[str, float]], name: str) -> Callable[[AnyScene], float]:
-    """Return one of the numbers that a function gives by name, as a function."""
-    return lambda scene: values(scene)[name]
-
-
 def known(
-    kind: str, scenes: Scenes, number: int, unit: Callable[[AnyScene], float], name: Callable[[str], str] = str
-) -> dict[str, tuple[float, ...]]:
-    """Return reference numbers of a kind by scene.
+    kind: str,
+    scenes: Scenes,
+    unit: Callable[[AnyScene], Mapping[str, float]],
+    name: Callable[[str], str] = str,
+) -> dict[str, dict[str, float]]:
+    """Return reference numbers of a kind by scene and quantity.
 
     Args:
         kind: of ``NUMBERS``.
-        scenes: those without a number are left out.
-        number: which of the numbers of a name.
-        unit: SI value of one, of the scene.
+        scenes: those without numbers are left out.
+        unit: SI value of one, by quantity, in the order of the numbers.
         name: of the numbers, by that of the scene.
     """
-    rows = {s.name: (NUMBERS[kind].get(name(s.name)), s.scene) for s in scenes}
-    return {place: (row[number] * unit(problem),) for place, (row, problem) in rows.items() if row}
+    rows = {s.name: (NUMBERS[kind].get(name(s.name)), unit(s.scene)) for s in scenes}
+    return {
+        place: {quantity: number * one for number, (quantity, one) in zip(row, units.items(), strict=False)}
+        for place, (row, units) in rows.items()
+        if row
+    }
+
+
+def known_stiffness(scenes: Scenes) -> dict[str, dict[str, float]]:
+    """Return the reference stiffness k_N [N/m] of flat punches by scene."""
+    return known("stiffness", scenes, lambda scene: {"contact_stiffness": half_space_stiffness(scene)})
 
 
 # Exact twins of a scene.
@@ -273,43 +278,57 @@ def required(*labels: str) -> dict[str, dict[str, float]]:
 
 
 # -- claims -----------------------------------------------------------------------------------------------------------
-def equal(
-    name: str,
-    quantity: str,
-    to: Expected,
-    scenes: Scenes,
-    why: Why,
-    /,
-    *,
-    tolerance: float,
-    methods: tuple[str, ...] = (),
-    identities: Mapping[str, str] | None = None,
-    **tolerances: float,
-) -> Equal:
-    """Return the claim that a quantity equals expected numbers.
+C = TypeVar("C", bound=Claim)
+
+
+def claim(kind: type[C], name: str, quantity: str, scenes: Scenes, why: Why, /, **words: Any) -> C:
+    """Return a claim.
 
     Args:
+        kind: of the claim.
         name: of the claim.
         quantity: what is compared.
-        to: the numbers, by scene.
-        scenes: what must give the numbers; empty for those that have a number.
-        why: where the numbers come from.
-        tolerance: relative.
-        methods: labels; empty for every method of the case.
-        identities: of methods for which it holds by construction: why.
-        tolerances: of methods that need another one.
+        scenes: the claim is about; empty for all, or for those that have an expected number.
+        why: it should hold.
+        words: other fields of the kind; any other word is the label of a method, with the tolerance that it needs.
     """
-    return Equal(
-        name=name,
-        quantity=quantity,
-        to=to,
-        scenes=names_of(scenes),
-        methods=methods,
-        tolerance=tolerance,
-        tolerances=tolerances,
-        identities=identities or {},
-        why=why,
-    )
+    own = {field.name for field in fields(kind)}
+    tolerances = {label: words.pop(label) for label in tuple(words) if label not in own}
+    return kind(name=name, quantity=quantity, scenes=names_of(scenes), why=why, tolerances=tolerances, **words)
+
+
+def equal(name: str, quantity: str, to: Expected, scenes: Scenes, why: Why, /, **words: Any) -> Equal:
+    """Return the claim that a quantity equals expected numbers; other arguments as of `claim`."""
+    return claim(Equal, name, quantity, scenes, why, to=to, **words)
+
+
+def equals(names: Mapping[str, str], to: Expected, scenes: Scenes, why: Why, /, **words: Any) -> Iterator[Equal]:
+    """Yield one claim per name and its quantity; other arguments as of `equal`."""
+    return (equal(name, quantity, to, scenes, why, **words) for name, quantity in names.items())
+
+
+def depth_and_force(prefix: str) -> dict[str, str]:
+    """Return the names of claims about depth and force, for `equals`."""
+    return {f"{prefix} depth": "indentation_depth", f"{prefix} force": "normal_force"}
+
+
+def zero(name: str, quantity: str, scenes: Scenes, why: Why, /, **words: Any) -> Zero:
+    """Return the claim that a residual vanishes; arguments as of `claim`."""
+    return claim(Zero, name, quantity, scenes, why, **words)
+
+
+def bound(
+    name: str, quantity: str, scenes: Scenes, change: Callable[[AnyScene], AnyScene], why: Why, /, **words: Any
+) -> Bound:
+    """Return the claim that a quantity is at least that of the changed scene; other arguments as of `claim`."""
+    return claim(Bound, name, quantity, scenes, why, change=change, **words)
+
+
+def approach(
+    name: str, quantity: str, scenes: Scenes, limit: Callable[[AnyScene], Numbers], why: Why, /, **words: Any
+) -> Approach:
+    """Return the claim that a quantity approaches a closed form as a parameter, h/a by default, falls."""
+    return claim(Approach, name, quantity, scenes, why, limit=limit, **{"parameter": thinness, **words})
 
 
 def agreements(
@@ -319,7 +338,10 @@ def agreements(
     *,
     why: Why | None = None,
     derived_from: str = "",
+    fast: str = "mdr",
+    name: str = "",
     suffix: str = "",
+    **words: Any,
 ) -> Iterator[Agree]:
     """Yield the agreement of MDR with each method of ``tolerances`` (or those of its quantities) in ``quantities``.
 
@@ -329,21 +351,19 @@ def agreements(
         quantities: what is compared.
         why: in place of the usual one of the method, which holds for ``PATH``.
         derived_from: how these tolerances were chosen, where that is not what the reason says.
-        suffix: of the names of the claims.
+        fast: label of the method under test.
+        name: of the claims, with {} for the quantity.
+        suffix: of the usual names of the claims.
+        words: other fields of `Agree`.
     """
-    on, quantities = names_of(scenes), tuple(quantities)
     for label, tolerance in tolerances.items():
         whole = why or SHARED[label]
-        for quantity in quantities:
-            yield Agree(
-                name=f"{quantity.replace('_', ' ')}: MDR and {label}{suffix}",
-                quantity=quantity,
-                scenes=on,
-                fast="mdr",
-                reference=label,
-                tolerance=tolerance[quantity] if isinstance(tolerance, Mapping) else tolerance,
-                why=with_tolerance(whole, derived_from) if derived_from else whole,
-            )
+        whole = replace(whole, tolerance=derived_from) if derived_from else whole
+        for quantity in tuple(quantities):
+            own = (name or f"{{}}: MDR and {label}{suffix}").format(quantity.replace("_", " "))
+            held = tolerance[quantity] if isinstance(tolerance, Mapping) else tolerance
+            more: Words = {"fast": fast, "reference": label, "tolerance": held, **words}
+            yield claim(Agree, own, quantity, scenes, whole, **more)
 
 
 def pressure_agreements(scenes: Scenes, norms: Mapping[str, Norm], limit: str) -> Iterator[Agree]:
@@ -351,42 +371,15 @@ def pressure_agreements(scenes: Scenes, norms: Mapping[str, Norm], limit: str) -
 
     ``limit`` is what limits finite elements to about 2e-5, far inside the requirement.
     """
-    why = with_tolerance(SHARED["fem"], f"a requirement: 2e-4; {limit} finite elements to about 2e-5")
-    claims = agreements(scenes, required("fem"), ("pressure",), why=why)
-    for claim, (name, norm) in zip(list(claims) * len(norms), norms.items(), strict=True):
-        yield replace(claim, name=name, norm=norm, refined=("mdr",))
-
-
-def zero(
-    name: str,
-    quantity: str,
-    scenes: Scenes,
-    why: Why,
-    /,
-    *,
-    tolerance: float,
-    methods: tuple[str, ...] = (),
-    derive: Callable[[CaseScene, Answer], Iterable[float]] | None = None,
-    **tolerances: float,
-) -> Zero:
-    """Return the claim that a residual vanishes; arguments as of `equal`, ``derive`` as of `Zero`."""
-    return Zero(
-        name=name,
-        quantity=quantity,
-        scenes=names_of(scenes),
-        methods=methods,
-        tolerance=tolerance,
-        tolerances=tolerances,
-        why=why,
-        derive=derive,
-    )
+    words: Words = {"derived_from": f"a requirement: 2e-4; {limit} finite elements to about 2e-5", "refined": ("mdr",)}
+    for name, norm in norms.items():
+        yield from agreements(scenes, required("fem"), ("pressure",), name=name, norm=norm, **words)
 
 
 def carried_force(name: str, scenes: Scenes, method: str) -> Zero:
     """Return the claim that sampled pressures add up to the force; the rings must reach the contact's edge."""
-    return zero(
-        name, "pressure", scenes, SHARED["equilibrium"], tolerance=1e-3, methods=(method,), derive=lacking_force
-    )
+    words: Words = {"tolerance": 1e-3, "methods": (method,), "derive": lacking_force}
+    return zero(name, "pressure", scenes, SHARED["equilibrium"], **words)
 
 
 def lacking_force(scene: CaseScene, answer: Answer) -> list[float]:
@@ -415,7 +408,7 @@ def chebyshev_radii(lowest: float, highest: float, count: int) -> FloatArray:
 def energy_balance(scenes: Scenes, time_steps: int, **tolerances: Any) -> Zero:
     """Return the claim that the energies of an impact add up, by finite elements in so many ``time_steps``."""
     steps = f"finite elements: 1e-5 by {time_steps} time steps, ten times"
-    why = with_tolerance(SHARED["energy balance"], f"MDR: tolerance of its time integration; {steps}")
+    why = replace(SHARED["energy balance"], tolerance=f"MDR: tolerance of its time integration; {steps}")
     return zero("energy balance", "energy_residual", scenes, why, tolerance=1e-7, **tolerances)
 
 
@@ -426,66 +419,19 @@ def scaling_law(
     factors: tuple[float, ...],
     why: Why,
     /,
-    *,
-    tolerance: float = 1e-12,
-    identities: Mapping[str, str] | None = None,
-    **tolerances: float,
+    **words: Any,
 ) -> Law:
     """Return the claim that a changed scene gives known multiples of depth, force and (if named) stiffness.
 
-    ``factors`` are those of ``PATH``, the last may be left out; other arguments as of `equal`.
+    ``factors`` are those of ``PATH``, the last may be left out; other arguments as of `claim`.
     """
-    return Law(
-        name=name,
-        quantity="normal_force",
-        scenes=names_of(scenes),
-        change=change,
-        tolerance=tolerance,
-        why=why,
-        factors=dict(zip(PATH, factors, strict=False)),
-        tolerances=tolerances,
-        identities=identities or {},
-    )
+    by_name = dict(zip(PATH, factors, strict=False))
+    words = {"tolerance": 1e-12, **words}
+    return claim(Law, name, "normal_force", scenes, why, change=change, factors=by_name, **words)
 
 
 def same_in_millimetres(scenes: Scenes, factors: tuple[float, ...] = (1e3, 1.0, 1e-3)) -> Law:
     """Return the claim that the unit system does not matter; ``factors`` as of `scaling_law`."""
     return scaling_law(
         "the unit system does not matter", scenes, in_millimetres, factors, SHARED["units"], tolerance=1e-9, bem=1e-7
-    )
-
-
-def approach(
-    name: str,
-    quantity: str,
-    scenes: Scenes,
-    limit: Callable[[AnyScene], float],
-    why: Why,
-    /,
-    *,
-    largest: float,
-    parameter: Callable[[AnyScene], float] = thinness,
-    **more: Any,
-) -> Approach:
-    """Return the claim that a quantity approaches a limit as a parameter, h/a by default, falls.
-
-    Args:
-        name: of the claim.
-        quantity: whose last step approaches.
-        scenes: the one closest to the limit last.
-        limit: closed form, of the scene.
-        why: why it does.
-        largest: relative distance of the last scene.
-        parameter: what falls, of the scene.
-        more: order and methods, as of `Approach`.
-    """
-    return Approach(
-        name=name,
-        quantity=quantity,
-        scenes=names_of(scenes),
-        limit=limit,
-        largest=largest,
-        why=why,
-        parameter=parameter,
-        **more,
     )

@@ -1,9 +1,10 @@
-"""Section 2.2 of Forsbach (2023): two coated bodies in contact, reduced to one indenter on one layer.
+"""Two coated bodies.
 
-Two rigid bodies with curvatures 1/R1 and 1/R2 carry equal coatings. They are equivalent to a rigid paraboloid of
-curvature 1/R1 + 1/R2, Eq. (23), on one layer with half the modulus, Eq. (24). For two equal bodies symmetry gives a
-check that does not use these equations: the plane between them stays plane, so each coating is pressed by a rigid plane
-through half the approach, which is one body of radius R on one layer of the full modulus.
+Section 2.2 of Forsbach (2023): two coated bodies in contact, reduced to one indenter on one layer. Two rigid bodies
+with curvatures 1/R1 and 1/R2 carry equal coatings. They are equivalent to a rigid paraboloid of curvature 1/R1 + 1/R2,
+Eq. (23), on one layer with half the modulus, Eq. (24). For two equal bodies symmetry gives a check that does not use
+these equations: the plane between them stays plane, so each coating is pressed by a rigid plane through half the
+approach, which is one body of radius R on one layer of the full modulus.
 
 Coatings of slightly different thickness are replaced by their mean, Eq. (25). On thin compressible coatings this is
 exact: two Winkler beds in series.
@@ -11,7 +12,7 @@ exact: two Winkler beds in series.
 
 import numpy as np
 
-from cases.case import Case, CaseScene, text_of
+from cases.case import CaseScene, paper
 from cases.cost import elastic_costs
 from cases.library import _common as c
 from cases.library import _refinements as r
@@ -77,12 +78,11 @@ def beds_in_series(scene: Scene) -> float:
 
 FORCE_AND_DEPTH = ("normal_force", "indentation_depth")
 HALVES, SERIES = "half the approach on one body", "thin unequal coatings are beds in series"
-CASE = Case(
-    name="coated_pair",
-    title="Two coated bodies",
+CASE = paper(
+    __name__,
+    __doc__,
     question="Are the reductions of curvature, modulus and thickness right?",
     equations=("Eq. (23)", "Eq. (24)", "Eq. (25)", "Fig. 2"),
-    text=text_of(__doc__),
     scenes=(*SYMMETRIC, *THIN),
     methods=c.EVERY,
     claims=(

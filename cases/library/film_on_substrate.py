@@ -1,11 +1,12 @@
-"""A film on an elastic half-space, from a hundred times softer to a hundred times stiffer than what it lies on.
+"""A film on an elastic half-space.
 
-A paraboloid presses a film of one thickness h that is bonded to a half-space, at contacts from a tenth to five times as
+A film on an elastic half-space, from a hundred times softer to a hundred times stiffer than what it lies on. A
+paraboloid presses a film of one thickness h that is bonded to a half-space, at contacts from a tenth to five times as
 wide as h. The kernel of this body has a closed form, which is written here once more; by it the contact's pressure must
 press the shape of the indenter into the surface. A film of the substrate's own material is no film at all. A film much
 thinner than the contact answers like its substrate, to first order in (h/a) ln(a/h). A stiff film that slips on a soft
-substrate bends like a plate: over a length l = (2 D/Es*)^(1/3) much larger than the contact its stiffness is
-3 sqrt(3)/2 Es* l.
+substrate bends like a plate: over a length l = (2 D/Es*)^(1/3) much larger than the contact its stiffness is 3
+sqrt(3)/2 Es* l.
 """
 
 import math
@@ -13,7 +14,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from cases.case import Case, CaseScene, text_of
+from cases.case import CaseScene, paper
 from cases.cost import elastic_costs
 from cases.declare.methods import MethodUse
 from cases.library import _common as c
@@ -40,10 +41,8 @@ def film(contrast: float, ratio: float, indenter: str = "paraboloid") -> CaseSce
 
 def plate(contrast: float, *methods: MethodUse) -> CaseScene:
     """Return a scene on a film that slips on a far softer base."""
-    layer, labels = (
-        s.stack((1.0, 1.0, 0.3), support=s.base(1 / contrast, interface="unbonded")),
-        tuple(u.label for u in methods),
-    )
+    layer = s.stack((1.0, 1.0, 0.3), support=s.base(1 / contrast, interface="unbonded"))
+    labels = tuple(use.label for use in methods)
     return replace(s.pressed(f"slipping plate, Ef/Es={contrast:g}", layer, 1.0, nightly=labels), methods=methods)
 
 
@@ -72,14 +71,11 @@ def closed_form(layer: ElasticLayer, wavenumber: FloatArray) -> FloatArray:
     return np.asarray(2 * chi / c.contact_modulus(top))
 
 
-def half_space_force(scene: c.AnyScene) -> float:
-    """F = 4 E* a^3/(3 R)."""
-    return 4 * c.YOUNGS_MODULUS / (1 - 0.3**2) * c.radius(scene) ** 3 / (3 * s.RADIUS_OF_CURVATURE)
-
-
-def half_space_depth(scene: c.AnyScene) -> float:
-    """delta = a^2/R."""
-    return c.radius(scene) ** 2 / s.RADIUS_OF_CURVATURE
+def hertz(scene: c.AnyScene) -> dict[str, float]:
+    """Return delta = a^2/R and F = 4 E* a^3/(3 R)."""
+    depth = c.radius(scene) ** 2 / s.RADIUS_OF_CURVATURE
+    force = 4 * c.YOUNGS_MODULUS / (1 - 0.3**2) * c.radius(scene) * depth / 3
+    return {"indentation_depth": depth, "normal_force": force}
 
 
 def thin_film(scene: c.AnyScene) -> float:
@@ -110,21 +106,19 @@ def narrowness(scene: c.AnyScene) -> float:
 
 
 CLOSED: c.Words = {"tolerance": 1e-11, "fem": 1e-5, "bem": 1e-3}
-NONE = s.WHY["no film"]
+NAMES = {"depth without a film": "indentation_depth", "force without a film": "normal_force"}
 THIN, BENT = "a thin film answers like its substrate", "a slipping stiff film bends like a plate"
-CASE = Case(
-    name="film_on_substrate",
-    title="A film on an elastic half-space",
+CASE = paper(
+    __name__,
+    __doc__,
     question="How do films answer between their own half-space and that of their substrate?",
     equations=("Eq. (8)", "Eq. (10)", "Eq. (27)"),
-    text=text_of(__doc__),
     scenes=(*FILMS, *FLAT, *NO_FILM, *WIDE, *PLATES),
     methods=s.METHODS,
     claims=(
         *s.two_methods((*FILMS, *FLAT)),
         s.pressed_shape((*FILMS, *FLAT), compliance=closed_form),
-        c.equal("depth without a film", "indentation_depth", half_space_depth, NO_FILM, NONE, **CLOSED),
-        c.equal("force without a film", "normal_force", half_space_force, NO_FILM, NONE, **CLOSED),
+        *c.equals(NAMES, hertz, NO_FILM, s.WHY["no film"], **CLOSED),
         s.stiffness_limit(THIN, WIDE, thin_film, "thin film", largest=0.05, parameter=thinness),
         s.stiffness_limit(BENT, PLATES, bent_plate, "plate", largest=0.05, parameter=narrowness),
         *elastic_costs(film(10.0, 1.0).name),

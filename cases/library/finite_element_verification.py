@@ -1,6 +1,7 @@
-"""The finite elements verified as a program: manufactured solutions, inf-sup constants, patch test, locking.
+"""Code verification of the finite elements.
 
-Before finite elements judge anybody else they are judged themselves, by problems whose answers need no other method.
+The finite elements verified as a program: manufactured solutions, inf-sup constants, patch test, locking. Before finite
+elements judge anybody else they are judged themselves, by problems whose answers need no other method.
 
 Manufactured solutions: u = (-r^3 cos z, 4 r^2 sin z), which has no divergence, with p = cos r cos z at nu = 1/2; at
 nu = 0.3 the gradient of (r^4/4) sin z is added, and p is minus K times the divergence. The body force that belongs to
@@ -21,24 +22,26 @@ import time
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache, partial
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
 from bem.direct_method import IntegralEquationMethod
 from cases.answers import Table, Values
-from cases.case import Case, Task, text_of
+from cases.case import Case, Task, paper
 from cases.claims import Study
 from cases.convergence import behaviour_of_errors, order_of_errors
 from cases.library import _common as c
 from cases.rules import Judgement, decided, judge_order, judge_residual
 from cases.studies import Convergence, Grid
-from cases.verdicts import Kind, Origin, Verdict, Why
+from cases.verdicts import Kind, Verdict
 from contact import FlatPunch, IndentationDepths, Layer, Method, Scene
 from fem_reference.assembly import PAIRS
 from fem_reference.materials import uniform
 from fem_reference.mesh import Section, section_mesh
 from fem_reference.verification import ManufacturedProblem, inf_sup_constant, uniform_layer, uniform_mesh
+
+WHY = c.reasons("finite_element_verification")
 
 
 @cache
@@ -141,6 +144,8 @@ MEASURED: Mapping[str, tuple[Any, tuple[tuple[Any, ...], ...]]] = {
     "patch test": (patches, tuple((name,) for name in (*MIXED, *ALONE))),
     "locking": (locking, tuple((name,) for name in (*ALONE[:2], *MIXED))),
 }
+# Measured values by name.
+Found: TypeAlias = Mapping[str, tuple[float, ...]]
 
 
 def fields(method: Method, scene: Scene, *, kind: str, place: tuple[Any, ...]) -> dict[str, Any]:
@@ -158,41 +163,31 @@ class Verified(Study):
         """Yield one task per kind of measurement, pair and Poisson's ratio."""
         for kind, (_, places) in MEASURED.items():
             for place in places if case.methods else ():
-                yield Task(
-                    case=case.name,
-                    scene=scene_name(*place),
-                    variant=kind,
-                    use=case.methods[0],
-                    problem=punch(place[1] if len(place) > 1 else 0.5),
-                    measure=partial(fields, kind=kind, place=place),
-                )
+                own: c.Words = {"case": case.name, "scene": scene_name(*place), "variant": kind, "use": case.methods[0]}
+                problem, measure = punch((*place, 0.5)[1]), partial(fields, kind=kind, place=place)
+                yield Task(**own, problem=problem, measure=measure)
 
-    def _found(self, case: Case, answers: Table, kind: str) -> dict[str, dict[str, tuple[float, ...]]]:
-        """Measured values by scene, then by name."""
-        own = [(task, answers.get(task.identity)) for task in self.tasks(case) if task.variant == kind]
-        return {
-            task.scene: {name: q.values for name, q in answer.quantities.items()}
-            for task, answer in own
-            if answer is not None and answer.solved
-        }
+    def _found(self, case: Case, answers: Table, kind: str) -> Iterator[tuple[tuple[Any, ...], Found]]:
+        """Each place where something was measured, with the values."""
+        for place in MEASURED[kind][1] if case.methods else ():
+            answer = answers.get((case.name, scene_name(*place), case.methods[0].label, kind))
+            if answer is not None and answer.solved:
+                yield place, {name: q.values for name, q in answer.quantities.items()}
 
     def judge(self, case: Case, answers: Table) -> Iterator[Verdict]:
         """Judge orders, constants, defects and locking."""
         yield from map(order_claim, self.records(case, answers))
-        for name, found in self._found(case, answers, "inf-sup constants").items():
-            yield from inf_sup_claims(name, found["inf-sup constant"])
-        for name, found in self._found(case, answers, "patch test").items():
-            yield from patch_claims(name, found["patch_defect"])
-        for name, found in self._found(case, answers, "locking").items():
-            yield from locking_claims(name, found["stiffness error"])
+        judges = {"inf-sup constants": inf_sup_claims, "patch test": patch_claims, "locking": locking_claims}
+        for kind, claims in judges.items():
+            for place, found in self._found(case, answers, kind):
+                yield from claims(*place, *found.values())
 
     def records(self, case: Case, answers: Table) -> Iterator[Convergence]:
         """Yield two studies, of displacement and pressure, for each pair and Poisson's ratio."""
-        found = self._found(case, answers, "manufactured solution")
-        for name, nu in MANUFACTURED:
-            if scene_name(name, nu) in found:
-                for order, quantity in zip((PAIRS[name].degree + 1, PAIRS[name].degree), QUANTITIES, strict=True):
-                    yield convergence(name, nu, quantity, order, found[scene_name(name, nu)])
+        for (name, nu), found in self._found(case, answers, "manufactured solution"):
+            degree = PAIRS[name].degree
+            for order, quantity in zip((degree + 1, degree), QUANTITIES, strict=True):
+                yield convergence(name, nu, quantity, order, found)
 
 
 def scene_name(name: str, nu: float | None = None) -> str:
@@ -200,7 +195,7 @@ def scene_name(name: str, nu: float | None = None) -> str:
     return name if nu is None else f"{name}, nu={nu:g}"
 
 
-def convergence(name: str, nu: float, quantity: str, order: int, found: Mapping[str, tuple[float, ...]]) -> Convergence:
+def convergence(name: str, nu: float, quantity: str, order: int, found: Found) -> Convergence:
     """Return the study of one quantity of a manufactured problem."""
     errors, cells = found[quantity], CELLS[PAIRS[name].degree]
     lengths = [cells[-1] / number for number in cells]
@@ -229,97 +224,54 @@ def convergence(name: str, nu: float, quantity: str, order: int, found: Mapping[
 
 def order_claim(study: Convergence) -> Verdict:
     """The observed order is in the band of the formal one."""
-    return _claim(
-        f"order of the {study.quantity.removeprefix('L2 error of the ')}",
-        judge_order(study.observed_order, study.formal_order or 0.0, study.kind),
-        kind=Kind.ORDER,
-        scene=study.scene,
-        quantity=study.quantity,
-        expected=study.formal_order,
-        tolerance=0.2,
-        source="manufactured solution",
-        because="smooth solutions are interpolated by degree k with order k + 1, their gradients with order k",
-        derived_from="accepted band [p_f - 0.2, p_f + 0.5]",
-    )
+    name = f"order of the {study.quantity.removeprefix('L2 error of the ')}"
+    judged = judge_order(study.observed_order, study.formal_order or 0.0, study.kind)
+    more: c.Words = {"kind": Kind.ORDER, "expected": study.formal_order, "tolerance": 0.2}
+    return _claim(name, study.scene, study.quantity, judged, "order", **more)
 
 
 def inf_sup_claims(name: str, constants: tuple[float, ...]) -> Iterator[Verdict]:
     """A stable pair keeps its constant; that of an unstable pair is seen to vanish or to fall with the mesh."""
     uniform, stable = constants[:-1], PAIRS[name].inf_sup_stable
-    least = min(constants)
     words = f"inf-sup constants {', '.join(f'{c:.3f}' for c in uniform)} on refined meshes, {constants[-1]:.3f} graded"
     # At most one passes: of a stable pair the least constant, of an unstable one the fall on the finest meshes.
-    share = LEAST_CONSTANT / max(least, 1e-12) if stable else min(uniform[-1] / (0.75 * uniform[-2]), uniform[-1] / 0.1)
-    yield _claim(
-        "inf-sup constant is bounded below" if stable else "an unstable pair is caught",
-        decided(share < 1, share, share, words),
-        kind=Kind.INVARIANT,
-        scene=name,
-        quantity="inf-sup constant",
-        expected=None,
-        tolerance=1.0,
-        source="smallest eigenvalue of B H^-1 B^T against the pressure mass",
-        because="Taylor-Hood pairs are stable on triangles; equal degrees, and P1 with constant pressures, are not",
-        derived_from="three quarters of the continuous constant; an unstable one loses a quarter at each refinement",
-    )
+    fall = min(uniform[-1] / (0.75 * uniform[-2]), uniform[-1] / 0.1)
+    share = LEAST_CONSTANT / max(min(constants), 1e-12) if stable else fall
+    claim = "inf-sup constant is bounded below" if stable else "an unstable pair is caught"
+    yield _claim(claim, name, "inf-sup constant", decided(share < 1, share, share, words), "inf-sup", tolerance=1.0)
 
 
 def patch_claims(name: str, defects: tuple[float, ...]) -> Iterator[Verdict]:
     """A constant strain is in equilibrium."""
     for nu, defect in zip(ratios_of_patches(name), defects, strict=True):
-        yield _claim(
-            "patch test",
-            judge_residual(defect, tolerance=LARGEST_DEFECT),
-            kind=Kind.INVARIANT,
-            scene=scene_name(name, nu),
-            quantity="patch_defect",
-            expected=0.0,
-            tolerance=LARGEST_DEFECT,
-            source="Taylor, Simo, Zienkiewicz, Chan (1986), form A",
-            because="a constant strain leaves every inner node of any mesh in equilibrium",
-            derived_from="rounding of the assembly",
-        )
+        judged = judge_residual(defect, tolerance=LARGEST_DEFECT)
+        more: c.Words = {"expected": 0.0, "tolerance": LARGEST_DEFECT}
+        yield _claim("patch test", scene_name(name, nu), "patch_defect", judged, "patch", **more)
 
 
 def locking_claims(name: str, errors: tuple[float, ...]) -> Iterator[Verdict]:
     """Mixed pairs are at most three times less exact than at nu = 0.3; displacements lose a digit at least."""
-    growth, mixed = max(errors) / errors[0], PAIRS[name].is_mixed
+    growth = max(errors) / errors[0]
     words = f"the largest error on one mesh is {growth:.2g} times that at nu = 0.3"
-    yield _claim(
-        "mixed elements do not lock" if mixed else "displacement elements lock and are seen to",
-        decided(growth <= 3 if mixed else growth >= 10, growth, growth / 3 if mixed else 10 / growth, words),
-        kind=Kind.INVARIANT,
-        scene=name,
-        quantity="contact_stiffness",
-        expected=None,
-        tolerance=3.0 if mixed else 10.0,
-        source="direct integral equation",
-        because="the mixed form has no term that grows as nu -> 1/2; that of displacements alone has",
-        derived_from="constants of the error estimate change by less than three; locking costs a digit or more",
-    )
+    if PAIRS[name].is_mixed:
+        claim, tolerance, judged = "mixed elements do not lock", 3.0, decided(growth <= 3, growth, growth / 3, words)
+    else:
+        claim, tolerance = "displacement elements lock and are seen to", 10.0
+        judged = decided(growth >= 10, growth, 10 / growth, words)
+    yield _claim(claim, name, "contact_stiffness", judged, "locking", tolerance=tolerance)
 
 
-def _claim(name: str, judged: Judgement, *, source: str, because: str, derived_from: str, **words: Any) -> Verdict:
+def _claim(name: str, scene: str, quantity: str, judged: Judgement, why: str, **words: Any) -> Verdict:
     """The verdict that ended so, about finite elements and against mathematics; `words` are its other fields."""
-    return Verdict(
-        case=CASE.name,
-        claim=name,
-        methods=("fem",),
-        status=judged.status,
-        error=judged.error,
-        fraction=judged.fraction,
-        why=Why(Origin.CLOSED_FORM, source, because, derived_from),
-        message=judged.message,
-        **words,
-    )
+    place: c.Words = {"case": CASE.name, "claim": name, "scene": scene, "quantity": quantity, "methods": ("fem",)}
+    return Verdict(**{"kind": Kind.INVARIANT, "why": WHY[why], **place, **vars(judged), **words})
 
 
-CASE = Case(
-    name="finite_element_verification",
-    title="Code verification of the finite elements",
+CASE = paper(
+    __name__,
+    __doc__,
     question="Do the finite elements solve their own equations, at formal orders and at every Poisson's ratio?",
     equations=("Taylor, Simo, Zienkiewicz, Chan 1986",),
-    text=text_of(__doc__),
     scenes=(),
     methods=(c.FEM,),
     claims=(Verified(name="the program solves its equations"),),

@@ -1,19 +1,19 @@
-"""Full stick under the cylindrical flat punch: what it adds to the stiffness, for every layer.
+"""The flat punch that sticks.
 
-Under a punch that sticks the surface does not move sideways: u_r = 0 and u_z = delta on r <= a. MDR takes its
-stiffness from a coupled pair of integral equations without a mesh; finite elements hold the surface. The two share no
-code. On the half-space the stiffness is that of the frictionless punch times (1 - nu) ln(3 - 4 nu)/(1 - 2 nu), ten per
-cent more at nu = 0 and nothing at nu = 1/2 (Mossakovskii). On layers the ratio is another one: a thin bonded layer with
-nu = 1/2 flows between two walls that hold it instead of one, a quarter of the flow, and is four times as stiff. An
-unbonded one is held by one wall as the frictionless bonded one is, and has the same limit. Thin compressible layers are
-confined wherever one of their faces is held. Stick is a constraint: it never makes a punch softer.
+Full stick under the cylindrical flat punch: what it adds to the stiffness, for every layer. Under a punch that sticks
+the surface does not move sideways: u_r = 0 and u_z = delta on r <= a. MDR takes its stiffness from a coupled pair of
+integral equations without a mesh; finite elements hold the surface. The two share no code. On the half-space the
+stiffness is that of the frictionless punch times (1 - nu) ln(3 - 4 nu)/(1 - 2 nu), ten per cent more at nu = 0 and
+nothing at nu = 1/2 (Mossakovskii). On layers the ratio is another one: a thin bonded layer with nu = 1/2 flows between
+two walls that hold it instead of one, a quarter of the flow, and is four times as stiff. An unbonded one is held by one
+wall as the frictionless bonded one is, and has the same limit. Thin compressible layers are confined wherever one of
+their faces is held. Stick is a constraint: it never makes a punch softer.
 """
 
 import math
 from dataclasses import replace
 
-from cases.case import Case, CaseScene, text_of
-from cases.claims import Bound
+from cases.case import CaseScene, paper
 from cases.library import _common as c
 from cases.library import _refinements as r
 from contact import FlatPunch, Friction, IndentationDepths, Layer
@@ -72,44 +72,30 @@ def frictionless(scene: c.AnyScene) -> c.AnyScene:
 
 
 STIFFNESS = "contact_stiffness"
-STIFFER = tuple(
-    Bound(
-        name=f"stick never softens, {label}",
-        quantity=STIFFNESS,
-        methods=(label,),
-        change=frictionless,
-        tolerance=tolerance,
-        why=WHY["a constraint"],
-        nightly=label == "fem",
-    )
-    for label, tolerance in (("mdr", 1e-12), ("fem", 1e-6))
+SOFTER = frictionless, WHY["a constraint"]
+STIFFER = (
+    c.bound("stick never softens, mdr", STIFFNESS, (), *SOFTER, tolerance=1e-12, methods=("mdr",)),
+    c.bound("stick never softens, fem", STIFFNESS, (), *SOFTER, tolerance=1e-6, methods=("fem",), nightly=True),
 )
+CLOSED: c.Words = {"tolerance": 1e-12, "fem": 1e-6}
+LATE: c.Words = {"against": "mdr", "nightly": True}
 COMPRESSIBLE, INCOMPRESSIBLE = ((on_layer(f"bonded nu={nu:g}", 1.0),) for nu in (0.3, 0.5))
-CASE = Case(
-    name="friction_flat_punch",
-    title="The flat punch that sticks",
+CASE = paper(
+    __name__,
+    __doc__,
     question="What does full stick add to the stiffness of the flat punch, and do two methods agree on it?",
     equations=("Mossakovskii 1954", "Eq. (10)", "Eq. (18)"),
-    text=text_of(__doc__),
     scenes=SCENES,
     methods=(c.MDR, FINER_FEM),
     claims=(
         *c.agreements(SCENES, {"fem": 1e-6}, ("normal_force", STIFFNESS), why=WHY["two methods"]),
-        c.equal(
-            "stiffness on the half-space",
-            STIFFNESS,
-            stuck_half_space,
-            HALF_SPACES,
-            WHY["half-space"],
-            tolerance=1e-12,
-            fem=1e-6,
-        ),
+        c.equal("stiffness on the half-space", STIFFNESS, stuck_half_space, HALF_SPACES, WHY["half-space"], **CLOSED),
         *(
             c.approach(f"thin limit, {label}", STIFFNESS, pair, thin_stiffness, WHY["thin limit"], largest=2e-2)
             for label, pair in THIN.items()
         ),
         *STIFFER,
-        *r.studies(INCOMPRESSIBLE, r.EDGE_CELL, {STIFFNESS: 1.0}, against="mdr", nightly=True),
-        *r.studies(COMPRESSIBLE, r.fem_cells(3), {STIFFNESS: 6.0}, against="mdr", nightly=True),
+        *r.studies(INCOMPRESSIBLE, r.EDGE_CELL, {STIFFNESS: 1.0}, **LATE),
+        *r.studies(COMPRESSIBLE, r.fem_cells(3), {STIFFNESS: 6.0}, **LATE),
     ),
 )

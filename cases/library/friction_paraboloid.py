@@ -1,14 +1,15 @@
-"""A paraboloid with dry friction: how much more force the same depth takes, and what a cycle turns into heat.
+"""A paraboloid with dry friction.
 
-Where a layer slides under the indenter, Coulomb's friction holds it back, and the same depth takes more force; from
-some coefficient on nothing slides any more. Finite elements follow the contact as it grows, from one node of the
-surface to the next: each new point keeps the radial displacement with which it touched, and slides where friction does
-not hold it. MDR solves full stick without a mesh, and states for finite coefficients, from its frictionless answer and
-the radial displacement u_r1 under the frictionless unit punch, a bound, |F - F_0| <= mu max |u_r1| F at the true
-radius, and the first order in mu, F_0 mu int p_0 |u_r1| dA/F_0. On half-spaces and thick layers the stick radius is a
-fixed share of the contact radius that knows mu and nu only; radius, force, stick radius and heat there are those of
-Spence's coupled equations, solved by themselves (`benchmarks.references.partial_slip`). On the way back slip reverses
-from the edge on, the force is less at each depth, and the loop between is heat; friction never gives any back.
+A paraboloid with dry friction: how much more force the same depth takes, and what a cycle turns into heat. Where a
+layer slides under the indenter, Coulomb's friction holds it back, and the same depth takes more force; from some
+coefficient on nothing slides any more. Finite elements follow the contact as it grows, from one node of the surface to
+the next: each new point keeps the radial displacement with which it touched, and slides where friction does not hold
+it. MDR solves full stick without a mesh, and states for finite coefficients, from its frictionless answer and the
+radial displacement u_r1 under the frictionless unit punch, a bound, |F - F_0| <= mu max |u_r1| F at the true radius,
+and the first order in mu, F_0 mu int p_0 |u_r1| dA/F_0. On half-spaces and thick layers the stick radius is a fixed
+share of the contact radius that knows mu and nu only; radius, force, stick radius and heat there are those of Spence's
+coupled equations, solved by themselves (`benchmarks.references.partial_slip`). On the way back slip reverses from the
+edge on, the force is less at each depth, and the loop between is heat; friction never gives any back.
 """
 
 import math
@@ -17,14 +18,13 @@ from dataclasses import replace
 import numpy as np
 from scipy.integrate import quad
 
-from cases.case import Case, CaseScene, text_of
-from cases.claims import Bound
+from cases.case import CaseScene, paper
 from cases.cost import Cost
 from cases.declare.methods import MethodUse
 from cases.library import _common as c
 from cases.library import _refinements as r
 from cases.library.friction_flat_punch import frictionless
-from contact import ContactPath, DepthHistory, Friction, IndentationDepths, Layer, Loading, Paraboloid
+from contact import DepthHistory, Friction, IndentationDepths, Layer, Loading, Paraboloid
 
 WHY = c.reasons("friction_paraboloid")
 # 80, 40 and 20 cells; the finer grid has 240, 120 and 60.
@@ -40,22 +40,12 @@ QUICK = ("nu=0.5 mu=0.04", "nu=0.5 mu=0.02", "nu=0.5 stick", "nu=0.5 cycle", "ha
 SPENCE = c.NUMBERS["partial_slip"]
 
 
-def rubbed(
-    name: str, layer: Layer, coefficient: float, *methods: MethodUse, loading: Loading | None = None
-) -> CaseScene:
+def rubbed(name: str, layer: Layer, mu: float, *methods: MethodUse, loading: Loading | None = None) -> CaseScene:
     """Return a paraboloid that is pressed to the usual depth, or under another loading."""
-    friction, late = (Friction(coefficient=coefficient),), tuple(use.label for use in methods or (CELLS,))
-    more: c.Words = {"effects": friction, "methods": methods, "nightly": () if name in QUICK else late}
-    place: c.Words = {
-        "poissons_ratio": layer.poissons_ratio,
-        "friction": coefficient if math.isfinite(coefficient) else "stick",
-    }
+    late = () if name in QUICK else tuple(use.label for use in methods or (CELLS,))
+    more: c.Words = {"effects": (Friction(coefficient=mu),), "methods": methods, "nightly": late}
+    place: c.Words = {"poissons_ratio": layer.poissons_ratio, "friction": mu if math.isfinite(mu) else "stick"}
     return c.scene(name, layer, INDENTER, loading or IndentationDepths([DEPTH]), **more, **place)
-
-
-def stuck(name: str, layer: Layer) -> CaseScene:
-    """Return a paraboloid that sticks."""
-    return rubbed(f"{name} stick", layer, math.inf)
 
 
 def partly_stuck(name: str, layer: Layer, solved: str, depth: float) -> CaseScene:
@@ -79,9 +69,10 @@ SLIDING = (
     *(rubbed(f"nu=0.3 mu={mu:g}", c.layer_of(0.3), mu, CELLS) for mu in (0.1, 0.3)),
     rubbed("unbonded nu=0.5 mu=0.1", UNBONDED, 0.1, CELLS),
 )
-STUCK = (*(stuck(f"nu={nu:g}", c.layer_of(nu)) for nu in (0.5, 0.3, 0.0)), stuck("unbonded nu=0.5", UNBONDED))
+STUCK_LAYERS = {**{f"nu={nu:g}": c.layer_of(nu) for nu in (0.5, 0.3, 0.0)}, "unbonded nu=0.5": UNBONDED}
+STUCK = tuple(rubbed(f"{name} stick", layer, math.inf) for name, layer in STUCK_LAYERS.items())
 REFINED = tuple(rubbed(f"nu={nu:g} mu=0.1, two grids", c.layer_of(nu), 0.1, CELLS, MORE_CELLS) for nu in (0.5, 0.0))
-STUCK_HALF_SPACES = tuple(stuck(f"half-space nu={nu:g}", c.half_space(nu)) for nu in (0.0, 0.3))
+HALF_SPACES = tuple(rubbed(f"half-space nu={nu:g} stick", c.half_space(nu), math.inf) for nu in (0.0, 0.3))
 SELF_SIMILAR = tuple(partly_stuck(f"half-space {one}", c.half_space(nu_of(one)), one, DEPTH) for one in SPENCE)
 ON_THICK = partly_stuck("thick nu=0.49 c/a=0.6", THICK_LAYER, "nu=0.49 c/a=0.6", 0.02 * c.THICKNESS)
 TO_AND_FRO = DepthHistory(time=np.arange(6.0), depth=DEPTH * np.array([0.0, 1.0, 0.5, 1.0, 0.5, 0.0]))
@@ -94,32 +85,19 @@ def coefficient(scene: c.AnyScene) -> float:
     return 0.0 if friction is None else friction.coefficient
 
 
-def statement(scene: c.AnyScene) -> tuple[float, float, float, float]:
-    """Return MDR's F_0 and, over it, the lower bound, the upper bound and the first order of F."""
+def statement(scene: c.AnyScene, which: str) -> tuple[float, float]:
+    """Return MDR's F_0 [N] and F/F_0: its lower or upper bound, or its first order in mu."""
     from mdr import Mdr  # noqa: PLC0415 - a method is imported when used
     from mdr.friction.statement import friction_effect  # noqa: PLC0415
 
     path = Mdr().solve(frictionless(scene))
-    assert isinstance(path, ContactPath)
-    effect = friction_effect(path, coefficient(scene))
-    force = float(path.normal_force[0])
-    return force, 1 + float(effect.lower[0]), 1 + float(effect.upper[0]), 1 + float(effect.first_order[0])
+    change = getattr(friction_effect(path, coefficient(scene)), which)
+    return float(path.normal_force[0]), 1 + float(change[0])
 
 
 def to_first_order(scene: c.AnyScene) -> float:
     """Return F_0 (1 + mu int p_0 |u_r1| dA/F_0)."""
-    force, _, _, first = statement(scene)
-    return force * first
-
-
-def least(scene: c.AnyScene) -> float:
-    """Return the lower bound of F/F_0."""
-    return statement(scene)[1]
-
-
-def most(scene: c.AnyScene) -> float:
-    """Return the upper bound of F/F_0."""
-    return statement(scene)[2]
+    return math.prod(statement(scene, "first_order"))
 
 
 def of_spence(scene: c.AnyScene) -> dict[str, float]:
@@ -130,13 +108,8 @@ def of_spence(scene: c.AnyScene) -> dict[str, float]:
     depth, radius = float(scene.loading.values[0]), INDENTER.radius_of_curvature
     a = math.sqrt(radius * depth / depth_factor)
     force = force_factor * 4 / 3 * c.contact_modulus(scene.layer) * math.sqrt(radius) * depth**1.5
-    stick_radius = float(solved.rpartition("=")[2]) * a
-    return {
-        "stick_radius": stick_radius,
-        "contact_radius": a,
-        "normal_force": force,
-        "dissipated_energy": heat * force * depth,
-    }
+    stick_radius, heat = float(solved.rpartition("=")[2]) * a, heat * force * depth
+    return {"stick_radius": stick_radius, "contact_radius": a, FORCE: force, "dissipated_energy": heat}
 
 
 def stuck_on_half_space(scene: c.AnyScene) -> dict[str, float]:
@@ -147,118 +120,87 @@ def stuck_on_half_space(scene: c.AnyScene) -> dict[str, float]:
     sine = quad(lambda u: math.sin(2 * eps * u) / math.cosh(u) ** 2, 0.0, 40.0, epsabs=1e-14)[0]
     a = math.sqrt(2 * (0.5 - eps * float(sine)) * INDENTER.radius_of_curvature * depth)
     stiffness = 2 * c.contact_modulus(scene.layer) * a * (1 - nu) * math.log(3 - 4 * nu) / (1 - 2 * nu)
-    return {"contact_radius": a, "normal_force": 2 / 3 * stiffness * depth}
+    return {"contact_radius": a, FORCE: 2 / 3 * stiffness * depth}
 
 
-BOUNDS = tuple(
-    Bound(
-        name=f"the bound holds from {side}",
-        quantity="normal_force",
-        scenes=c.names_of(SLIDING),
-        change=frictionless,
-        multiple=multiple,
-        at_most=side == "above",
-        tolerance=1e-4,
-        why=WHY["bound"],
-        nightly=True,
-    )
-    for side, multiple in (("below", least), ("above", most))
-)
-# By name: quantity, scenes and tolerance of Spence's problem.
-PARTIAL_SLIP = {
-    "self-similar stick radius": ("stick_radius", (*SELF_SIMILAR, ON_THICK), 1e-2),
-    "contact radius of partial slip": ("contact_radius", SELF_SIMILAR, 1e-4),
-    "force of partial slip": ("normal_force", SELF_SIMILAR, 1e-5),
-    "heat of partial slip": ("dissipated_energy", SELF_SIMILAR, 1e-2),
-}
+FORCE = "normal_force"
+FIRST_ORDER: c.Words = {"largest": SMALL[-1] ** 2, "parameter": coefficient, "formal_order": 2.0}
+LEAST: c.Words = {"multiple": lambda scene: statement(scene, "lower")[1], "tolerance": 1e-4, "nightly": True}
+MOST = LEAST | {"multiple": lambda scene: statement(scene, "upper")[1], "at_most": True}
+SPENCES = {"contact radius of partial slip": ("contact_radius", 1e-4), "force of partial slip": (FORCE, 1e-5)}
+SPENCES["heat of partial slip"] = ("dissipated_energy", 1e-2)
+UNDER_STICK = {"radius under stick": "contact_radius", "force under stick": FORCE}
 CLOSED: c.Words = {"tolerance": 1e-8, "fem": 1e-5}
 # Unknowns of growth are these over 24 times the usual ones: 10 to 20 of 30.
-STICK_NODES = r.Refinement(
-    "unknowns of growth, a sixth a step",
-    "mdr",
-    r.in_turn("nodes", (8, 12, 16)),
-    r.WHY["nodes"],
-    digits=1.0,
-    floor=1e-12,
-)
-GRIDS = {"normal_force": 2e-4, "contact_radius": 1e-3, "dissipated_energy": 2e-2}
-FORCE = "normal_force"
+NODES, SIXTH = r.in_turn("nodes", (8, 12, 16)), "unknowns of growth, a sixth a step"
+STICK_NODES = r.refinement(SIXTH, "mdr", NODES, r.WHY["nodes"], least_digits=1.0, floor=1e-12)
+GRIDS = {FORCE: 2e-4, "contact_radius": 1e-3, "dissipated_energy": 2e-2}
+CARRYING = (*SMALL_ONES, *STUCK, CYCLE)
 BY_FEM: c.Words = {"methods": ("fem",)}
-CLAIMS = (
-    *c.agreements(STUCK, {"fem": 1e-3}, (FORCE, "contact_stiffness"), why=WHY["two methods"]),
-    c.approach(
-        "the first order is that of reciprocity",
-        FORCE,
-        SMALL_ONES,
-        to_first_order,
-        WHY["first order"],
-        largest=SMALL[-1] ** 2,
-        parameter=coefficient,
-        formal_order=2.0,
-    ),
-    *BOUNDS,
-    *(
-        c.equal(name, quantity, c.part(of_spence, quantity), on, WHY["self-similar"], tolerance=tolerance)
-        for name, (quantity, on, tolerance) in PARTIAL_SLIP.items()
-    ),
-    *(
-        c.equal(
-            name,
-            quantity,
-            c.part(stuck_on_half_space, quantity),
-            STUCK_HALF_SPACES,
-            WHY["stick on the half-space"],
-            **CLOSED,
-        )
-        for name, quantity in (("radius under stick", "contact_radius"), ("force under stick", FORCE))
-    ),
-    *r.studies(STUCK[:3], STICK_NODES, (FORCE,), against=r.FINEST_MDR),
-    *(
-        replace(
-            claim,
-            name=f"{claim.quantity.replace('_', ' ')}: two grids",
-            fast="fem",
-            tolerance=GRIDS[claim.quantity],
-            nightly=True,
-        )
-        for claim in c.agreements(REFINED, {MORE_CELLS.label: 1.0}, GRIDS, why=WHY["two grids"])
-    ),
-    c.zero(
-        "base carries the force",
-        "base_force_defect",
-        (*SMALL_ONES, *STUCK, CYCLE),
-        WHY["base carries the force"],
-        tolerance=1e-10,
-        **BY_FEM,
-    ),
-    c.zero(
-        "no heat is given back", "heat_given_back", (CYCLE,), WHY["no heat is given back"], tolerance=1e-12, **BY_FEM
-    ),
-    c.zero(
-        "work is stored or heat", "energy_defect", (CYCLE,), WHY["work is stored or heat"], tolerance=2e-3, **BY_FEM
-    ),
-)
 TIMED = MethodUse(label="full stick", method="mdr")
 LADDER = (TIMED, *(MethodUse(label=f"growth {g:g}", method="fem", settings={"growth": g}) for g in (0.75, 0.5, 0.25)))
-CASE = Case(
-    name="friction_paraboloid",
-    title="A paraboloid with dry friction",
+PRICE: c.Words = {"scene": "nu=0.5 stick", "ladder": LADDER, "reference": TIMED, "cheap": (TIMED,)}
+CASE = paper(
+    __name__,
+    __doc__,
     question="What does dry friction add to the force of a paraboloid, and are the fast statements about it right?",
     equations=("Coulomb", "Spence 1975", "Eq. (2)"),
-    text=text_of(__doc__),
-    scenes=(*SLIDING, *STUCK, *STUCK_HALF_SPACES, *REFINED, *SELF_SIMILAR, ON_THICK, CYCLE),
+    scenes=(*SLIDING, *STUCK, *HALF_SPACES, *REFINED, *SELF_SIMILAR, ON_THICK, CYCLE),
     methods=(c.MDR, CELLS),
     claims=(
-        *CLAIMS,
-        *(
-            Cost(
-                name="cost of full stick",
-                scene="nu=0.5 stick",
-                quantity=FORCE,
-                ladder=LADDER,
-                reference=TIMED,
-                cheap=(TIMED,),
-            ),
+        *c.agreements(STUCK, {"fem": 1e-3}, (FORCE, "contact_stiffness"), why=WHY["two methods"]),
+        c.approach(
+            "the first order is that of reciprocity",
+            FORCE,
+            SMALL_ONES,
+            to_first_order,
+            WHY["first order"],
+            **FIRST_ORDER,
         ),
+        c.bound("the bound holds from below", FORCE, SLIDING, frictionless, WHY["bound"], **LEAST),
+        c.bound("the bound holds from above", FORCE, SLIDING, frictionless, WHY["bound"], **MOST),
+        c.equal(
+            "self-similar stick radius",
+            "stick_radius",
+            of_spence,
+            (*SELF_SIMILAR, ON_THICK),
+            WHY["self-similar"],
+            tolerance=1e-2,
+        ),
+        *(
+            c.equal(name, quantity, of_spence, SELF_SIMILAR, WHY["self-similar"], tolerance=tolerance)
+            for name, (quantity, tolerance) in SPENCES.items()
+        ),
+        *c.equals(UNDER_STICK, stuck_on_half_space, HALF_SPACES, WHY["stick on the half-space"], **CLOSED),
+        *r.studies(STUCK[:3], STICK_NODES, (FORCE,), against=r.FINEST_MDR),
+        *c.agreements(
+            REFINED,
+            {MORE_CELLS.label: GRIDS},
+            GRIDS,
+            fast="fem",
+            why=WHY["two grids"],
+            name="{}: two grids",
+            nightly=True,
+        ),
+        c.zero(
+            "base carries the force",
+            "base_force_defect",
+            CARRYING,
+            WHY["base carries the force"],
+            tolerance=1e-10,
+            **BY_FEM,
+        ),
+        c.zero(
+            "no heat is given back",
+            "heat_given_back",
+            (CYCLE,),
+            WHY["no heat is given back"],
+            tolerance=1e-12,
+            **BY_FEM,
+        ),
+        c.zero(
+            "work is stored or heat", "energy_defect", (CYCLE,), WHY["work is stored or heat"], tolerance=2e-3, **BY_FEM
+        ),
+        Cost(name="cost of full stick", quantity=FORCE, **PRICE),
     ),
 )

@@ -1,16 +1,17 @@
-"""Layers whose modulus grows or falls exponentially with depth, and what many uniform sublayers make of them.
+"""A layer that is graded in depth.
 
-Such a layer is stiffer or softer below than at its surface; its kernel differs from the half-space's like 1/k, so that
-the pressure has a logarithm at the edge of the contact. MDR solves it by edges in ln x, with the kernel on complex
-wavenumbers; the direct integral equation splits the logarithm off and stays on real ones. The kernel of an exponential
-modulus has a closed form with four complex exponentials, which is written here separately: by it the contact's pressure
-must press the paraboloid's shape into the surface. Cut into n uniform sublayers with the modulus of their middles, the
-layer is approached with nearly the second order of 1/n: the top one, of constant modulus, costs a logarithm.
+Layers whose modulus grows or falls exponentially with depth, and what many uniform sublayers make of them. Such a layer
+is stiffer or softer below than at its surface; its kernel differs from the half-space's like 1/k, so that the pressure
+has a logarithm at the edge of the contact. MDR solves it by edges in ln x, with the kernel on complex wavenumbers; the
+direct integral equation splits the logarithm off and stays on real ones. The kernel of an exponential modulus has a
+closed form with four complex exponentials, which is written here separately: by it the contact's pressure must press
+the paraboloid's shape into the surface. Cut into n uniform sublayers with the modulus of their middles, the layer is
+approached with nearly the second order of 1/n: the top one, of constant modulus, costs a logarithm.
 """
 
 import numpy as np
 
-from cases.case import Case, text_of
+from cases.case import paper
 from cases.cost import elastic_costs
 from cases.library import _common as c
 from cases.library import _stacks as s
@@ -55,18 +56,15 @@ def sublayers(count: int) -> LayerStack:
 CUT = tuple(s.pressed(f"{count} sublayers", sublayers(count), 1.0, sampled=False) for count in (12, 24))
 # Legendre-Galerkin in Fourier space, E = 4^z, a = H = 1: k_N/(2 E* a) and depth/(a^2/R); the force is that of two
 # gradings of panels, which agree to 1e-12 of it. E* is that of the surface.
-STIFFNESS = 4.236520213 * 2 * c.YOUNGS_MODULUS / (1 - POISSONS_RATIO**2) * c.THICKNESS
-DEPTH = 0.601148740 * c.THICKNESS / 10
+NUMBERS = {
+    "contact_stiffness": 4.236520213 * 2 * c.YOUNGS_MODULUS / (1 - POISSONS_RATIO**2) * c.THICKNESS,
+    "indentation_depth": 0.601148740 * c.THICKNESS / 10,
+}
 
 
-def stiffness(_: c.AnyScene) -> float:
-    """k_N of the graded layer at a = H."""
-    return STIFFNESS
-
-
-def depth(_: c.AnyScene) -> float:
-    """Return the published depth [m]."""
-    return DEPTH
+def published(_: c.AnyScene) -> dict[str, float]:
+    """Return stiffness [N/m] and depth [m] of the graded layer at a = H."""
+    return NUMBERS
 
 
 def share(scene: c.AnyScene) -> float:
@@ -74,30 +72,22 @@ def share(scene: c.AnyScene) -> float:
     return 1 / len(scene.layer.sublayers)
 
 
-PUBLISHED: c.Words = {"tolerance": 2e-9, "methods": s.FAST}
-DIGITS = s.WHY["published digits"]
-NEARLY_SECOND: c.Words = {
-    "largest": 2e-3,
-    "parameter": share,
-    "formal_order": 2.0,
-    "methods": ("mdr",),
-    "nightly": True,
-}
+NAMES = {"published stiffness": "contact_stiffness", "published depth": "indentation_depth"}
+NEARLY_SECOND: c.Words = {"largest": 2e-3, "parameter": share, "formal_order": 2.0}
+NEARLY_SECOND |= {"methods": ("mdr",), "nightly": True}
 APPROACH = "sublayers approach the graded layer"
-CASE = Case(
-    name="graded_layer",
-    title="A layer that is graded in depth",
+CASE = paper(
+    __name__,
+    __doc__,
     question="Is a graded layer solved right, and how many sublayers stand for it?",
     equations=("Eq. (8)", "Eq. (10)", "Eq. (27)"),
-    text=text_of(__doc__),
     scenes=(*SCENES, *PUNCHES, *CUT),
     methods=s.METHODS,
     claims=(
         *s.two_methods((*SCENES, *PUNCHES), REQUIRED),
         s.pressed_shape(SCENES, radial_waves=3000.0),
-        c.equal("published stiffness", "contact_stiffness", stiffness, FIRST, DIGITS, **PUBLISHED),
-        c.equal("published depth", "indentation_depth", depth, FIRST, DIGITS, **PUBLISHED),
-        c.approach(APPROACH, "contact_stiffness", CUT, stiffness, s.WHY["sublayers"], **NEARLY_SECOND),
+        *c.equals(NAMES, published, FIRST, s.WHY["published digits"], tolerance=2e-9, methods=s.FAST),
+        c.approach(APPROACH, "contact_stiffness", CUT, published, s.WHY["sublayers"], **NEARLY_SECOND),
         *elastic_costs(FIRST[0].name),
     ),
 )

@@ -1,29 +1,20 @@
-"""Thick layers: closed forms on the half-space, and the rate at which layers approach them.
+"""Limits of thick layers.
 
-On the half-space flat punch, cone, paraboloid and power law have closed forms (Sneddon). Every method must give them.
-A thick layer is stiffer by kbar = 1 + alpha a/h + O((a/h)^2), where alpha = (2/pi) int (1 - chi) dq depends on the
-support only: 0.743303 unbonded, 0.876533, 1.034807 and 1.126955 bonded with nu = 0.3, 0.45 and 0.5. With that term in
-the limit, what is left must fall with the second order of a/h.
+Thick layers: closed forms on the half-space, and the rate at which layers approach them. On the half-space flat punch,
+cone, paraboloid and power law have closed forms (Sneddon). Every method must give them. A thick layer is stiffer by
+kbar = 1 + alpha a/h + O((a/h)^2), where alpha = (2/pi) int (1 - chi) dq depends on the support only: 0.743303 unbonded,
+0.876533, 1.034807 and 1.126955 bonded with nu = 0.3, 0.45 and 0.5. With that term in the limit, what is left must fall
+with the second order of a/h.
 """
 
 import numpy as np
 
-from cases.case import Case, CaseScene, text_of
+from cases.case import CaseScene, paper
 from cases.cost import elastic_costs
 from cases.effects import Ablation
 from cases.library import _common as c
 from cases.library import _refinements as r
-from contact import (
-    Cone,
-    ContactRadii,
-    FlatPunch,
-    IndentationDepths,
-    InvalidInput,
-    Loading,
-    Paraboloid,
-    PowerLaw,
-    Profile,
-)
+from contact import Cone, ContactRadii, FlatPunch, IndentationDepths, Loading, Paraboloid, PowerLaw, Profile
 
 WHY = c.reasons("half_space_limits")
 RADIUS = 1e-3  # m
@@ -31,6 +22,7 @@ RADIUS = 1e-3  # m
 POISSONS_RATIO = 0.3
 SLOPE = 0.1
 RADIUS_OF_CURVATURE = 1e-2  # m
+HEIGHT = 1e-6  # m, of the quartic at the contact radius
 DEPTH = 1e-5  # m
 AT_RADIUS, AT_DEPTH = ContactRadii([RADIUS]), IndentationDepths([DEPTH])
 
@@ -43,41 +35,33 @@ def on_half_space(name: str, indenter: Profile, loading: Loading = AT_RADIUS) ->
 
 def on_thick_layer(label: str, ratio: float) -> CaseScene:
     """Return a flat punch of radius a on a layer of thickness a / ratio."""
-    punch, late = (
-        FlatPunch(radius=ratio * c.THICKNESS),
-        ("fem",) if label in ("bonded nu=0.3", "bonded nu=0.45") else (),
-    )
-    place: c.Words = {"layer": label, "a_over_h": ratio}
-    return c.scene(c.scene_name(label, ratio), c.layer(label), punch, AT_DEPTH, nightly=late, **place)
+    late = ("fem",) if label in ("bonded nu=0.3", "bonded nu=0.45") else ()
+    more: c.Words = {"nightly": late, "layer": label, "a_over_h": ratio}
+    punch = FlatPunch(radius=ratio * c.THICKNESS)
+    return c.scene(c.scene_name(label, ratio), c.layer(label), punch, AT_DEPTH, **more)
 
 
 CURVED = (
     on_half_space("cone", Cone(slope=SLOPE)),
     on_half_space("paraboloid", Paraboloid(radius_of_curvature=RADIUS_OF_CURVATURE)),
-    on_half_space("quartic", PowerLaw(exponent=4.0, reference_radius=RADIUS, reference_height=1e-6)),
+    on_half_space("quartic", PowerLaw(exponent=4.0, reference_radius=RADIUS, reference_height=HEIGHT)),
 )
 PUNCH = on_half_space("flat punch", FlatPunch(radius=RADIUS), AT_DEPTH)
 THICK = {label: (on_thick_layer(label, 0.02), on_thick_layer(label, 0.01)) for label in c.LAYERS}
+# By indenter: exponent of the profile, and depth [m] by delta = a int_0^a f'(r)/sqrt(a^2 - r^2) dr, which of the
+# quartic is (8/3) of its height.
+SNEDDON = {
+    Cone: (1.0, np.pi / 2 * RADIUS * SLOPE),
+    Paraboloid: (2.0, RADIUS**2 / RADIUS_OF_CURVATURE),
+    PowerLaw: (4.0, 8 / 3 * HEIGHT),
+}
 
 
-def depth(scene: c.AnyScene) -> float:
-    """delta = a int_0^a f'(r)/sqrt(a^2 - r^2) dr, by closed form."""
-    a = c.radius(scene)
-    match scene.indenter:
-        case Cone(slope=slope):
-            return np.pi / 2 * a * slope
-        case Paraboloid(radius_of_curvature=radius):
-            return a**2 / radius
-        case PowerLaw(exponent=4.0, reference_radius=radius, reference_height=height):
-            # The integral a int_0^a 4 r^3/sqrt(a^2 - r^2) dr is (8/3) a^4.
-            return 8 / 3 * height * (a / radius) ** 4
-    raise InvalidInput(f"indenter = {type(scene.indenter).__name__}: no closed form is written for it")
-
-
-def force(scene: c.AnyScene) -> float:
-    """F = 2 E* int_0^a (delta - g) dx; for g = A x^n this is 2 n/(n+1) E* delta a."""
-    n = {Cone: 1.0, Paraboloid: 2.0, PowerLaw: 4.0}[type(scene.indenter)]
-    return 2 * n / (n + 1) * c.contact_modulus(scene.layer) * depth(scene) * c.radius(scene)
+def sneddon(scene: c.AnyScene) -> dict[str, float]:
+    """Return delta and F = 2 E* int_0^a (delta - g) dx; for g = A x^n this is 2 n/(n+1) E* delta a."""
+    n, depth = SNEDDON[type(scene.indenter)]
+    force = 2 * n / (n + 1) * c.contact_modulus(scene.layer) * depth * RADIUS
+    return {"indentation_depth": depth, "normal_force": force}
 
 
 def punch_force(_: c.AnyScene) -> float:
@@ -96,41 +80,30 @@ def thick_limit(scene: c.AnyScene) -> float:
     return c.half_space_stiffness(scene) * (1 + c.NUMBERS["first_order"][label][0] * confinement(scene))
 
 
-SNEDDON = WHY["sneddon"]
-CLOSED: c.Words = {"tolerance": 1e-10, "fem": 3e-6, "bem": 1e-3}
-CALIBRATED = {"bem": "the disc of cells is calibrated by this very force"}
+STIFFNESS, FORCE = "contact_stiffness", "normal_force"
+NAMES = {"Sneddon's indentation depth": "indentation_depth", "Sneddon's normal force": FORCE}
+CLOSED: c.Words = {"tolerance": 1e-10, "fem": 3e-6}
+CALIBRATED: c.Words = {"identities": {"bem": "the disc of cells is calibrated by this very force"}}
 FIRST: c.Words = {"largest": 1e-3, "parameter": confinement, "formal_order": 2.0}
-CASE = Case(
-    name="half_space_limits",
-    title="Limits of thick layers",
+LATE: c.Words = {"against": "mdr", "nightly": True}
+CASE = paper(
+    __name__,
+    __doc__,
     question="Does every method give Sneddon's closed forms, and do layers approach them at the right rate?",
     equations=("Eq. (14)", "Eq. (15)", "Table 1"),
-    text=text_of(__doc__),
     scenes=(*CURVED, PUNCH, *(scene for pair in THICK.values() for scene in pair)),
     methods=c.EVERY,
     claims=(
-        c.equal("Sneddon's indentation depth", "indentation_depth", depth, CURVED, SNEDDON, **CLOSED),
-        c.equal("Sneddon's normal force", "normal_force", force, CURVED, SNEDDON, **CLOSED),
-        c.equal(
-            "force of the flat punch",
-            "normal_force",
-            punch_force,
-            (PUNCH,),
-            SNEDDON,
-            tolerance=1e-10,
-            fem=3e-6,
-            identities=CALIBRATED,
-        ),
+        *c.equals(NAMES, sneddon, CURVED, WHY["sneddon"], **CLOSED, bem=1e-3),
+        c.equal("force of the flat punch", FORCE, punch_force, (PUNCH,), WHY["sneddon"], **CLOSED, **CALIBRATED),
         *(
-            c.approach(
-                f"first-order term, {label}", "contact_stiffness", pair, thick_limit, WHY["first order term"], **FIRST
-            )
+            c.approach(f"first-order term, {label}", STIFFNESS, pair, thick_limit, WHY["first order term"], **FIRST)
             for label, pair in THICK.items()
         ),
         # At a given radius a base far away costs no force to first and second order of a/h.
-        *r.studies(CURVED[1:2], r.HALF_SPACE, {"indentation_depth": 1.0, "contact_stiffness": 1.0}, against="mdr"),
-        *r.studies(CURVED[1:2], r.HALF_SPACE_FORCE, {"normal_force": 3.0}, against="mdr", nightly=True),
-        *r.studies(CURVED[:1], r.EDGE_CELL, {"normal_force": 1.0}, against="mdr", nightly=True),
+        *r.studies(CURVED[1:2], r.HALF_SPACE, {"indentation_depth": 1.0, STIFFNESS: 1.0}, against="mdr"),
+        *r.studies(CURVED[1:2], r.HALF_SPACE_FORCE, {FORCE: 3.0}, **LATE),
+        *r.studies(CURVED[:1], r.EDGE_CELL, {FORCE: 1.0}, **LATE),
         Ablation(scene="bonded nu=0.3 a/h=0.01"),
         *elastic_costs("half-space, paraboloid"),
     ),

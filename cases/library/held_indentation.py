@@ -1,13 +1,14 @@
-"""A paraboloid is pressed into a relaxing layer at constant speed and held: a prescribed history of the depth.
+"""Pressing and holding on a relaxing layer.
 
-On an incompressible half-space the contact grows and then rests, so that the theory of Lee and Radok gives the force,
-F = (16/3) sqrt(R) int G(t - s) d(delta^(3/2)), and under a force that rises and is held the depth,
-delta^(3/2) = 3/(16 sqrt(R)) int J(t - s) dF with the compliance J that belongs to G. On a bonded layer MDR, in which
-every spring relaxes by itself, is compared with finite elements, which solve a contact problem at every step. Compared
-are force and depth at the end. Every relaxation function is pressed and loaded, by a ramp and by a jump at the first
-instant; under a jump of the depth the force on a dashpot is infinite, and finite elements refuse it. The standard solid
-is that of the impacts of Section 4.3. Where half of the force is taken away again MDR steps in time, and its depths
-converge. The same history on an elastic layer has no error in time: it shows that of the cells alone.
+A paraboloid is pressed into a relaxing layer at constant speed and held: a prescribed history of the depth. On an
+incompressible half-space the contact grows and then rests, so that the theory of Lee and Radok gives the force, F =
+(16/3) sqrt(R) int G(t - s) d(delta^(3/2)), and under a force that rises and is held the depth, delta^(3/2) = 3/(16
+sqrt(R)) int J(t - s) dF with the compliance J that belongs to G. On a bonded layer MDR, in which every spring relaxes
+by itself, is compared with finite elements, which solve a contact problem at every step. Compared are force and depth
+at the end. Every relaxation function is pressed and loaded, by a ramp and by a jump at the first instant; under a jump
+of the depth the force on a dashpot is infinite, and finite elements refuse it. The standard solid is that of the
+impacts of Section 4.3. Where half of the force is taken away again MDR steps in time, and its depths converge. The same
+history on an elastic layer has no error in time: it shows that of the cells alone.
 """
 
 import math
@@ -17,18 +18,12 @@ from dataclasses import replace
 import numpy as np
 from scipy.linalg import expm
 
-from cases.case import Case, CaseScene, text_of
+from cases.case import CaseScene, paper
 from cases.library import _common as c
 from cases.library import _refinements as r
-from cases.library.sphere_impact import (
-    FEM,
-    LONG_TERM_MODULUS,
-    MAXWELL_MODULUS,
-    RADIUS_OF_CURVATURE,
-    RELAXATION_TIME,
-    SOLID,
-)
+from cases.library import sphere_impact as impact
 from contact import DepthHistory, ForceHistory, KelvinVoigt, Layer, Paraboloid, PronySeries
+from contact.records.validation import FloatArray
 
 WHY = c.reasons("held_indentation")
 DEPTH = 5e-5  # m
@@ -36,28 +31,26 @@ FORCE = 2.0  # N
 # Pressing [s] takes as long as the solid takes to relax.
 RAMP = 1e-3
 END = 2 * RAMP
-INSTANTANEOUS = LONG_TERM_MODULUS + MAXWELL_MODULUS
-BRANCH_TIMES = (RELAXATION_TIME / 5, RELAXATION_TIME)  # of the Prony series
-RELAXING = {
-    "": SOLID,
-    ", Kelvin-Voigt": KelvinVoigt(shear_modulus=LONG_TERM_MODULUS, viscosity=LONG_TERM_MODULUS * RELAXATION_TIME),
-    ", Prony series": PronySeries(
-        long_term_shear_modulus=LONG_TERM_MODULUS,
-        shear_moduli=[MAXWELL_MODULUS / 2, MAXWELL_MODULUS / 2],
-        relaxation_times=list(BRANCH_TIMES),
-    ),
-}
 TIME = np.array([0.0, RAMP, END])
+LASTING, INSTANTANEOUS = impact.LONG_TERM_MODULUS, impact.LONG_TERM_MODULUS + impact.MAXWELL_MODULUS
+# Moduli [Pa] and times [s] of the Maxwell branches; a dashpot has none.
+HALVES = [impact.MAXWELL_MODULUS / 2] * 2, [impact.RELAXATION_TIME / 5, impact.RELAXATION_TIME]
+BRANCHES = {
+    "": ([impact.MAXWELL_MODULUS], [impact.RELAXATION_TIME]),
+    ", Kelvin-Voigt": ([], []),
+    ", Prony series": HALVES,
+}
+DASHPOT = KelvinVoigt(shear_modulus=LASTING, viscosity=LASTING * impact.RELAXATION_TIME)
+SERIES = PronySeries(long_term_shear_modulus=LASTING, shear_moduli=HALVES[0], relaxation_times=HALVES[1])
+RELAXING = dict(zip(BRANCHES, (impact.SOLID, DASHPOT, SERIES), strict=True))
 BEGINNINGS = {"": np.array([0.0, 1.0, 1.0]), " at once": np.ones(3)}
 BODIES = {"half-space": np.inf, "bonded layer": c.THICKNESS}
 
 
 def held(name: str, body: str, loading: DepthHistory | ForceHistory, *effects: object) -> CaseScene:
     """Return the history on a body."""
-    soft = any(isinstance(effect, KelvinVoigt) for effect in effects)
-    modulus = LONG_TERM_MODULUS if soft else INSTANTANEOUS
-    layer = Layer.incompressible(thickness=BODIES[body], shear_modulus=modulus)
-    tip = Paraboloid(radius_of_curvature=RADIUS_OF_CURVATURE)
+    layer = Layer.incompressible(thickness=BODIES[body], shear_modulus=LASTING if DASHPOT in effects else INSTANTANEOUS)
+    tip = Paraboloid(radius_of_curvature=impact.RADIUS_OF_CURVATURE)
     return c.scene(name, layer, tip, loading, effects=effects, layer=name)
 
 
@@ -69,14 +62,11 @@ def histories(verb: str, body: str) -> tuple[CaseScene, ...]:
     """
     scenes, by_depth = [], verb == "relaxing"
     for begins, share in BEGINNINGS.items():
-        loading = (
-            DepthHistory(time=TIME, depth=DEPTH * share) if by_depth else ForceHistory(time=TIME, force=FORCE * share)
-        )
+        depth, force = DepthHistory(time=TIME, depth=DEPTH * share), ForceHistory(time=TIME, force=FORCE * share)
         for relaxes, effect in RELAXING.items():
-            scene = held(f"{verb} {body}{begins}{relaxes}", body, loading, effect)
-            dashpot, usual = isinstance(effect, KelvinVoigt), by_depth and not begins and not relaxes
-            infinite = dashpot and by_depth and begins
-            nightly = () if dashpot or usual else ("fem",)
+            scene = held(f"{verb} {body}{begins}{relaxes}", body, depth if by_depth else force, effect)
+            usual, infinite = by_depth and not begins + relaxes, effect is DASHPOT and by_depth and begins
+            nightly = () if effect is DASHPOT or usual else ("fem",)
             scenes.append(replace(scene, methods=(c.MDR,) if infinite else (), nightly=nightly))
     return tuple(scenes)
 
@@ -86,24 +76,21 @@ CREEPING_HALF_SPACES, CREEPING_LAYERS = (histories("creeping", body) for body in
 ELASTIC = held("elastic bonded layer", "bonded layer", DepthHistory(time=TIME, depth=DEPTH * BEGINNINGS[""]))
 HALVED = ForceHistory(time=TIME, force=np.array([0.0, FORCE, FORCE / 2]))
 EASED = tuple(
-    replace(held(f"eased {body}", body, HALVED, SOLID), methods=(c.MDR,), nightly=("mdr",)) for body in BODIES
+    replace(held(f"eased {body}", body, HALVED, impact.SOLID), methods=(c.MDR,), nightly=("mdr",)) for body in BODIES
 )
 
 
-def moduli_and_times(scene: c.AnyScene) -> tuple[list[float], list[float]]:
-    """Return the moduli [Pa] and times [s] of the Maxwell branches of a scene; none if it has a dashpot."""
-    (effect,) = scene.effects
-    if isinstance(effect, KelvinVoigt):
-        return [], []
-    if isinstance(effect, PronySeries):
-        return [MAXWELL_MODULUS / 2] * 2, list(BRANCH_TIMES)
-    return [MAXWELL_MODULUS], [RELAXATION_TIME]
+def branches(scene: c.AnyScene) -> tuple[FloatArray, FloatArray]:
+    """Return moduli and times of the branches of a scene."""
+    (name,) = (name for name, effect in RELAXING.items() if effect == scene.effects[0])
+    moduli, times = BRANCHES[name]
+    return np.array(moduli), np.array(times)
 
 
 def relaxation(scene: c.AnyScene, time: float) -> float:
     """G(t) = G_inf + sum_j G_j exp(-t/tau_j) [Pa]; the dashpot adds nothing while the depth rests."""
-    branches = zip(*moduli_and_times(scene), strict=True)
-    return float(LONG_TERM_MODULUS + sum(G * np.exp(-time / tau) for G, tau in branches))
+    moduli, times = branches(scene)
+    return float(LASTING + moduli @ np.exp(-time / times))
 
 
 def compliance(scene: c.AnyScene, time: float) -> float:
@@ -111,9 +98,9 @@ def compliance(scene: c.AnyScene, time: float) -> float:
 
     Under unit stress G_0 J' = sum_j G_j q_j/tau_j, and the branches stretch by q_j' = J' - q_j/tau_j.
     """
-    moduli, times = (np.array(values) for values in moduli_and_times(scene))
+    moduli, times = branches(scene)
     if not times.size:
-        return float(-np.expm1(-time / RELAXATION_TIME) / LONG_TERM_MODULUS)
+        return float(-np.expm1(-time / impact.RELAXATION_TIME) / LASTING)
     rates = np.zeros((times.size + 1, times.size + 1))
     rates[:, 1:] = moduli / times / INSTANTANEOUS
     rates[1:, 1:] -= np.diag(1 / times)
@@ -136,39 +123,38 @@ def hereditary(kernel: Callable[[c.AnyScene, float], float], scene: c.AnyScene, 
 
 def lee_and_radok(scene: c.AnyScene) -> float:
     """F [N] at the end."""
-    return float(16 / 3 * math.sqrt(RADIUS_OF_CURVATURE) * hereditary(relaxation, scene, 1.5) * DEPTH**1.5)
+    return float(16 / 3 * math.sqrt(impact.RADIUS_OF_CURVATURE) * hereditary(relaxation, scene, 1.5) * DEPTH**1.5)
 
 
 def creep(scene: c.AnyScene) -> float:
     """delta [m] at the end."""
     crept = FORCE * hereditary(compliance, scene, 1.0)
-    return float((3 / 16 * crept / math.sqrt(RADIUS_OF_CURVATURE)) ** (2 / 3))
+    return float((3 / 16 * crept / math.sqrt(impact.RADIUS_OF_CURVATURE)) ** (2 / 3))
 
 
-DASHPOTS = tuple(s for s in RELAXING_LAYERS if isinstance(s.scene.effects[0], KelvinVoigt))
-BRANCHES = (*(s for s in RELAXING_LAYERS if s not in DASHPOTS), ELASTIC)
+DASHPOTS = tuple(s for s in RELAXING_LAYERS if DASHPOT in s.scene.effects)
+OTHERS = (*(s for s in RELAXING_LAYERS if s not in DASHPOTS), ELASTIC)
 FINITE = tuple(s for s in DASHPOTS if not s.methods)
 CLOSED: c.Words = {"tolerance": 1e-8, "fem": 2e-3}
-BY_FORCE, BY_DEPTH = ("indentation_depth",), ("normal_force",)
+BY_FORCE, BY_DEPTH, LAYERS = ("indentation_depth",), ("normal_force",), CREEPING_LAYERS
 THREE_TIMES = "three times what finite elements state for 120 cells and 400 steps, 6.5e-4"
 ONE_PERCENT = "a requirement on a dashpot, whose force jumps with every cell that the contact reaches: 1 %"
-CASE = Case(
-    name="held_indentation",
-    title="Pressing and holding on a relaxing layer",
+LATE: c.Words = {"against": r.FINEST_MDR, "nightly": True}
+LEE_AND_RADOK = WHY["lee and radok"]
+CASE = paper(
+    __name__,
+    __doc__,
     question="Do MDR and finite elements follow a prescribed history, and with which orders?",
     equations=("Eq. (51)", "Eq. (52)"),
-    text=text_of(__doc__),
-    scenes=(*RELAXING_HALF_SPACES, *RELAXING_LAYERS, ELASTIC, *CREEPING_HALF_SPACES, *CREEPING_LAYERS, *EASED),
-    methods=(c.MDR, FEM),
+    scenes=(*RELAXING_HALF_SPACES, *RELAXING_LAYERS, ELASTIC, *CREEPING_HALF_SPACES, *LAYERS, *EASED),
+    methods=(c.MDR, impact.FEM),
     claims=(
-        c.equal(
-            "force on the half-space", *BY_DEPTH, lee_and_radok, RELAXING_HALF_SPACES, WHY["lee and radok"], **CLOSED
-        ),
+        c.equal("force on the half-space", *BY_DEPTH, lee_and_radok, RELAXING_HALF_SPACES, LEE_AND_RADOK, **CLOSED),
         c.equal("depth on the half-space", *BY_FORCE, creep, CREEPING_HALF_SPACES, WHY["creep"], **CLOSED),
-        *c.agreements(CREEPING_LAYERS, {"fem": 2e-3}, BY_FORCE, derived_from=THREE_TIMES, suffix=", creep"),
-        *c.agreements(BRANCHES, {"fem": 2e-3}, BY_DEPTH, derived_from=THREE_TIMES),
+        *c.agreements(LAYERS, {"fem": 2e-3}, BY_FORCE, derived_from=THREE_TIMES, suffix=", creep"),
+        *c.agreements(OTHERS, {"fem": 2e-3}, BY_DEPTH, derived_from=THREE_TIMES),
         *c.agreements(FINITE, {"fem": 1e-2}, BY_DEPTH, derived_from=ONE_PERCENT, suffix=", dashpot"),
-        *r.studies(EASED, r.RECEDING_ACCURACY, BY_FORCE, against=r.FINEST_MDR, nightly=True),
-        *r.studies((ELASTIC,), r.CELLS_AND_STEPS, {"normal_force": 2.0}, against=r.FINEST_MDR, nightly=True),
+        *r.studies(EASED, r.RECEDING_ACCURACY, BY_FORCE, **LATE),
+        *r.studies((ELASTIC,), r.CELLS_AND_STEPS, {"normal_force": 2.0}, **LATE),
     ),
 )

@@ -1,17 +1,18 @@
-"""The half-space inside: closed forms on the axis under a paraboloid and under a flat punch, from the surface down.
+"""Inside the half-space.
 
-Below a paraboloid the stresses on the axis are Huber's: sigma_zz = -p0/(1 + Z^2) and sigma_rr = sigma_tt = -p0 (1 + nu)
-(1 - Z arctan(1/Z)) + p0/(2 (1 + Z^2)) at depth Z a. Half their difference is the largest shear, 0.310021 p0 at
-Z = 0.480864 for nu = 0.3: where a ball bearing begins to yield. Below a flat punch sigma_zz is Sneddon's. A ladder of
-depths goes down to 1e-8 of the contact radius, where the pressure itself must come back. Laws of every elastic body
-are checked on cylinders about the axis: the force passes every depth, and volume changes with the pressure.
+The half-space inside: closed forms on the axis under a paraboloid and under a flat punch, from the surface down. Below
+a paraboloid the stresses on the axis are Huber's: sigma_zz = -p0/(1 + Z^2) and sigma_rr = sigma_tt = -p0 (1 + nu) (1 -
+Z arctan(1/Z)) + p0/(2 (1 + Z^2)) at depth Z a. Half their difference is the largest shear, 0.310021 p0 at Z = 0.480864
+for nu = 0.3: where a ball bearing begins to yield. Below a flat punch sigma_zz is Sneddon's. A ladder of depths goes
+down to 1e-8 of the contact radius, where the pressure itself must come back. Laws of every elastic body are checked on
+cylinders about the axis: the force passes every depth, and volume changes with the pressure.
 """
 
 import math
 
 import numpy as np
 
-from cases.case import Case, CaseScene, Sampling, text_of
+from cases.case import CaseScene, Sampling, paper
 from cases.declare.methods import MethodUse
 from cases.library import _common as c
 from contact import ContactRadii, FlatPunch, IndentationDepths, Loading, Paraboloid, Profile
@@ -27,91 +28,63 @@ ON_AXIS = Sampling(inside=tuple((0.0, float(z)) for z in DEPTHS))
 PARABOLOID, PUNCH = Paraboloid(radius_of_curvature=RADIUS_OF_CURVATURE), FlatPunch(radius=RADIUS)
 
 
-def pressed(kind: str, indenter: Profile, loading: Loading, *quick: float) -> tuple[CaseScene, ...]:
-    """Return a contact at every Poisson's ratio; finite elements solve those of ``quick`` in the suite ci."""
-    return tuple(
-        c.scene(
-            f"{kind} nu={nu:g}",
-            c.half_space(nu),
-            indenter,
-            loading,
-            sampling=ON_AXIS,
-            nightly=() if nu in quick else ("fem",),
-            poissons_ratio=nu,
-        )
-        for nu in (0.3, 0.5)
-    )
+def pressed(kind: str, nu: float, indenter: Profile, loading: Loading, *nightly: str) -> CaseScene:
+    """Return a contact on the half-space."""
+    more: c.Words = {"sampling": ON_AXIS, "nightly": nightly, "poissons_ratio": nu}
+    return c.scene(f"{kind} nu={nu:g}", c.half_space(nu), indenter, loading, **more)
 
 
-HERTZ = pressed("paraboloid", PARABOLOID, ContactRadii([RADIUS]), 0.3)
-PUNCHES = pressed("punch", PUNCH, IndentationDepths([DEPTH]))
+FIRST = pressed("paraboloid", 0.3, PARABOLOID, ContactRadii([RADIUS]))
+HERTZ = (FIRST, pressed("paraboloid", 0.5, PARABOLOID, ContactRadii([RADIUS]), "fem"))
+PUNCHES = tuple(pressed("punch", nu, PUNCH, IndentationDepths([DEPTH]), "fem") for nu in (0.3, 0.5))
+AXIAL, RADIAL, MISES = "axial_stress_inside", "radial_stress_inside", "von_mises_inside"
 
 
-def largest_pressure(scene: c.AnyScene) -> float:
-    """p0 = 2 E* a/(pi R)."""
-    return 2 * c.contact_modulus(scene.layer) * RADIUS / (math.pi * RADIUS_OF_CURVATURE)
+def huber(scene: c.AnyScene) -> dict[str, FloatArray]:
+    """Return the stresses under a paraboloid (Huber 1904), p0 = 2 E* a/(pi R).
 
-
-def axial_under_paraboloid(scene: c.AnyScene) -> FloatArray:
-    """Huber 1904."""
-    return -largest_pressure(scene) / (1 + DEPTHS**2)
-
-
-def radial_under_paraboloid(scene: c.AnyScene) -> FloatArray:
-    """Huber 1904."""
+    The largest difference of two, twice the shear, is 2 times 0.310021 p0 for nu = 0.3.
+    """
+    p0 = 2 * c.contact_modulus(scene.layer) * RADIUS / (math.pi * RADIUS_OF_CURVATURE)
     nu, Z = scene.layer.poissons_ratio, DEPTHS
-    share = (1 + nu) * (1 - Z * np.arctan2(1.0, Z)) - 0.5 / (1 + Z**2)
-    return np.asarray(-largest_pressure(scene) * share)
+    axial = -p0 / (1 + Z**2)
+    radial = -p0 * ((1 + nu) * (1 - Z * np.arctan2(1.0, Z)) - 0.5 / (1 + Z**2))
+    differences = np.append(np.abs(axial - radial)[:-1], 2 * 0.310021 * p0)
+    return {AXIAL: axial, RADIAL: radial, MISES: differences}
 
 
-def axial_under_punch(scene: c.AnyScene) -> FloatArray:
+def sneddon(scene: c.AnyScene) -> FloatArray:
     """Sneddon 1946: -(F/(2 pi a^2)) (1 + 3 Z^2)/(1 + Z^2)^2 with F = 2 E* a delta."""
     mean = c.contact_modulus(scene.layer) * DEPTH / (math.pi * RADIUS)
     return np.asarray(-mean * (1 + 3 * DEPTHS**2) / (1 + DEPTHS**2) ** 2)
 
 
-def largest_shear(scene: c.AnyScene) -> FloatArray:
-    """Twice 0.310021 p0 where it is largest, for nu = 0.3; the other depths follow from the closed forms."""
-    differences = np.abs(axial_under_paraboloid(scene) - radial_under_paraboloid(scene))
-    differences[-1] = 2 * 0.310021 * largest_pressure(scene)
-    return differences
-
-
+# By name: the residual and its tolerance for a mesh.
+LAWS = {
+    "the force passes every depth": ("force_balance_inside", 1e-3),
+    "volume changes with the pressure": ("dilatation_inside", 1e-4),
+    "the gradient adds up to the pressure": ("gradient_law_inside", 1e-3),
+}
 CLOSED: c.Words = {"tolerance": 1e-11, "fem": 2e-3}
-BY_BOTH: c.Words = {"methods": ("mdr", "fem"), "tolerance": 1e-11}
-AXIAL, RADIAL = "axial_stress_inside", "radial_stress_inside"
-CASE = Case(
-    name="inside_half_space",
-    title="Inside the half-space",
+BY_MDR: c.Words = {"tolerance": 1e-11, "methods": ("mdr",)}
+BY_BOTH = BY_MDR | {"methods": ("mdr", "fem")}
+SHEAR: c.Words = {"tolerance": 2e-6, "fem": 2e-3}
+CASE = paper(
+    __name__,
+    __doc__,
     question="Do the stresses inside agree with closed forms from the surface down?",
     equations=("Huber 1904", "Sneddon 1946"),
-    text=text_of(__doc__),
     scenes=(*HERTZ, *PUNCHES),
     methods=(c.MDR, MethodUse(label="fem", settings={"growth": 0.25})),
     claims=(
-        c.equal("axial stress under a paraboloid", AXIAL, axial_under_paraboloid, HERTZ, WHY["Huber"], **CLOSED),
+        c.equal("axial stress under a paraboloid", AXIAL, huber, HERTZ, WHY["Huber"], **CLOSED),
         # Far below, where the radial stress has lost four digits, a mesh has none left of it.
-        c.equal(
-            "radial stress under a paraboloid",
-            RADIAL,
-            radial_under_paraboloid,
-            HERTZ,
-            WHY["Huber"],
-            tolerance=1e-11,
-            methods=("mdr",),
+        c.equal("radial stress under a paraboloid", RADIAL, huber, HERTZ, WHY["Huber"], **BY_MDR),
+        c.equal("the largest shear", MISES, huber, HERTZ[:1], WHY["largest shear"], **SHEAR),
+        c.equal("axial stress under a punch", AXIAL, sneddon, PUNCHES, WHY["Sneddon"], **CLOSED),
+        *(
+            c.zero(name, quantity, HERTZ, WHY["laws"], **BY_BOTH, fem=of_mesh)
+            for name, (quantity, of_mesh) in LAWS.items()
         ),
-        c.equal(
-            "the largest shear",
-            "von_mises_inside",
-            largest_shear,
-            HERTZ[:1],
-            WHY["largest shear"],
-            tolerance=2e-6,
-            fem=2e-3,
-        ),
-        c.equal("axial stress under a punch", AXIAL, axial_under_punch, PUNCHES, WHY["Sneddon"], **CLOSED),
-        c.zero("the force passes every depth", "force_balance_inside", HERTZ, WHY["laws"], fem=1e-3, **BY_BOTH),
-        c.zero("volume changes with the pressure", "dilatation_inside", HERTZ, WHY["laws"], fem=1e-4, **BY_BOTH),
-        c.zero("the gradient adds up to the pressure", "gradient_law_inside", HERTZ, WHY["laws"], fem=1e-3, **BY_BOTH),
     ),
 )

@@ -1,24 +1,24 @@
-"""The layer inside: displacement, stress, hydrostatic pressure and its gradient by two methods without common code.
+"""Inside the layer.
 
-Under a paraboloid and a truncated cone, on bonded layers with nu = 0.3, 0.45 and 0.5 and on an unbonded one, MDR makes
-the fields inside from the density of its pressure, closed forms of the half-space and an integral over wavenumbers;
-finite elements recover them from their own solution. At twelve points away from edges they agree: displacements in
-the fifth digit of the depth, stresses in the third of the mean pressure, and the hydrostatic pressure at nu = 1/2 as
-well as at 0.3, where it no longer follows from the strain. Each answer also obeys the laws of elastic bodies: the force
-passes every depth, volume changes with the pressure, the gradient adds up to the pressure, the base holds, and just
-below the surface the pressure of the contact comes back. With finer cells of degree k displacements converge with
-order k + 1, stresses and pressure with k, the gradient with k - 1. Ladders lead to nu = 1/2 and to contacts a hundred
-thicknesses wide. In a thin incompressible layer the pressure reaches from top to base as in a lubricating film:
-3 G a^4/(32 R h^3) in the middle.
+The layer inside: displacement, stress, hydrostatic pressure and its gradient by two methods without common code. Under
+a paraboloid and a truncated cone, on bonded layers with nu = 0.3, 0.45 and 0.5 and on an unbonded one, MDR makes the
+fields inside from the density of its pressure, closed forms of the half-space and an integral over wavenumbers; finite
+elements recover them from their own solution. At twelve points away from edges they agree: displacements in the fifth
+digit of the depth, stresses in the third of the mean pressure, and the hydrostatic pressure at nu = 1/2 as well as at
+0.3, where it no longer follows from the strain. Each answer also obeys the laws of elastic bodies: the force passes
+every depth, volume changes with the pressure, the gradient adds up to the pressure, the base holds, and just below the
+surface the pressure of the contact comes back. With finer cells of degree k displacements converge with order k + 1,
+stresses and pressure with k, the gradient with k - 1. Ladders lead to nu = 1/2 and to contacts a hundred thicknesses
+wide. In a thin incompressible layer the pressure reaches from top to base as in a lubricating film: 3 G a^4/(32 R h^3)
+in the middle.
 """
 
 import math
-from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
 
-from cases.case import Case, CaseScene, Sampling, text_of
+from cases.case import CaseScene, Sampling, paper
 from cases.claims import Norm
 from cases.cost import inside_costs
 from cases.declare.methods import MethodUse
@@ -29,50 +29,45 @@ from contact import ContactRadii, Layer, Paraboloid, Profile, TruncatedCone
 WHY = c.reasons("inside_layer")
 RADIUS_OF_CURVATURE = 1e-2  # m
 SLOPE = 0.1
-RATIOS = (0.5, 1.0, 5.0)
-KINDS = ("paraboloid", "truncated cone")
+RATIOS, WIDE_RATIOS = (0.5, 1.0, 5.0), (10.0, 30.0, 100.0)
+PARABOLOID, CONE = "paraboloid", "truncated cone"
 # r over the contact radius and z over the smaller of contact radius and thickness; the last is in the middle.
-POINTS = (*((r, z) for r in (0.0, 0.3, 0.8, 1.25) for z in (0.3, 0.6, 1.0)), (0.0, 0.5))
+MIDDLE = (0.0, 0.5)
+POINTS = (*((r, z) for r in (0.0, 0.3, 0.8, 1.25) for z in (0.3, 0.6, 1.0)), MIDDLE)
 BELOW_CONTACT = tuple((r, z) for r, z in POINTS if r < 1.0)
 # Away from edges and faces; the cost of the last is measured.
 GRID = (*((r, z) for r in np.linspace(0.05, 1.45, 8).tolist() for z in np.linspace(0.15, 0.9, 8).tolist()), (0.5, 0.5))
 # Finite elements solve these in the suite ci, all in the nightly one.
 QUICK = ("paraboloid, bonded nu=0.5 a/h=1",)
 # The laws of a body take many points where a layer is thin: one scene of each profile is enough for the suite ci.
-SLOW = tuple(f"{kind}, {label} a/h=5" for kind in KINDS for label in c.LAYERS if label != "bonded nu=0.5")
+SLOW = tuple(f"{kind}, {label} a/h=5" for kind in (PARABOLOID, CONE) for label in c.LAYERS if label != "bonded nu=0.5")
 MESH = MethodUse(label="fem", settings={"growth": 0.18, "truncation": 1e-10})
-WIDE_RATIOS = (10.0, 30.0, 100.0)
 
 
 def pressed(kind: str, label: str, body: Layer, ratio: float) -> CaseScene:
     """Return a profile pressed to a contact radius of ``ratio`` h."""
     a, name = ratio * c.THICKNESS, f"{kind}, {c.scene_name(label, ratio)}"
-    profile: Profile = Paraboloid(radius_of_curvature=RADIUS_OF_CURVATURE)
-    if kind == "truncated cone":
-        profile = TruncatedCone(flat_radius=a / 2, slope=SLOPE)
+    cone = TruncatedCone(flat_radius=a / 2, slope=SLOPE)
+    profile: Profile = cone if kind == CONE else Paraboloid(radius_of_curvature=RADIUS_OF_CURVATURE)
     nightly = () if name in QUICK else ("mdr", "fem") if name in SLOW else ("fem",)
-    place: c.Words = {"profile": kind, "layer": label, "a_over_h": ratio}
-    kept = Sampling(inside=POINTS)
-    return c.scene(name, body, profile, ContactRadii([a]), steep=True, sampling=kept, nightly=nightly, **place)
+    more: c.Words = {"steep": True, "sampling": Sampling(inside=POINTS), "nightly": nightly}
+    return c.scene(name, body, profile, ContactRadii([a]), **more, profile=kind, layer=label, a_over_h=ratio)
 
 
-def on_ladder(nu: float, ratio: float) -> CaseScene:
-    """Return a paraboloid at a hard parameter: nu towards 1/2, or a contact of many thicknesses."""
-    one = pressed("paraboloid", f"bonded nu={nu:g}", c.layer_of(nu), ratio)
-    late = ("mdr", "fem") if ratio > WIDE_RATIOS[1] else ("fem",)
-    return replace(one, sampling=Sampling(inside=BELOW_CONTACT, laws=False), methods=(c.MDR, MESH), nightly=late)
+def below(nu: float, ratio: float, *nightly: str, points: c.Points = BELOW_CONTACT) -> CaseScene:
+    """Return a paraboloid on a bonded layer, without the laws; by MDR alone unless something is nightly."""
+    one = pressed(PARABOLOID, f"bonded nu={nu:g}", c.layer_of(nu), ratio)
+    methods = (c.MDR, MESH) if nightly else (c.MDR,)
+    return replace(one, sampling=Sampling(inside=points, laws=False), methods=methods, nightly=nightly)
 
 
 COMPARED = tuple(
-    pressed(kind, label, c.layer(label), ratio) for kind in KINDS for label in c.LAYERS for ratio in RATIOS
+    pressed(kind, label, c.layer(label), ratio) for kind in (PARABOLOID, CONE) for label in c.LAYERS for ratio in RATIOS
 )
-THIN = tuple(
-    replace(on_ladder(0.5, ratio), sampling=Sampling(inside=((0.0, 0.5),), laws=False), methods=(c.MDR,), nightly=())
-    for ratio in (25.0, 50.0)
-)
+THIN = tuple(below(0.5, ratio, points=(MIDDLE,)) for ratio in (25.0, 50.0))
 LADDER = (
-    *(on_ladder(0.5 - gap, 1.0) for gap in (1e-2, 1e-4, 1e-6)),
-    *(on_ladder(nu, ratio) for nu in (0.3, 0.5) for ratio in WIDE_RATIOS),
+    *(below(0.5 - gap, 1.0, "fem") for gap in (1e-2, 1e-4, 1e-6)),
+    *(below(nu, q, *(("mdr", "fem") if q > 30.0 else ("fem",))) for nu in (0.3, 0.5) for q in WIDE_RATIOS),
 )
 REFINED = tuple(
     replace(one, name=f"{one.name}, refined", sampling=Sampling(inside=GRID, laws=False), nightly=("fem",))
@@ -80,14 +75,9 @@ REFINED = tuple(
     if one.name in ("paraboloid, bonded nu=0.3 a/h=1", "paraboloid, bonded nu=0.5 a/h=1")
 )
 # Two neighbouring meshes count by their root mean square: where points lie in their triangles scatters errors.
-MESHES = r.neighbours(
-    "growth",
-    ([math.expm1(0.35 * r.ROOT_TWO**-level * near) for near in (0.97, 1.03)] for level in range(4)),
-    order=3,
-    edge_cell=1e-9,
-    truncation=1e-12,
-)
-CELLS = r.Refinement("P3 cells inside, two meshes a refinement", "fem", MESHES, WHY["order"], r.ROOT_TWO)
+GROWTHS = ([math.expm1(0.35 * r.ROOT_TWO**-level * near) for near in (0.97, 1.03)] for level in range(4))
+MESHES = r.neighbours("growth", GROWTHS, order=3, edge_cell=1e-9, truncation=1e-12)
+CELLS = r.refinement("P3 cells inside, two meshes a refinement", "fem", MESHES, WHY["order"], r.ROOT_TWO)
 ORDERS = {"displacement_inside": 4.0, "stress_inside": 3.0, "pressure_inside": 3.0, "gradient_inside": 2.0}
 
 
@@ -97,13 +87,12 @@ def film_pressure(scene: c.AnyScene) -> float:
     return -float(force / (32 * RADIUS_OF_CURVATURE * scene.layer.thickness**3))
 
 
-# The norm and the tolerance in which two methods agree, and the laws with their residual and tolerance of a mesh.
-FIELDS: Mapping[str, tuple[Norm, float]] = {
-    "displacement_inside": ("largest", 1e-5),
-    "stress_inside": ("largest", 1e-3),
-    "pressure_inside": ("root mean square", 1e-3),
-    "gradient_inside": ("root mean square", 2e-2),
+# By norm: the tolerances within which two methods agree.
+FIELDS: dict[Norm, dict[str, float]] = {
+    "largest": {"displacement_inside": 1e-5, "stress_inside": 1e-3},
+    "root mean square": {"pressure_inside": 1e-3, "gradient_inside": 2e-2},
 }
+# By name of the law: its residual and the tolerance of a mesh.
 LAWS = {
     "the force passes every depth": ("force_balance_inside", 1e-4),
     "volume changes with the pressure": ("dilatation_inside", 1e-5),
@@ -111,18 +100,19 @@ LAWS = {
     "the base holds": ("base_inside", 1e-4),
     "the pressure comes back below the surface": ("surface_inside", 1e-3),
 }
-CASE = Case(
-    name="inside_layer",
-    title="Inside the layer",
+FILM: c.Words = {"largest": 0.15, "methods": ("mdr",)}
+CASE = paper(
+    __name__,
+    __doc__,
     question="Do two methods agree on displacement, stress and pressure inside, and do both obey the laws?",
     equations=("Eq. (9)", "Eq. (14)"),
-    text=text_of(__doc__),
     scenes=(*COMPARED, *LADDER, *REFINED, *THIN),
     methods=(c.MDR, MESH),
     claims=(
         *(
-            replace(claim, norm=FIELDS[claim.quantity][0], tolerance=FIELDS[claim.quantity][1])
-            for claim in c.agreements((*COMPARED, *LADDER), {"fem": 1.0}, FIELDS, why=WHY["two methods"])
+            claim
+            for norm, within in FIELDS.items()
+            for claim in c.agreements((*COMPARED, *LADDER), {"fem": within}, within, why=WHY["two methods"], norm=norm)
         ),
         *(
             c.zero(name, quantity, COMPARED, WHY["laws"], tolerance=2e-10, fem=of_mesh)
@@ -130,13 +120,7 @@ CASE = Case(
         ),
         *r.studies(REFINED, CELLS, ORDERS, against="mdr", nightly=True),
         c.approach(
-            "thin limit of the pressure inside",
-            "axial_stress_inside",
-            THIN,
-            film_pressure,
-            WHY["film"],
-            largest=0.15,
-            methods=("mdr",),
+            "thin limit of the pressure inside", "axial_stress_inside", THIN, film_pressure, WHY["film"], **FILM
         ),
         *inside_costs(REFINED[0].name),
     ),

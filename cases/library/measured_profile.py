@@ -1,14 +1,15 @@
-"""A measured profile: radii and heights in a table, joined by each method in its own way.
+"""Indentation by a measured profile.
 
-Profiles of real indenters come as tables. Here nine points of a paraboloid are given, joined by shape-preserving cubics
-(PCHIP), so the profile is not analytic at any of them. Finite elements compute the cubics themselves from the points;
-MDR takes the slopes of the profile through the transform of Eq. (15). A mistake in either, or in the cubics that MDR,
-integral equation and boundary elements share, parts the methods.
+A measured profile: radii and heights in a table, joined by each method in its own way. Profiles of real indenters come
+as tables. Here nine points of a paraboloid are given, joined by shape-preserving cubics (PCHIP), so the profile is not
+analytic at any of them. Finite elements compute the cubics themselves from the points; MDR takes the slopes of the
+profile through the transform of Eq. (15). A mistake in either, or in the cubics that MDR, integral equation and
+boundary elements share, parts the methods.
 """
 
 import numpy as np
 
-from cases.case import Case, text_of
+from cases.case import paper
 from cases.library import _common as c
 from contact import ContactRadii, Tabulated
 
@@ -20,12 +21,11 @@ SCENES = tuple(
     c.scene(f"nine points, {label}", c.layer(label), PROFILE, RADII, layer=label)
     for label in ("half-space", "bonded nu=0.5")
 )
-CASE = Case(
-    name="measured_profile",
-    title="Indentation by a measured profile",
+CASE = paper(
+    __name__,
+    __doc__,
     question="Do methods that join the points of a measured profile themselves agree?",
     equations=("Eq. (4)", "Eq. (8)", "Eq. (15)"),
-    text=text_of(__doc__),
     scenes=SCENES,
     methods=(c.MDR, c.QUICK_FEM, c.EQUATION),
     claims=(

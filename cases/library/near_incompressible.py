@@ -1,9 +1,10 @@
-"""Poisson's ratio up to exactly one half: no locking, and the right limit.
+"""Nearly incompressible layers.
 
-Bonded layers of soft matter are nearly incompressible, and there displacement elements lock: their stiffness grows
-without bound as nu -> 1/2. A flat punch at a/h = 1 walks from nu = 0.3 to exactly 0.5. Mixed elements must stay as
-accurate as MDR says they are, and on one and the same mesh as accurate at nu = 1/2 as at nu = 0.3. The stiffness must
-approach that of the incompressible layer with the first order of 1/2 - nu.
+Poisson's ratio up to exactly one half: no locking, and the right limit. Bonded layers of soft matter are nearly
+incompressible, and there displacement elements lock: their stiffness grows without bound as nu -> 1/2. A flat punch at
+a/h = 1 walks from nu = 0.3 to exactly 0.5. Mixed elements must stay as accurate as MDR says they are, and on one and
+the same mesh as accurate at nu = 1/2 as at nu = 0.3. The stiffness must approach that of the incompressible layer with
+the first order of 1/2 - nu.
 """
 
 from collections.abc import Iterator
@@ -11,7 +12,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from cases.answers import Answer
-from cases.case import Case, CaseScene, Task, text_of
+from cases.case import Case, CaseScene, Task, paper
 from cases.claims import PerScene
 from cases.cost import elastic_costs
 from cases.declare.methods import MethodUse
@@ -24,9 +25,8 @@ from contact import FlatPunch, IndentationDepths
 WHY = c.reasons("near_incompressible")
 DEPTH = 1e-5  # m
 RATIOS_OF_POISSON = (0.3, 0.4, 0.45, 0.49, 0.499, 0.4999, 0.49999, 0.4999999, 0.5)
-ONE_MESH = MethodUse(
-    label="fem one mesh", method="fem", settings={"order": 4, "growth": 0.5, "edge_cell": 1e-7, "outer_distance": 10.0}
-)
+COARSE = {"order": 4, "growth": 0.5, "edge_cell": 1e-7, "outer_distance": 10.0}
+ONE_MESH = MethodUse(label="fem one mesh", method="fem", settings=COARSE)
 
 
 def punch(nu: float) -> CaseScene:
@@ -78,43 +78,31 @@ class EvenAccuracy(PerScene):
         return judge_residual(growth, tolerance=self.tolerance)
 
 
-STIFFNESS = "contact_stiffness"
-KBAR = c.known("stiffness", SCENES, 0, c.half_space_stiffness)
+STIFFNESS, EVEN = "contact_stiffness", "as accurate at nu = 1/2 as at nu = 0.3, on one mesh"
 TEN_DIGITS: c.Words = {"tolerance": 1e-10, "fem": 3e-6, "fem one mesh": 1e-5, "bem": 1e-5, "mdr_table": 1e-4}
+ON_ONE_MESH: c.Words = {"methods": (ONE_MESH.label,), "tolerance": 1.0}
 ALMOST, NEAR, EQUATION = (punch(0.4999999),), (punch(0.499), punch(0.4999)), "integral_equation"
-CASE = Case(
-    name="near_incompressible",
-    title="Nearly incompressible layers",
+FIRST: c.Words = {"largest": 1e-2, "parameter": compressibility, "methods": ("mdr", "fem", EQUATION)}
+LATE: c.Words = {"against": EQUATION, "nightly": True}
+CASE = paper(
+    __name__,
+    __doc__,
     question="Do finite elements lock, and does MDR go over into the incompressible layer smoothly?",
     equations=("Eq. (31)",),
-    text=text_of(__doc__),
     scenes=SCENES,
     methods=(c.MDR, c.FEM, ONE_MESH, c.BEM, c.EQUATION, c.TABLE),
     claims=(
         *c.agreements(SCENES, {"fem": 3e-6, EQUATION: 1e-9, "mdr_table": 3e-4}, (STIFFNESS,)),
         *c.agreements(SCENES, {"bem": 1e-5}, (STIFFNESS,), why=c.SHARED["bem, flat punches"]),
-        c.equal("stiffness to ten digits", STIFFNESS, KBAR, (), WHY["twelve digits"], **TEN_DIGITS),
-        EvenAccuracy(
-            name="as accurate at nu = 1/2 as at nu = 0.3, on one mesh",
-            quantity=STIFFNESS,
-            methods=(ONE_MESH.label,),
-            tolerance=1.0,
-            why=WHY["no locking"],
+        c.equal(
+            "stiffness to ten digits", STIFFNESS, c.known_stiffness(SCENES), (), WHY["twelve digits"], **TEN_DIGITS
         ),
-        c.approach(
-            "first order in 1/2 - nu",
-            STIFFNESS,
-            NEAR,
-            incompressible_stiffness,
-            WHY["regular limit"],
-            largest=1e-2,
-            parameter=compressibility,
-            methods=("mdr", "fem", EQUATION),
-        ),
+        c.claim(EvenAccuracy, EVEN, STIFFNESS, (), WHY["no locking"], **ON_ONE_MESH),
+        c.approach("first order in 1/2 - nu", STIFFNESS, NEAR, incompressible_stiffness, WHY["regular limit"], **FIRST),
         *r.studies(ALMOST, r.NODES, (STIFFNESS,), against=EQUATION),
         *r.studies(ALMOST, r.EDGE_CELL, {STIFFNESS: 1.0}, against=EQUATION),
-        *r.studies(ALMOST, r.OUTER_RADIUS, (STIFFNESS,), against=EQUATION, nightly=True),
-        *r.studies(ALMOST, r.fem_cells(3), {STIFFNESS: 6.0}, against=EQUATION, nightly=True),
+        *r.studies(ALMOST, r.OUTER_RADIUS, (STIFFNESS,), **LATE),
+        *r.studies(ALMOST, r.fem_cells(3), {STIFFNESS: 6.0}, **LATE),
         *elastic_costs("bonded nu=0.4999 a/h=1", ("normal_force",)),
     ),
 )

@@ -1,18 +1,18 @@
-"""Contacts that are nearly round: ellipses, squares and pyramids, by the expansion of MDR and by cells of any outline.
+"""Pyramids, ellipses and square punches.
 
-MDR expands about the mean profile: the outline to first order in the deviation from a circle, force and stiffness to
-second order. Boundary elements press cells and assume no circle; only the layer kernel is shared. Hertz' ellipse and
-the elliptic punch are known in closed form, the square punch by its capacity, and elliptic punches on thin
-incompressible layers by Poisson's equation. Microscopes replace a pyramid by the cone of equal cross-sections: cells
-and MDR say what that costs. The cone is solved by finite elements as well, so that the kernel is checked independently.
+Contacts that are nearly round: ellipses, squares and pyramids, by the expansion of MDR and by cells of any outline. MDR
+expands about the mean profile: the outline to first order in the deviation from a circle, force and stiffness to second
+order. Boundary elements press cells and assume no circle; only the layer kernel is shared. Hertz' ellipse and the
+elliptic punch are known in closed form, the square punch by its capacity, and elliptic punches on thin incompressible
+layers by Poisson's equation. Microscopes replace a pyramid by the cone of equal cross-sections: cells and MDR say what
+that costs. The cone is solved by finite elements as well, so that the kernel is checked independently.
 """
 
 import numpy as np
 from scipy.optimize import brentq
 from scipy.special import ellipe, ellipk
 
-from cases.case import Case, CaseScene, text_of
-from cases.claims import Bound
+from cases.case import CaseScene, paper
 from cases.declare.methods import MethodUse
 from cases.library import _common as c
 from contact import EllipticParaboloid, EllipticPunch, IndentationDepths, Layer, PolygonalPunch, Profile, Pyramid
@@ -69,6 +69,11 @@ def stiffness(scene: c.AnyScene) -> float:
     return float(np.pi * scene.layer.youngs_modulus / (4 * scene.layer.thickness**3) * squeezed)
 
 
+def on_cone(scene: c.AnyScene) -> c.AnyScene:
+    """Return the scene with the equivalent cone."""
+    return scene.replace(indenter=CONE)
+
+
 ELLIPSE = pressed("elliptic paraboloid, half-space", c.half_space(), TIP)
 PUNCHES = pressed("elliptic punch, half-space", c.half_space(), PUNCH)
 SQUARES = pressed("square punch, half-space", c.half_space(), SQUARE)
@@ -78,31 +83,22 @@ SLENDER = tuple(
     pressed(f"elliptic punch a/h={ratio:g}", SQUEEZED.replace(thickness=c.THICKNESS / ratio), PUNCH, 1e-6, c.MDR)
     for ratio in (75.0, 150.0)
 )
-CASE = Case(
-    name="nearly_round",
-    title="Pyramids, ellipses and square punches",
+STIFFNESS = "contact_stiffness"
+BY_MDR: c.Words = {"tolerance": 1e-12, "methods": ("mdr",)}
+CASE = paper(
+    __name__,
+    __doc__,
     question="What is a contact that is nearly round, and how wrong is the equivalent cone?",
     equations=("Hertz 1882", "Popov 2022"),
-    text=text_of(__doc__),
     scenes=(ELLIPSE, PUNCHES, SQUARES, *LAYERS, *PYRAMIDS, *CONES, *SLENDER),
     methods=(c.MDR, c.QUICK_FEM, BEM),
     claims=(
         c.equal("force on an ellipse", "normal_force", hertz, [ELLIPSE], WHY["Hertz"], tolerance=1e-4, bem=1e-3),
-        c.equal(
-            "stiffness", "contact_stiffness", stiffness, [PUNCHES], WHY["elliptic punch"], tolerance=1e-4, bem=1e-3
-        ),
-        c.equal("square punch", "contact_stiffness", stiffness, [SQUARES], WHY["capacity"], tolerance=3e-3),
+        c.equal("stiffness", STIFFNESS, stiffness, [PUNCHES], WHY["elliptic punch"], tolerance=1e-4, bem=1e-3),
+        c.equal("square punch", STIFFNESS, stiffness, [SQUARES], WHY["capacity"], tolerance=3e-3),
         *c.agreements((*LAYERS, *PYRAMIDS), {"bem": 5e-2}, c.PATH[1:], why=WHY["cells"]),
         *c.agreements(CONES, {"fem": 3e-4}, ("normal_force",), derived_from=WHY["cone"].tolerance),
-        Bound(
-            name="a pyramid is stiffer than its cone",
-            quantity="normal_force",
-            scenes=c.names_of(PYRAMIDS),
-            change=lambda scene: scene.replace(indenter=CONE),
-            methods=("mdr",),
-            tolerance=1e-12,
-            why=WHY["cone"],
-        ),
-        c.approach("thin layer", "contact_stiffness", SLENDER, stiffness, WHY["squeezed"], largest=0.1),
+        c.bound("a pyramid is stiffer than its cone", "normal_force", PYRAMIDS, on_cone, WHY["cone"], **BY_MDR),
+        c.approach("thin layer", STIFFNESS, SLENDER, stiffness, WHY["squeezed"], largest=0.1),
     ),
 )

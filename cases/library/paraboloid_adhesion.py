@@ -1,15 +1,16 @@
-"""JKR adhesion of a paraboloid: closed forms on the half-space, methods against each other on layers.
+"""Adhesive detachment of a paraboloid.
 
-A paraboloid adheres to a layer and is pulled off. On the half-space JKR theory gives the largest tension
-F_A = -(3/2) pi R Delta gamma, whatever the modulus. Contact is lost at the radius (9 pi Delta gamma R^2/(8 E*))^(1/3)
-under force control and (pi Delta gamma R^2/(8 E*))^(1/3) under displacement control, where the branch turns. On layers
-MDR follows the branch through its turning points by the contact radius, Eqs. (40)-(41); finite elements take the energy
-release rate from the derivative of the strain energy.
+JKR adhesion of a paraboloid: closed forms on the half-space, methods against each other on layers. A paraboloid adheres
+to a layer and is pulled off. On the half-space JKR theory gives the largest tension F_A = -(3/2) pi R Delta gamma,
+whatever the modulus. Contact is lost at the radius (9 pi Delta gamma R^2/(8 E*))^(1/3) under force control and (pi
+Delta gamma R^2/(8 E*))^(1/3) under displacement control, where the branch turns. On layers MDR follows the branch
+through its turning points by the contact radius, Eqs. (40)-(41); finite elements take the energy release rate from the
+derivative of the strain energy.
 """
 
 import numpy as np
 
-from cases.case import Case, CaseScene, text_of
+from cases.case import CaseScene, paper
 from cases.cost import detachment_costs
 from cases.effects import Ablation
 from cases.library import _common as c
@@ -43,48 +44,39 @@ HALF_SPACE = (pulled("half-space", "force"), pulled("half-space", "displacement"
 ON_LAYERS = tuple(pulled(label, control) for label in ("unbonded", "bonded nu=0.5") for control in RADIUS_FACTOR)
 
 
-def jkr_force(scene: c.AnyScene) -> float:
-    """F = -(3/2) pi R Delta gamma: the largest tension on the way, under either control."""
-    return -1.5 * np.pi * RADIUS_OF_CURVATURE * WORK_OF_ADHESION
+def jkr(scene: c.AnyScene) -> dict[str, float]:
+    """Return F = -(3/2) pi R Delta gamma, the largest tension on the way, and where contact is lost.
+
+    That is at a = (9 or 1 times pi Delta gamma R^2/(8 E*))^(1/3), delta = a^2/R - sqrt(2 pi Delta gamma a/E*).
+    """
+    work = np.pi * WORK_OF_ADHESION / c.contact_modulus(scene.layer)
+    a = float(np.cbrt(RADIUS_FACTOR[scene.loading.control] * work * RADIUS_OF_CURVATURE**2))
+    depth = a**2 / RADIUS_OF_CURVATURE - float(np.sqrt(2 * work * a))
+    force = -1.5 * np.pi * RADIUS_OF_CURVATURE * WORK_OF_ADHESION
+    return {"pull_off_force": force, "pull_off_depth": depth, "pull_off_contact_radius": a}
 
 
-def jkr_radius(scene: c.AnyScene) -> float:
-    """a = (9 or 1 times pi Delta gamma R^2/(8 E*))^(1/3)."""
-    cube = np.pi * WORK_OF_ADHESION * RADIUS_OF_CURVATURE**2 / c.contact_modulus(scene.layer)
-    return float(np.cbrt(RADIUS_FACTOR[scene.loading.control] * cube))
-
-
-def jkr_depth(scene: c.AnyScene) -> float:
-    """delta = a^2/R - sqrt(2 pi Delta gamma a/E*)."""
-    a = jkr_radius(scene)
-    elongation = np.sqrt(2 * np.pi * WORK_OF_ADHESION * a / c.contact_modulus(scene.layer))
-    return float(a**2 / RADIUS_OF_CURVATURE - elongation)
-
-
-# By quantity: its closed form, the tolerance of MDR, and the reason.
+# By quantity: the tolerance of MDR and the reason.
 CRITICAL = {
-    "pull_off_force": (jkr_force, 1e-9, WHY["jkr"]),
-    "pull_off_depth": (jkr_depth, 1e-9, WHY["jkr"]),
-    "pull_off_contact_radius": (jkr_radius, 1e-6, WHY["fold"]),
+    "pull_off_force": (1e-9, WHY["jkr"]),
+    "pull_off_depth": (1e-9, WHY["jkr"]),
+    "pull_off_contact_radius": (1e-6, WHY["fold"]),
 }
 ALL, FORCE_AND_DEPTH = (*HALF_SPACE, *ON_LAYERS), ("pull_off_force", "pull_off_depth")
 SMALL_DIFFERENCE = "a requirement: 2e-3 of the pull-off, the small difference of profile and elongation"
 THOUSANDTH = "a requirement: a thousandth of the pull-off"
 BONDED = (pulled("bonded nu=0.5", "force"),)
-CASE = Case(
-    name="paraboloid_adhesion",
-    title="Adhesive detachment of a paraboloid",
+CASE = paper(
+    __name__,
+    __doc__,
     question="Is JKR theory reproduced, and do methods agree on pull-off from layers?",
     equations=("Eq. (40)", "Eq. (41)"),
-    text=text_of(__doc__),
     scenes=ALL,
     methods=(c.MDR, c.DETACHING_FEM, c.DETACHING_BEM, c.EQUATION, c.TABLE),
     claims=(
         *(
-            c.equal(
-                f"JKR {name.replace('_', ' ')}", name, form, HALF_SPACE, why, tolerance=tolerance, fem=1e-3, bem=1e-3
-            )
-            for name, (form, tolerance, why) in CRITICAL.items()
+            c.equal(f"JKR {name.replace('_', ' ')}", name, jkr, HALF_SPACE, why, tolerance=own, fem=1e-3, bem=1e-3)
+            for name, (own, why) in CRITICAL.items()
         ),
         *c.agreements(ALL, {"fem": 2e-3}, FORCE_AND_DEPTH, derived_from=SMALL_DIFFERENCE),
         *c.agreements(ALL, {"bem": 1e-3}, CRITICAL, derived_from=THOUSANDTH),

@@ -1,8 +1,9 @@
-"""Tips as they are made and worn: the exact sphere, a cone with a spherical apex, and a paraboloid worn flat.
+"""Indentation by spheres, cones with round apexes and worn paraboloids.
 
-On the half-space Sneddon's integrals give depth and force at a contact radius a, for any profile of slope f':
-g = a int f'(a sin t) dt and F = 2 E* a^2 int f'(a sin t) sin(t)^2 dt, t from 0 to pi/2. There the tips are steep.
-On the layer the methods are compared with one another. Each writes its own heights or slopes of a profile.
+Tips as they are made and worn: the exact sphere, a cone with a spherical apex, and a paraboloid worn flat. On the
+half-space Sneddon's integrals give depth and force at a contact radius a, for any profile of slope f': g = a int f'(a
+sin t) dt and F = 2 E* a^2 int f'(a sin t) sin(t)^2 dt, t from 0 to pi/2. There the tips are steep. On the layer the
+methods are compared with one another. Each writes its own heights or slopes of a profile.
 """
 
 import math
@@ -12,7 +13,7 @@ from typing import TypeAlias, cast
 import numpy as np
 from numpy.polynomial.legendre import leggauss
 
-from cases.case import Case, CaseScene, text_of
+from cases.case import CaseScene, paper
 from cases.library import _common as c
 from contact import ContactRadii, Scene, Sphere, Spheroconical, TruncatedParaboloid
 
@@ -42,7 +43,7 @@ def on(label: str, tips: dict[str, Tip]) -> tuple[CaseScene, ...]:
 HALF_SPACE, BONDED = on("half-space", STEEP), on("bonded nu=0.5", SHALLOW)
 
 
-def depth_and_force(scene: Scene) -> tuple[float, float]:
+def sneddon(scene: Scene) -> dict[str, float]:
     """Return Sneddon's integrals by Gauss nodes on both sides of the radius where f' has a kink or a jump."""
     tip = cast(Tip, scene.indenter)
     if isinstance(tip, TruncatedParaboloid):
@@ -58,31 +59,20 @@ def depth_and_force(scene: Scene) -> tuple[float, float]:
         else:
             slope = np.minimum(r, kink) / np.sqrt(tip.radius**2 - np.minimum(r, kink) ** 2)
         depth, force = depth + RADIUS * float(weight @ slope), force + 2 * float(weight @ (slope * r**2))
-    return depth, c.contact_modulus(scene.layer) * force
+    return {"indentation_depth": depth, "normal_force": c.contact_modulus(scene.layer) * force}
 
 
-def depth(scene: Scene) -> float:
-    """Return the depth [m]."""
-    return depth_and_force(scene)[0]
-
-
-def force(scene: Scene) -> float:
-    """Return the force [N]."""
-    return depth_and_force(scene)[1]
-
-
+NAMES = {"depth of a tip": "indentation_depth", "force on a tip": "normal_force"}
 CLOSED: c.Words = {"tolerance": 1e-11, "fem": 3e-6, "bem": 3e-3}
-CASE = Case(
-    name="round_and_worn_tips",
-    title="Indentation by spheres, cones with round apexes and worn paraboloids",
+CASE = paper(
+    __name__,
+    __doc__,
     question="Do all methods know these tips?",
     equations=("Sneddon 1965", "Eq. (8)", "Eq. (15)"),
-    text=text_of(__doc__),
     scenes=(*HALF_SPACE, *BONDED),
     methods=(c.MDR, c.FEM, c.BEM, c.EQUATION),
     claims=(
-        c.equal("depth of a tip", "indentation_depth", depth, HALF_SPACE, WHY["Sneddon"], **CLOSED),
-        c.equal("force on a tip", "normal_force", force, HALF_SPACE, WHY["Sneddon"], **CLOSED),
+        *c.equals(NAMES, sneddon, HALF_SPACE, WHY["Sneddon"], **CLOSED),
         *c.agreements(BONDED, c.required("fem", "bem", "integral_equation")),
     ),
 )

@@ -1,9 +1,10 @@
-"""The stress tests: every hard parameter that contact with layers is known to break on.
+"""Hard parameters, step by step until something breaks.
 
-A parameter is made harder step by step for every method that supports the scene. Each step is solved again with all
-inputs moved by one unit in the last place, in other units, amid other steps and on two threads: the digits that all
-these answers share are significant. Laws of mechanics are checked on every step, and so is the distance from the fast
-method. A step may be refused with a named error. A number beyond its stated error, a warning or a crash is a failure.
+The stress tests: every hard parameter that contact with layers is known to break on. A parameter is made harder step by
+step for every method that supports the scene. Each step is solved again with all inputs moved by one unit in the last
+place, in other units, amid other steps and on two threads: the digits that all these answers share are significant.
+Laws of mechanics are checked on every step, and so is the distance from the fast method. A step may be refused with a
+named error. A number beyond its stated error, a warning or a crash is a failure.
 """
 
 from collections.abc import Callable
@@ -12,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from cases.case import Case, text_of
+from cases.case import paper
 from cases.declare.methods import MethodUse
 from cases.library import _common as c
 from cases.stress import Ladder
@@ -31,7 +32,9 @@ from contact import (
     KelvinVoigt,
     Layer,
     LayerStack,
+    Loading,
     Paraboloid,
+    Profile,
     Scene,
     StandardSolid,
     Sublayer,
@@ -41,129 +44,73 @@ from contact import (
 from contact.scene.layer import Interface, Support
 
 
-def _decades(first: int, last: int, step: int = 1) -> tuple[float, ...]:
-    """Powers of ten, both ends included, upwards or downwards."""
-    direction = step if last >= first else -step
-    return tuple(10.0**k for k in range(first, last + (1 if last >= first else -1), direction))
-
-
-DECADES = _decades(-3, 3)
+def _scene(layer: ElasticLayer, tip: Profile, loading: Loading, *effects: Any, steep: bool = False) -> c.AnyScene:
+    return Scene(layer=layer, indenter=tip, loading=loading, effects=effects, beyond_small_strains=steep)
 
 
 def _layer(nu: float, support: Support = "bonded", thickness: float = 1.0) -> Layer:
     return Layer(thickness=thickness, youngs_modulus=1.0, poissons_ratio=nu, support=support)
 
 
-def nearly_incompressible(gap: float) -> Scene:
-    """A cone at a/h = 2 on a bonded layer with nu = 1/2 - gap."""
-    return Scene(layer=_layer(0.5 - gap), indenter=Cone(slope=0.1), loading=ContactRadii([2.0]))
-
-
 def _under_paraboloid(layer: ElasticLayer, ratio: float) -> c.AnyScene:
-    return Scene(
-        layer=layer,
-        indenter=Paraboloid(radius_of_curvature=1e3),
-        loading=ContactRadii([ratio]),
-        beyond_small_strains=True,
-    )
+    return _scene(layer, Paraboloid(radius_of_curvature=1e3), ContactRadii([ratio]), steep=True)
 
 
-def contact_ratio(ratio: float, *, nu: float, support: Support) -> Scene:
-    """A paraboloid at a given a/h."""
+def nearly_incompressible(gap: float) -> c.AnyScene:
+    """A cone at a/h = 2 on a bonded layer with nu = 1/2 - gap."""
+    return _scene(_layer(0.5 - gap), Cone(slope=0.1), ContactRadii([2.0]))
+
+
+def contact_ratio(ratio: float, *, nu: float = 0.5, support: Support = "bonded") -> c.AnyScene:
+    """A paraboloid at a given a/h, by default on an incompressible bonded layer."""
     return _under_paraboloid(_layer(nu, support), ratio)
 
 
-def at_one(_: float) -> c.AnyScene:
-    """A paraboloid at a/h = 1 on an incompressible layer."""
-    return contact_ratio(1.0, nu=0.5, support="bonded")
-
-
-def truncated(flat: float) -> Scene:
+def truncated(flat: float) -> c.AnyScene:
     """A truncated cone at a/h = 1 with b/a = flat."""
-    indenter = TruncatedCone(flat_radius=flat, slope=0.1)
-    return Scene(layer=_layer(0.45), indenter=indenter, loading=ContactRadii([1.0]))
+    return _scene(_layer(0.45), TruncatedCone(flat_radius=flat, slope=0.1), ContactRadii([1.0]))
 
 
-def nearly_flat(gap: float) -> Scene:
-    """The same with b/a = 1 - gap."""
-    return truncated(1.0 - gap)
+def detaching_punch(ratio: float, *, control: str = "displacement", nu: float = 0.5) -> c.AnyScene:
+    """An adhering flat punch on a bonded layer.
+
+    At nu = 1/2 and a/h = 0.4619 detachment begins to be stable. From a/h = 8 stability reverses twice for nu between
+    about 0.361 and 0.369.
+    """
+    loading = Detachment(control="force" if control == "force" else "displacement")
+    return _scene(_layer(nu), FlatPunch(radius=ratio), loading, Adhesion(work_of_adhesion=1e-4))
 
 
-def detaching_punch(ratio: float, *, control: str = "displacement", nu: float = 0.5) -> Scene:
-    """An adhering flat punch on a bonded layer; at nu = 1/2 and a/h = 0.4619 detachment begins to be stable."""
-    return Scene(
-        layer=_layer(nu),
-        indenter=FlatPunch(radius=ratio),
-        loading=Detachment(control=control),  # type: ignore[arg-type]  # a literal, passed on
-        effects=(Adhesion(work_of_adhesion=1e-4),),
-    )
-
-
-def reversing_punch(nu: float) -> Scene:
-    """The same from a/h = 8, where stability reverses twice for nu between about 0.361 and 0.369."""
-    return detaching_punch(8.0, nu=nu)
-
-
-def punch_on_layer(thickness: float) -> Scene:
+def punch_on_layer(thickness: float) -> c.AnyScene:
     """A flat punch of unit radius on an incompressible bonded layer."""
-    loading = IndentationDepths([0.01])
-    return Scene(
-        layer=_layer(0.5, thickness=thickness),
-        indenter=FlatPunch(radius=1.0),
-        loading=loading,
-        beyond_small_strains=True,
-    )
+    return _scene(_layer(0.5, thickness=thickness), FlatPunch(radius=1.0), IndentationDepths([0.01]), steep=True)
 
 
-def damped_punch(damping: float) -> Scene:
+def damped_punch(damping: float) -> c.AnyScene:
     """A flat punch hits a Kelvin-Voigt half-space with damping ratio D = eta sqrt(k/M)/(2 G), Eq. (50)."""
     # G = 1, E* = 4, k_N = 8 at a = 1, and M = 8.
     layer = Layer.half_space(youngs_modulus=3.0, poissons_ratio=0.5)
     effect = KelvinVoigt(shear_modulus=layer.shear_modulus, viscosity=2.0 * damping)
-    return Scene(
-        layer=layer, indenter=FlatPunch(radius=1.0), loading=Impact(mass=8.0, velocity=1e-3), effects=(effect,)
-    )
+    return _scene(layer, FlatPunch(radius=1.0), Impact(mass=8.0, velocity=1e-3), effect)
 
 
-def _standard_solid(long_term_share: float, time: float, velocity: float = 0.1) -> Scene:
-    """A paraboloid, R = h, hits a standard solid; a half-space contact would take about one second."""
-    layer = _layer(0.5)
+def struck(long_term_share: float = 0.1, time: float = 1.0, speed: float = 0.1, lighter: bool = False) -> c.AnyScene:
+    """A paraboloid, R = h, hits a standard solid; a half-space contact would take about one second.
+
+    Args:
+        long_term_share: G_inf over G_inf + G_1.
+        time: tau, over about the contact time.
+        speed: of approach, in units of h per second.
+        lighter: whether a faster body is lighter, so that a/h stays below 30.
+    """
+    layer, mass = _layer(0.5), 0.05 * min(1.0, speed**-2) if lighter else 0.05
     maxwell = (1.0 - long_term_share) * layer.shear_modulus
-    effect = StandardSolid(
-        long_term_shear_modulus=layer.shear_modulus - maxwell, maxwell_shear_modulus=maxwell, viscosity=maxwell * time
-    )
-    loading = Impact(mass=0.05, velocity=velocity)
-    return Scene(
-        layer=layer,
-        indenter=Paraboloid(radius_of_curvature=1.0),
-        loading=loading,
-        effects=(effect,),
-        beyond_small_strains=True,
-    )
+    lasting = layer.shear_modulus - maxwell
+    solid = StandardSolid(long_term_shear_modulus=lasting, maxwell_shear_modulus=maxwell, viscosity=maxwell * time)
+    return _scene(layer, Paraboloid(radius_of_curvature=1.0), Impact(mass=mass, velocity=speed), solid, steep=True)
 
 
-def relaxation_time(time: float) -> Scene:
-    """tau over about the contact time."""
-    return _standard_solid(0.1, time)
-
-
-def long_term_share(ratio: float) -> Scene:
-    """G_inf / G_1."""
-    return _standard_solid(ratio / (1.0 + ratio), 1.0)
-
-
-def impact_speed(speed: float) -> Scene:
-    """Approach velocity in units of h per relaxation time; a faster body is lighter, so that a/h stays below 30."""
-    scene = _standard_solid(0.1, 1.0, speed)
-    return scene.replace(loading=Impact(mass=0.05 * min(1.0, speed**-2), velocity=speed))
-
-
-def in_other_units(scale: float) -> Scene:
-    """A truncated cone with lengths scaled by s and stresses by 1/s."""
-    return in_units(truncated(0.5), Units(length=scale, stress=1.0 / scale))
-
-
-def noisy_table(noise: float) -> Scene:
+def noisy_table(noise: float) -> c.AnyScene:
     """A paraboloid measured at 40 radii with relative noise in its increments."""
     radii = np.linspace(0.0, 2.0, 41)
     rises = np.diff(radii**2 / 20.0) * (1.0 + noise * np.random.default_rng(7).uniform(-1.0, 1.0, 40))
@@ -179,21 +126,6 @@ def layered(*layers: tuple[float, float], nu: float = 0.3, ratio: float = 1.0) -
     )
     interface: Interface = "bonded"
     return _under_paraboloid(LayerStack(sublayers=parts, interfaces=(interface,) * (len(parts) - 1)), ratio)
-
-
-def contrasting(contrast: float) -> c.AnyScene:
-    """The same on two equally thick layers."""
-    return layered((0.5, contrast), (0.5, 1.0))
-
-
-def under_thin_top(share: float) -> c.AnyScene:
-    """The same below a stiffer layer with this share of the thickness."""
-    return layered((share, 3.0), (1.0 - share, 1.0), ratio=0.3)
-
-
-def partly_incompressible(gap: float) -> c.AnyScene:
-    """The same on two layers, the upper one with nu = 1/2 - gap."""
-    return layered((0.5, 1.0), (0.5, 3.0), nu=0.5 - gap)
 
 
 def alternating(count: float) -> c.AnyScene:
@@ -214,61 +146,93 @@ def ladder(
     return Ladder(name=name, parameter=parameter, values=values, scene=scene, **{"methods": OWN, **more})
 
 
-def _radii(name: str, support: Support, nu: float) -> Ladder:
-    scene = partial(contact_ratio, nu=nu, support=support)
-    return ladder(f"contact radius, {name}", "a/h", (*DECADES[:5], 30.0, 100.0, 150.0, 300.0, 1000.0), scene)
+def _decades(first: int, last: int, step: int = 1) -> tuple[float, ...]:
+    """Powers of ten, both ends included, upwards or downwards."""
+    way = 1 if last >= first else -1
+    return tuple(10.0**k for k in range(first, last + way, way * step))
 
 
 # What counts are digits that repeats share, not the size of errors.
 METHODS = (c.MDR, c.TABLE, c.EQUATION, c.BEM, MethodUse(label="fem", settings={"order": 3, "edge_cell": 1e-5}))
 # A method of another package that states no errors would fail every step: none takes part.
 OWN = tuple(use.label for use in METHODS)
-RESTITUTION = "coefficient_of_restitution"
+REBOUND: c.Words = {"quantity": "coefficient_of_restitution"}
+PULL_OFF: c.Words = {"quantity": "pull_off_force"}
+RADII = (*_decades(-3, 1), 30.0, 100.0, 150.0, 300.0, 1000.0)
+BODIES: dict[str, tuple[Support, float]] = {
+    "bonded, nu = 0.3": ("bonded", 0.3),
+    "bonded, nu = 0.5": ("bonded", 0.5),
+    "unbonded": ("unbonded", 0.3),
+}
 FOLD = (0.3, 0.4, 0.44, 0.46, 0.4618, 0.462, 0.463, 0.48, 0.6, 1.0, 2.0)
 RATIOS_OF_POISSON = (0.38, 0.37, 0.369, 0.368, 0.367, 0.366, 0.365, 0.364, 0.363, 0.362, 0.361, 0.36, 0.35)
 DAMPING = (1e-3, 0.1, 0.9, 0.999, 0.999999, 1.0, 1.000001, 1.001, 1.1, 10.0, 100.0, 1000.0)
+REVERSING, SCALES = partial(detaching_punch, 8.0), "scale of lengths, inverse of stresses"
 TOP_SHARES, COUNTS = (0.9, 0.3, 0.1, 0.03, 0.01, 0.003, 0.001), (2.0, 3.0, 5.0, 10.0, 20.0, 50.0)
 LADDERS = (
     # The last is nu = 1/2 exactly.
     ladder("nearly incompressible", "1/2 - nu", (*_decades(-1, -12), 1e-17), nearly_incompressible),
-    _radii("bonded, nu = 0.3", "bonded", 0.3),
-    _radii("bonded, nu = 0.5", "bonded", 0.5),
-    _radii("unbonded", "unbonded", 0.3),
+    *(
+        ladder(f"contact radius, {name}", "a/h", RADII, partial(contact_ratio, nu=nu, support=support))
+        for name, (support, nu) in BODIES.items()
+    ),
     ladder("vanishing flat end", "b/a", _decades(-1, -8), truncated, quick=True),
-    ladder("nearly a flat punch", "1 - b/a", _decades(-1, -8), nearly_flat),
-    ladder("edge cell", "cell over radius", _decades(-2, -8), at_one, setting="edge_cell", methods=("fem",)),
+    ladder("nearly a flat punch", "1 - b/a", _decades(-1, -8), lambda gap: truncated(1.0 - gap)),
+    ladder(
+        "edge cell",
+        "cell over radius",
+        _decades(-2, -8),
+        lambda _: contact_ratio(1.0),
+        setting="edge_cell",
+        methods=("fem",),
+    ),
     *(
         ladder(
             f"detachment across the fold, {control} control",
             "a/h",
             FOLD,
             partial(detaching_punch, control=control),
-            quantity="pull_off_force",
+            **PULL_OFF,
         )
         for control in ("displacement", "force")
     ),
-    ladder("stability reverses", "nu", RATIOS_OF_POISSON, reversing_punch, quantity="pull_off_depth", quick=True),
+    ladder(
+        "stability reverses",
+        "nu",
+        RATIOS_OF_POISSON,
+        lambda nu: REVERSING(nu=nu),
+        quantity="pull_off_depth",
+        quick=True,
+    ),
     ladder(
         "punch on a thinner and thinner layer", "h/a", _decades(3, -3), punch_on_layer, quantity="contact_stiffness"
     ),
-    ladder("damping ratio", "D", DAMPING, damped_punch, quantity=RESTITUTION, quick=True),
-    ladder("relaxation time", "tau/T", _decades(-6, 6), relaxation_time, quantity=RESTITUTION),
-    ladder("long-term modulus", "G_inf/G_1", _decades(6, -6), long_term_share, quantity=RESTITUTION),
-    ladder("impact speed", "v0 tau/h", _decades(-6, 3), impact_speed, quantity="peak_force"),
-    ladder("units", "scale of lengths, inverse of stresses", _decades(-9, 9, 3), in_other_units),
+    ladder("damping ratio", "D", DAMPING, damped_punch, **REBOUND, quick=True),
+    ladder("relaxation time", "tau/T", _decades(-6, 6), lambda time: struck(time=time), **REBOUND),
+    ladder("long-term modulus", "G_inf/G_1", _decades(6, -6), lambda ratio: struck(ratio / (1.0 + ratio)), **REBOUND),
+    ladder(
+        "impact speed", "v0 tau/h", _decades(-6, 3), lambda v0: struck(speed=v0, lighter=True), quantity="peak_force"
+    ),
+    ladder("units", SCALES, _decades(-9, 9, 3), lambda s: in_units(truncated(0.5), Units(length=s, stress=1.0 / s))),
     ladder("noise in a measured profile", "relative noise", _decades(-12, 0), noisy_table),
-    ladder("contrast of two layers", "E1/E2", _decades(-4, 4), contrasting),
-    ladder("thinner and thinner top layer", "h1/H", TOP_SHARES, under_thin_top),
+    ladder("contrast of two layers", "E1/E2", _decades(-4, 4), lambda contrast: layered((0.5, contrast), (0.5, 1.0))),
+    ladder(
+        "thinner and thinner top layer", "h1/H", TOP_SHARES, lambda h1: layered((h1, 3.0), (1.0 - h1, 1.0), ratio=0.3)
+    ),
     ladder("number of layers", "n", COUNTS, alternating),
     ladder("steepness of grading", "E(h)/E(0)", tuple(10.0**k for k in range(-3, 4) if k), graded_in_depth),
-    ladder("one layer nearly incompressible", "1/2 - nu1", (*_decades(-1, -11, 2), 1e-17), partly_incompressible),
+    ladder(
+        "one layer nearly incompressible",
+        "1/2 - nu1",
+        (*_decades(-1, -11, 2), 1e-17),
+        lambda gap: layered((0.5, 1.0), (0.5, 3.0), nu=0.5 - gap),
+    ),
 )
-CASE = Case(
-    name="stability",
-    title="Hard parameters, step by step until something breaks",
+CASE = paper(
+    __name__,
+    __doc__,
     question="Where does each method stop, how many digits are left, and does it say so?",
     equations=("Eq. (4)", "Eq. (9)", "Eq. (50)"),
-    text=text_of(__doc__),
     scenes=(),
     methods=METHODS,
     claims=LADDERS,

@@ -1,15 +1,15 @@
-"""Articular cartilage as three zones on bone: superficial, middle and deep, under a spherical and a flat indenter.
+"""Cartilage of three zones.
 
-Under load too fast for fluid to flow each zone is nearly incompressible. The superficial tenth is soft, the middle zone
-is stiffer, the deep one stiffer still, and the bone below counts as rigid or, more honestly, as an elastic half-space a
+Articular cartilage as three zones on bone: superficial, middle and deep, under a spherical and a flat indenter. Under
+load too fast for fluid to flow each zone is nearly incompressible. The superficial tenth is soft, the middle zone is
+stiffer, the deep one stiffer still, and the bone below counts as rigid or, more honestly, as an elastic half-space a
 thousand times as stiff. The same tissue is asked for at equilibrium, when the fluid has been pressed out and the zones
 are compressible. MDR and the direct integral equation must agree; the pressure, put back on the zones by a kernel that
 is written separately, must press the indenter's shape. An elastic bone is softer than a rigid one, and no zone may be
 left out: a layer of the mean modulus alone errs by a multiple of what methods differ.
 """
 
-from cases.case import Case, CaseScene, text_of
-from cases.claims import Bound
+from cases.case import CaseScene, paper
 from cases.cost import elastic_costs
 from cases.library import _common as c
 from cases.library import _refinements as r
@@ -43,7 +43,7 @@ SCENES = tuple(
     for indenter in ("paraboloid", "flat punch")
     for ratio in (0.2, 1.0, 3.0)
 )
-RIGID = tuple(one.name for one in SCENES if "rigid" in one.name and "flat punch" in one.name)
+RIGID = tuple(one for one in SCENES if "rigid" in one.name and "flat punch" in one.name)
 ONE = (on_cartilage(*FIRST),)
 
 
@@ -52,30 +52,22 @@ def on_elastic_bone(scene: c.AnyScene) -> c.AnyScene:
     return scene.replace(layer=scene.layer.replace(support=BONE))
 
 
-SOFTER = Bound(
-    name="a rigid bone is never softer than an elastic one",
-    quantity="contact_stiffness",
-    methods=("mdr",),
-    scenes=RIGID,
-    change=on_elastic_bone,
-    tolerance=1e-12,
-    nightly=True,
-    why=s.WHY["a stiffer base"],
+SOFTER, LATE = (
+    "a rigid bone is never softer than an elastic one",
+    {"tolerance": 1e-12, "methods": ("mdr",), "nightly": True},
 )
-FORCE = ("normal_force",)
-CASE = Case(
-    name="three_zone_cartilage",
-    title="Cartilage of three zones",
+CASE = paper(
+    __name__,
+    __doc__,
     question="Do methods agree on tissue of three zones, at once and at equilibrium, on rigid and on elastic bone?",
     equations=("Eq. (8)", "Eq. (10)", "Eq. (27)"),
-    text=text_of(__doc__),
     scenes=SCENES,
     methods=s.METHODS,
     claims=(
         *s.two_methods(SCENES),
         s.pressed_shape(SCENES),
-        SOFTER,
-        *r.studies(ONE, r.EQUATION_NODES, FORCE, against=r.FINEST_MDR),
+        c.bound(SOFTER, "contact_stiffness", RIGID, on_elastic_bone, s.WHY["a stiffer base"], **LATE),
+        *r.studies(ONE, r.EQUATION_NODES, ("normal_force",), against=r.FINEST_MDR),
         *elastic_costs(ONE[0].name),
     ),
 )

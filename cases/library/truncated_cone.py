@@ -1,8 +1,9 @@
-"""Section 4.1 of Forsbach (2023): a truncated cone indents bonded and unbonded layers of any thickness.
+"""Indentation by a truncated cone.
 
-A rigid cone with a flat end of radius b, f(r) = (r - b) tan(theta) for r >= b, Eq. (35), presses on a layer of
-thickness h. The contact radius a is prescribed with b/a = 0.5, for an unbonded layer and bonded layers with nu = 0.3,
-0.45 and 0.5, from almost a half-space (a/h = 0.1) to a thin layer (a/h = 20).
+Section 4.1 of Forsbach (2023): a truncated cone indents bonded and unbonded layers of any thickness. A rigid cone with
+a flat end of radius b, f(r) = (r - b) tan(theta) for r >= b, Eq. (35), presses on a layer of thickness h. The contact
+radius a is prescribed with b/a = 0.5, for an unbonded layer and bonded layers with nu = 0.3, 0.45 and 0.5, from almost
+a half-space (a/h = 0.1) to a thin layer (a/h = 20).
 
 On the half-space the answer is known in closed form,
 delta = a tan(theta) arccos(b/a),  F = E* a^2 tan(theta) [arccos(b/a) + (b/a) sqrt(1 - b^2/a^2)].
@@ -17,7 +18,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from cases.case import Case, CaseScene, text_of
+from cases.case import CaseScene, paper
+from cases.claims import Norm
 from cases.cost import elastic_costs
 from cases.effects import Ablation
 from cases.library import _common as c
@@ -32,24 +34,16 @@ QUICK_RATIOS = {"unbonded": (1.0, 20.0), "bonded nu=0.5": (0.1, 1.0, 20.0)}
 QUICK_FLATS = (0.5, 0.9)
 
 
-def cone_scene(label: str, ratio: float) -> CaseScene:
+def on_layer(label: str, ratio: float) -> CaseScene:
     """Return the scene at a/h = ``ratio`` with b/a = 0.5."""
-    a, quick = ratio * c.THICKNESS, ratio in QUICK_RATIOS.get(label, ())
-    return c.scene(
-        c.scene_name(label, ratio),
-        c.layer(label),
-        TruncatedCone(flat_radius=0.5 * a, slope=SLOPE),
-        ContactRadii([a]),
-        steep=True,
-        sampling=c.rings(a, 0.0, 0.4, 0.5, 0.6, 0.8, 1.0),
-        nightly=() if quick else ("fem", "mdr_table"),
-        layer=label,
-        a_over_h=ratio,
-        b_over_a=0.5,
-    )
+    a, cone = ratio * c.THICKNESS, TruncatedCone(flat_radius=0.5 * ratio * c.THICKNESS, slope=SLOPE)
+    late = () if ratio in QUICK_RATIOS.get(label, ()) else ("fem", "mdr_table")
+    more: c.Words = {"steep": True, "sampling": c.rings(a, 0.0, 0.4, 0.5, 0.6, 0.8, 1.0), "nightly": late}
+    place: c.Words = {"layer": label, "a_over_h": ratio, "b_over_a": 0.5}
+    return c.scene(c.scene_name(label, ratio), c.layer(label), cone, ContactRadii([a]), **more, **place)
 
 
-def half_space_scene(flat: float) -> CaseScene:
+def on_half_space(flat: float) -> CaseScene:
     """Return the scene on the half-space with b/a = ``flat``."""
     cone, loading = TruncatedCone(flat_radius=flat * c.THICKNESS, slope=SLOPE), ContactRadii([c.THICKNESS])
     late = () if flat in QUICK_FLATS else ("fem",)
@@ -57,116 +51,95 @@ def half_space_scene(flat: float) -> CaseScene:
     return c.scene(f"half-space b/a={flat:g}", c.half_space(), cone, loading, nightly=late, **place)
 
 
-def path_scene(label: str, ratio: float) -> CaseScene:
+def path(label: str, ratio: float) -> CaseScene:
     """Return the path over contact radii from 0.75 a to a, away from the kink at 0.5 a."""
-    base = cone_scene(label, ratio)
-    path = base.scene.replace(loading=ContactRadii(values=ratio * c.THICKNESS * c.chebyshev_radii(0.75, 1.0, 16)))
+    base, radii = on_layer(label, ratio), ratio * c.THICKNESS * c.chebyshev_radii(0.75, 1.0, 16)
     methods = (c.MDR, c.EQUATION) if ratio == 1.0 else (c.MDR,)
-    return replace(base, name=f"{base.name}, path", scene=path, methods=methods, nightly=())
+    on_path = base.scene.replace(loading=ContactRadii(values=radii))
+    return replace(base, name=f"{base.name}, path", scene=on_path, methods=methods, nightly=())
 
 
-LAYERED = tuple(cone_scene(label, ratio) for label in c.LAYERS for ratio in RATIOS)
+LAYERED = tuple(on_layer(label, ratio) for label in c.LAYERS for ratio in RATIOS)
 RESOLVED, THIN = (tuple(s for s in LAYERED if (float(s.parameters["a_over_h"]) > 2) is thin) for thin in (False, True))
-PATHS = tuple(path_scene(label, ratio) for label in c.LAYERS for ratio in (0.3, 1.0, 3.0, 10.0))
-HALF_SPACE = tuple(half_space_scene(flat) for flat in (0.25, 0.5, 0.75, 0.9))
-
-
-def depth_unit(scene: c.AnyScene) -> float:
-    """Return a tan(theta) [m]."""
-    return c.radius(scene) * SLOPE
-
-
-def force_unit(scene: c.AnyScene) -> float:
-    """Return E* a^2 tan(theta) [N]."""
-    return c.contact_modulus(scene.layer) * c.radius(scene) ** 2 * SLOPE
-
-
-def half_space_depth(scene: c.AnyScene) -> float:
-    """delta = a tan(theta) arccos(b/a)."""
-    return depth_unit(scene) * float(np.arccos(scene.indenter.flat_radius / c.radius(scene)))
-
-
-def half_space_force(scene: c.AnyScene) -> float:
-    """F = E* a^2 tan(theta) [arccos(b/a) + (b/a) sqrt(1 - b^2/a^2)]."""
-    flat = scene.indenter.flat_radius / c.radius(scene)
-    return force_unit(scene) * float(np.arccos(flat) + flat * np.sqrt(1 - flat**2))
-
-
-DEPTHS, FORCES = (c.known("truncated_cone", LAYERED, n, unit) for n, unit in enumerate((depth_unit, force_unit)))
+PATHS = tuple(path(label, ratio) for label in c.LAYERS for ratio in (0.3, 1.0, 3.0, 10.0))
+HALF_SPACE = tuple(on_half_space(flat) for flat in (0.25, 0.5, 0.75, 0.9))
 AT_ONE, AT_FIVE = (c.having(LAYERED, a_over_h=ratio) for ratio in (1.0, 5.0))
-ENDS = {ratio: tuple(cone_scene(label, ratio) for label in ("unbonded", "bonded nu=0.5")) for ratio in (1.0, 5.0)}
+ENDS = {ratio: tuple(on_layer(label, ratio) for label in ("unbonded", "bonded nu=0.5")) for ratio in (1.0, 5.0)}
+
+
+def unit(scene: c.AnyScene) -> dict[str, float]:
+    """Return a tan(theta) [m] and E* a^2 tan(theta) [N]."""
+    a = c.radius(scene)
+    return {"indentation_depth": a * SLOPE, "normal_force": c.contact_modulus(scene.layer) * a**2 * SLOPE}
+
+
+def closed_form(scene: c.AnyScene) -> dict[str, float]:
+    """Return delta = a tan(theta) arccos(b/a) and F = E* a^2 tan(theta) [arccos(b/a) + (b/a) sqrt(1 - b^2/a^2)]."""
+    (depth, force), flat = unit(scene).values(), scene.indenter.flat_radius / c.radius(scene)
+    angle = float(np.arccos(flat))
+    return {"indentation_depth": depth * angle, "normal_force": force * (angle + flat * float(np.sqrt(1 - flat**2)))}
+
+
+REFERENCE = c.known("truncated_cone", LAYERED, unit)
 CLOSED: c.Words = {"tolerance": 1e-10, "fem": 3e-6, "bem": 3e-3}
 LAYER: c.Words = {"tolerance": 1e-9, "fem": 3e-6, "bem": 2e-3, "mdr_table": 1e-2}
 COARSE_TABLE = "a requirement: depth 3e-2, force 1e-1, stiffness 1.5e-2 where a cell is a third of the thickness"
 NO_NU = dict.fromkeys(("mdr", "bem", "integral_equation", "mdr_table"), "its kernel, Eq. (29), has no nu")
-CLAIMS = (
-    c.equal("half-space depth", "indentation_depth", half_space_depth, HALF_SPACE, WHY["sneddon"], **CLOSED),
-    c.equal("half-space force", "normal_force", half_space_force, HALF_SPACE, WHY["sneddon"], **CLOSED),
-    c.equal("layer depth", "indentation_depth", DEPTHS, (), WHY["reference"], **LAYER),
-    c.equal("layer force", "normal_force", FORCES, (), WHY["reference"], **LAYER),
-    *c.agreements(LAYERED, c.required("fem", "bem", "integral_equation")),
-    *c.agreements(RESOLVED, c.required("mdr_table")),
-    *c.agreements(THIN, c.VERY_COARSE, derived_from=COARSE_TABLE, suffix=", thin layers"),
-    *c.pressure_agreements(
-        LAYERED,
-        {"pressure agrees": "weighted L2", "ring loads agree": "ring loads"},
-        "the logarithmic singularity at r = b and the root at r = a limit",
-    ),
-    # A claim each: the suite ci has MDR on all these scenes, finite elements on some.
-    c.carried_force("the pressure carries the force", LAYERED, "mdr"),
-    c.carried_force("the pressure of finite elements carries the force", LAYERED, "fem"),
-    c.zero(
-        "dF/d(delta) is the stiffness of the flat punch",
-        "contact_stiffness",
-        PATHS,
-        WHY["spring stiffness"],
-        tolerance=1e-9,
-        derive=c.incremental_stiffness,
-    ),
-    c.zero(
-        "energy stiffness equals reaction stiffness",
-        "energy_defect",
-        (*LAYERED, *HALF_SPACE),
-        WHY["energy"],
-        tolerance=1e-8,
-        methods=("fem",),
-    ),
-    c.zero("patch test", "patch_defect", (*LAYERED, *HALF_SPACE), WHY["patch"], tolerance=1e-12, methods=("fem",)),
-    c.scaling_law("doubling E doubles F", AT_ONE, c.doubled_modulus, (1.0, 2.0, 2.0), WHY["linearity"]),
-    c.same_in_millimetres(AT_ONE),
-    c.scaling_law(
-        "unbonded layers do not see nu",
-        c.having((*AT_ONE, *AT_FIVE), layer="unbonded"),
-        c.other_poissons_ratio,
-        (1.0, 1.0, 1.0),
-        WHY["unbonded kernel"],
-        identities=NO_NU,
-        fem=3e-6,
-        bem=1e-7,
-    ),
-)
+NORMS: dict[str, Norm] = {"pressure agrees": "weighted L2", "ring loads agree": "ring loads"}
+SINGULAR = "the logarithmic singularity at r = b and the root at r = a limit"
+SPRINGS = "dF/d(delta) is the stiffness of the flat punch"
+BY_FEM: c.Words = {"methods": ("fem",)}
+UNBONDED: c.Words = {"identities": NO_NU, "fem": 3e-6, "bem": 1e-7}
 # Wider cells, of a tenth of the radius, are not halved when half as wide ones are asked for.
 HALVED = tuple({"order": 3, "growth": 0.35, "edge_cell": 0.05 / 2**n, "truncation": 1e-7} for n in range(4))
-EDGE = r.Refinement("cell at the contact edge halved, the rest fixed", "fem", HALVED, WHY["edge cell"])
+EDGE = r.refinement("cell at the contact edge halved, the rest fixed", "fem", HALVED, WHY["edge cell"])
 NODES, PANELS = r.in_turn("nodes", (8, 12, 16, 24)), "Gauss nodes on panels as wide as the layer"
-GAUSS = r.Refinement(PANELS, "mdr", NODES, WHY["gauss panels"], digits=1.0, floor=1e-13)
-FIRST_ORDER, EXPONENTIAL = "finite elements: first order in the edge cell", "MDR: exponential in the Gauss nodes"
-ORDERS = (
-    *r.studies(ENDS[1.0], EDGE, {"normal_force": 1.0}, against="integral_equation", name=FIRST_ORDER),
-    *r.studies(ENDS[5.0], GAUSS, ("normal_force",), against=r.FINEST_MDR, name=EXPONENTIAL),
-)
-CASE = Case(
-    name="truncated_cone",
-    title="Indentation by a truncated cone",
+GAUSS = r.refinement(PANELS, "mdr", NODES, WHY["gauss panels"], least_digits=1.0, floor=1e-13)
+TO_EQUATION: c.Words = {"against": "integral_equation", "name": "finite elements: first order in the edge cell"}
+TO_FINEST: c.Words = {"against": r.FINEST_MDR, "name": "MDR: exponential in the Gauss nodes"}
+TIMED = c.scene_name("bonded nu=0.45", 2.0)
+CASE = paper(
+    __name__,
+    __doc__,
     question="Do MDR and finite elements agree on a profile with a kink, from the half-space to the thin layer?",
     equations=("Eq. (4)", "Eq. (8)", "Eq. (9)", "Eq. (35)"),
-    text=text_of(__doc__),
     scenes=(*LAYERED, *PATHS, *HALF_SPACE),
     methods=c.EVERY,
     claims=(
-        *CLAIMS,
-        *ORDERS,
-        Ablation(scene=c.scene_name("bonded nu=0.45", 2.0), slow=("fem",)),
-        *elastic_costs(c.scene_name("bonded nu=0.45", 2.0), in_ci=True, as_published=True),
+        *c.equals(c.depth_and_force("half-space"), closed_form, HALF_SPACE, WHY["sneddon"], **CLOSED),
+        *c.equals(c.depth_and_force("layer"), REFERENCE, (), WHY["reference"], **LAYER),
+        *c.agreements(LAYERED, c.required("fem", "bem", "integral_equation")),
+        *c.agreements(RESOLVED, c.required("mdr_table")),
+        *c.agreements(THIN, c.VERY_COARSE, derived_from=COARSE_TABLE, suffix=", thin layers"),
+        *c.pressure_agreements(LAYERED, NORMS, SINGULAR),
+        # A claim each: the suite ci has MDR on all these scenes, finite elements on some.
+        c.carried_force("the pressure carries the force", LAYERED, "mdr"),
+        c.carried_force("the pressure of finite elements carries the force", LAYERED, "fem"),
+        c.zero(
+            SPRINGS, "contact_stiffness", PATHS, WHY["spring stiffness"], tolerance=1e-9, derive=c.incremental_stiffness
+        ),
+        c.zero(
+            "energy stiffness equals reaction stiffness",
+            "energy_defect",
+            (*LAYERED, *HALF_SPACE),
+            WHY["energy"],
+            tolerance=1e-8,
+            **BY_FEM,
+        ),
+        c.zero("patch test", "patch_defect", (*LAYERED, *HALF_SPACE), WHY["patch"], tolerance=1e-12, **BY_FEM),
+        c.scaling_law("doubling E doubles F", AT_ONE, c.doubled_modulus, (1.0, 2.0, 2.0), WHY["linearity"]),
+        c.same_in_millimetres(AT_ONE),
+        c.scaling_law(
+            "unbonded layers do not see nu",
+            c.having((*AT_ONE, *AT_FIVE), layer="unbonded"),
+            c.other_poissons_ratio,
+            (1.0, 1.0, 1.0),
+            WHY["unbonded kernel"],
+            **UNBONDED,
+        ),
+        *r.studies(ENDS[1.0], EDGE, {"normal_force": 1.0}, **TO_EQUATION),
+        *r.studies(ENDS[5.0], GAUSS, ("normal_force",), **TO_FINEST),
+        Ablation(scene=TIMED, slow=("fem",)),
+        *elastic_costs(TIMED, in_ci=True, as_published=True),
     ),
 )

@@ -1,17 +1,18 @@
-"""Two layers of equal thickness: soft on stiff, stiff on soft, incompressible, and free to slip on each other.
+"""Two layers.
 
-A paraboloid, a truncated cone and a flat punch press two layers on a rigid base, from contacts much smaller than the
+Two layers of equal thickness: soft on stiff, stiff on soft, incompressible, and free to slip on each other. A
+paraboloid, a truncated cone and a flat punch press two layers on a rigid base, from contacts much smaller than the
 upper layer to contacts five times as wide as both. MDR solves one equation for all radii, the direct integral equation
 one for each; they share the kernel, so the contact's pressure is also put back on the body by a kernel that is written
 separately: inside the contact it must press the shape of the indenter into the surface. Two equal layers are one. Two
 thin incompressible ones flow between base and punch: a force of delta pi a^4/(8 C), with C the integral of s^2/G over
-the depth s. Where a stiff layer lies on a soft one, flat ends would pull and are refused; no such scene stands
-here. The figure shows what bodies made simpler err by, also one on an elastic base and a graded one.
+the depth s. Where a stiff layer lies on a soft one, flat ends would pull and are refused; no such scene stands here.
+The figure shows what bodies made simpler err by, also one on an elastic base and a graded one.
 """
 
 import math
 
-from cases.case import Case, CaseScene, text_of
+from cases.case import CaseScene, paper
 from cases.cost import elastic_costs
 from cases.library import _common as c
 from cases.library import _refinements as r
@@ -68,10 +69,12 @@ PUBLISHED = {
 ON_THEM = tuple(scene for scene in SCENES if scene.name in PUBLISHED)
 
 
-def published(number: int, unit: float, *, per_modulus: bool = True) -> dict[str, tuple[float]]:
-    """Return published numbers by scene; ``unit`` times E* is the SI value of one."""
-    moduli = {one.name: c.contact_modulus(one.scene.layer.surface) if per_modulus else 1.0 for one in ON_THEM}
-    return {name: (PUBLISHED[name][number] * modulus * unit,) for name, modulus in moduli.items()}
+def published(scene: c.AnyScene) -> dict[str, float]:
+    """Return the published numbers in SI."""
+    (name,) = (one.name for one in ON_THEM if one.scene == scene)
+    (stiffness, depth, force), modulus, h = PUBLISHED[name], c.contact_modulus(scene.layer.surface), c.THICKNESS
+    depths = {"contact_stiffness": 2 * modulus * h * stiffness, "indentation_depth": 0.1 * h * depth}
+    return depths | {"normal_force": 0.1 * modulus * h**2 * force}
 
 
 def merged(scene: c.AnyScene) -> c.AnyScene:
@@ -91,25 +94,20 @@ def flowing(scene: c.AnyScene) -> float:
     return math.pi * c.radius(scene) ** 4 / (8 * compliance)
 
 
-H, DIGITS = c.THICKNESS, s.WHY["published digits"]
-BY_FAST: c.Words = {"tolerance": 1e-11, "methods": s.FAST}
-STIFFNESSES, DEPTHS, FORCES = published(0, 2 * H), published(1, 0.1 * H, per_modulus=False), published(2, 0.1 * H**2)
+NAMES = {"published stiffness": "contact_stiffness"} | c.depth_and_force("published")
 ALIKE, FLOW, ONE = "two equal layers are one", "incompressible layers flow", (on_two(*FIRST),)
 SAME_ANSWER: c.Words = {"tolerance": 1e-11, "fem": 1e-5, "bem": 1e-3}
-CASE = Case(
-    name="two_layers",
-    title="Two layers",
+CASE = paper(
+    __name__,
+    __doc__,
     question="Do methods agree on two layers of any contrast, and is their common kernel right?",
     equations=("Eq. (8)", "Eq. (10)", "Eq. (27)"),
-    text=text_of(__doc__),
     scenes=(*SCENES, *EQUAL, *THIN),
     methods=s.METHODS,
     claims=(
         *s.two_methods((*SCENES, *EQUAL)),
         s.pressed_shape((*SCENES, *EQUAL)),
-        c.equal("published stiffness", "contact_stiffness", STIFFNESSES, (), DIGITS, **BY_FAST),
-        c.equal("published depth", "indentation_depth", DEPTHS, (), DIGITS, **BY_FAST),
-        c.equal("published force", "normal_force", FORCES, (), DIGITS, **BY_FAST),
+        *c.equals(NAMES, published, ON_THEM, s.WHY["published digits"], tolerance=1e-11, methods=s.FAST),
         c.scaling_law(ALIKE, EQUAL, merged, (1.0, 1.0, 1.0), s.WHY["equal layers"], **SAME_ANSWER),
         s.stiffness_limit(FLOW, THIN, flowing, "flow", largest=0.1),
         *r.studies(ONE, r.EQUATION_NODES, ("normal_force",), against=r.FINEST_MDR),

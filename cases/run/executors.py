@@ -4,19 +4,20 @@ import logging
 import multiprocessing
 import os
 import signal
+import sys
 import threading
-import time
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future, ProcessPoolExecutor
 from contextlib import contextmanager
 from itertools import islice
 from queue import SimpleQueue
-from typing import Any, Generic, ParamSpec, TypeVar
+from typing import Any, ParamSpec, TypeVar
 
 from contact import InvalidInput
 
 P = ParamSpec("P")
 T = TypeVar("T")
+A = TypeVar("A")
 
 ExecutorFactory = Callable[[int], Executor]
 
@@ -68,7 +69,7 @@ class ClusterLost(Exception):
     """The scheduler of a cluster does not answer any more: what it had not finished is unsolved."""
 
 
-# Seconds that a scheduler may take to answer: at first, and again after its connection broke.
+# Seconds that a scheduler may take to answer.
 PATIENCE = 10.0
 
 
@@ -87,7 +88,6 @@ class DaskExecutor(Executor):
         # What breaks is said once, by this class.
         logging.getLogger("distributed.client").setLevel(logging.CRITICAL)
         self._address, self._killed = address, KilledWorker
-        self._threads, self._counted = 0, -PATIENCE
         try:
             self._client = Client(address, set_as_default=False, timeout=PATIENCE)
         except (OSError, ValueError) as error:
@@ -106,32 +106,10 @@ class DaskExecutor(Executor):
                 # `result` of the future raises it.
                 future.set_exception(self._named(error))
 
-        if self._is_lost:
+        if self._client.status != "running":
             raise self._lost()
-        remote = self._client.submit(fn, *args, pure=False, retries=2, **kwargs)
-        remote.add_done_callback(deliver)
+        self._client.submit(fn, *args, pure=False, retries=2, **kwargs).add_done_callback(deliver)
         return future
-
-    @property
-    def threads(self) -> int:
-        """Threads of the workers that are there, asked for once in `PATIENCE` seconds: a cluster may grow.
-
-        Raises:
-            ClusterLost: if the scheduler does not answer any more.
-        """
-        if self._is_lost:
-            raise self._lost()
-        if time.monotonic() - self._counted >= PATIENCE:
-            try:
-                self._threads = sum(self._client.nthreads().values())
-            except (CancelledError, OSError):
-                raise self._lost() from None
-            self._counted = time.monotonic()
-        return self._threads
-
-    @property
-    def _is_lost(self) -> bool:
-        return bool(self._client.status != "running")
 
     def _lost(self) -> ClusterLost:
         return ClusterLost(f"the Dask scheduler at {self._address} does not answer any more")
@@ -141,7 +119,7 @@ class DaskExecutor(Executor):
 
         Other errors of a call are no ``OSError``: `cases.solve` turns every error into a row.
         """
-        if isinstance(error, CancelledError | OSError) or self._is_lost:
+        if isinstance(error, CancelledError | OSError) or self._client.status != "running":
             return self._lost()
         return BrokenExecutor(f"{error!s:.200}") if isinstance(error, self._killed) else error
 
@@ -159,17 +137,12 @@ def dask_cluster(address: str) -> ExecutorFactory:
     return factory
 
 
-def places(executor: Executor, jobs: int) -> int:
-    """How many calls an executor of ``jobs`` jobs can carry out at a time; a cluster has as many places as threads."""
-    if isinstance(executor, SerialExecutor):
-        return 1
-    return max(jobs, executor.threads) if isinstance(executor, DaskExecutor) else jobs
-
-
 def ahead(executor: Executor, jobs: int) -> int:
-    """How many calls may be under way: two for each place, so that none stands idle and little is lost with one."""
-    # What runs in this process has ended when it is handed over.
-    return 1 if isinstance(executor, SerialExecutor) else 2 * places(executor, jobs)
+    """How many calls may be under way: two for each job, so that none stands idle and little is lost with one.
+
+    What runs in this process has ended when it is handed over; a cluster has a queue of its own.
+    """
+    return {SerialExecutor: 1, DaskExecutor: sys.maxsize}.get(type(executor), 2 * jobs)
 
 
 @contextmanager
@@ -213,59 +186,39 @@ def _end_with_parent() -> None:
         os._exit(1)
 
 
-A = TypeVar("A")
-
-
-class Window(Generic[A, T]):
-    """A bounded number of calls under way; each result leaves as soon as it is there, and nothing of it is kept.
+def completed(
+    submit: Callable[[A], Future[T]], arguments: Iterable[A], ahead: int, broken: list[A]
+) -> Iterator[tuple[A, T]]:
+    """Submit arguments one by one and yield each with its result as soon as it is there; nothing of it is kept.
 
     Args:
-        submit: Hands one argument over and returns the future of its result.
-        ahead: Gives how many may be under way now.
+        submit: hands one argument over and returns the future of its result.
+        arguments: taken when there is room for them.
+        ahead: how many may be under way.
+        broken: gets the arguments whose process died. After the first no more are handed over.
 
-    Attributes:
-        broken: Arguments whose process died. After the first no more are handed over.
+    Raises:
+        Exception: whatever a call raised, but for a process that died.
     """
-
-    def __init__(self, submit: Callable[[A], Future[T]], ahead: Callable[[], int]) -> None:
-        self._submit, self._ahead = submit, ahead
-        self._under_way: dict[Future[T], A] = {}
-        self._finished: SimpleQueue[Future[T]] = SimpleQueue()
-        self.broken: list[A] = []
-
-    def results(self, arguments: Iterable[A]) -> Iterator[tuple[A, T]]:
-        """Submit arguments one by one while workers are free, and yield each with its result as soon as it is finished.
-
-        Raises:
-            Exception: whatever a call raised, but for a process that died: its argument is in `broken`.
-        """
-        waiting = iter(arguments)
-        while True:
-            if not self.broken:
-                self._fill(waiting)
-            if not self._under_way:
-                return
-            future = self._finished.get()
-            argument = self._under_way.pop(future)
+    waiting, under_way = iter(arguments), dict[Future[T], A]()
+    # Finished calls are delivered by a queue, without a search through all calls under way.
+    finished: SimpleQueue[Future[T]] = SimpleQueue()
+    while True:
+        for argument in islice(waiting, 0 if broken else ahead - len(under_way)):
             try:
-                result = future.result()
+                future = submit(argument)
             except BrokenExecutor:
-                self.broken.append(argument)
-            else:
-                yield argument, result
-
-    def _fill(self, waiting: Iterator[A]) -> None:
-        for argument in islice(waiting, max(0, self._ahead() - len(self._under_way))):
-            self._hand_over(argument)
-            if self.broken:
-                return
-
-    def _hand_over(self, argument: A) -> None:
-        try:
-            future = self._submit(argument)
-        except BrokenExecutor:
-            self.broken.append(argument)
+                broken.append(argument)
+                break
+            under_way[future] = argument
+            future.add_done_callback(finished.put)
+        if not under_way:
             return
-        self._under_way[future] = argument
-        # Finished calls are delivered by a queue, without a search through all calls under way.
-        future.add_done_callback(self._finished.put)
+        future = finished.get()
+        argument = under_way.pop(future)
+        try:
+            result = future.result()
+        except BrokenExecutor:
+            broken.append(argument)
+        else:
+            yield argument, result

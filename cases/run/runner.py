@@ -19,9 +19,9 @@ from cases.declare.methods import registered
 from cases.run.executors import (
     ClusterLost,
     ExecutorFactory,
-    Window,
     ahead,
     closing,
+    completed,
     fresh_processes,
     process_pool,
     serial,
@@ -78,7 +78,7 @@ class RunOptions:
         out: folder of results.
         suite: name of the suite, for the record.
         methods: that were chosen, for the record; empty for those of the cases.
-        jobs: tasks at a time; on a cluster as many as it has threads if that is more.
+        jobs: tasks at a time; a cluster takes as many as it has threads.
         executor: where they run.
         resume: use answers of an earlier run of the same code in the same folder.
         time_limit: seconds a task may take, zero for no limit; by default only methods of installed packages have one.
@@ -251,10 +251,10 @@ def _solve_in(run: _Run, factory: ExecutorFactory, count: int, jobs: list[Job]) 
     """Solve in an executor; when a process dies, the tasks it may have computed are repeated one by one, apart."""
     while jobs:
         with closing(factory(count)) as executor:
-            window = Window(partial(_submit, executor, run), partial(ahead, executor, count))
-            for job, answer in window.results(jobs):
+            suspects: list[Job] = []
+            for job, answer in completed(partial(_submit, executor, run), jobs, ahead(executor, count), suspects):
                 run.finish(job, answer)
-        for suspect in window.broken:
+        for suspect in suspects:
             _solve_apart(run, factory, suspect)
         jobs = [job for job in jobs if job.task.identity not in run.answers]
 

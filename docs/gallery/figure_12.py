@@ -8,7 +8,7 @@ from typing import Literal
 
 import numpy as np
 
-from cases.library.sphere_impact import IMPACT_NUMBER, VELOCITY, scene_of
+from cases.library.sphere_impact import IMPACT_NUMBER, VELOCITY, impact
 from contact import ImpactHistory, StandardSolid
 from docs.gallery._parts import SOURCE, Figure, Panel, Series, by_finite_elements, mdr_line, show, symbols
 from mdr.impact.solver import solve_impact
@@ -28,7 +28,7 @@ KINDS = (ELASTIC, IMPACT_NUMBER, OTHER_NUMBER)
 @cache
 def hit(thickness: float, kind: float | str = IMPACT_NUMBER) -> ImpactHistory:
     """The impact on a layer [m] that is elastic, or viscoelastic with an impact number chi_HS of Eq. (53)."""
-    scene = scene_of(thickness)
+    scene = impact(thickness).scene
     solid = scene.effect(StandardSolid)
     if kind == ELASTIC or solid is None:
         return solve_impact(scene.replace(effects=()), SOURCE, {})

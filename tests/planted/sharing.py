@@ -36,7 +36,7 @@ class SharedFault:
     """A shared thing, one per cent wrong.
 
     Attributes:
-        shared: its name in `cases.declare.shared`.
+        shared: its name in `cases/declare/shared.toml`.
         what: what is wrong, in words.
         plant: switches it on with a monkeypatch.
         probes: names of the probes it is looked at with.
@@ -236,128 +236,71 @@ HEIGHTS = both(
     ),
 )
 
-FAULTS = (
-    SharedFault(
-        "layer kernel",
-        "1 - chi",
-        wrong_method("bem.kernels.stack:StackKernel", "one_minus_chi"),
-        ("cone", "paraboloid"),
-    ),
-    SharedFault(
-        "kernel of stacks", "1 - chi", wrong_method("bem.kernels.stack:StackKernel", "one_minus_chi"), ("stack",)
-    ),
-    SharedFault(
-        "kernel of graded layers",
-        "1 - chi",
-        wrong_method("bem.kernels.graded:GradedKernel", "one_minus_chi"),
-        ("graded",),
-    ),
-    SharedFault(
-        "moduli over depth",
-        "E(z)",
-        wrong_method("contact.scene.graded_layer:ExponentialDepth", "at"),
-        ("graded",),
-    ),
-    SharedFault(
-        "fields inside from the contact's density",
-        "fields of the half-space's part",
-        wrong_method("mdr.inside:Body", "_half_space"),
-        ("inside", "inside half-space"),
-    ),
-    SharedFault(
-        "von Mises stress",
-        "the stress",
-        wrong_property("contact.answer.inside:InsideFields", "von_mises"),
-        ("inside half-space",),
-    ),
-    SharedFault(
-        "laws and points of fields inside",
-        "points",
-        swap("cases.recording:fields_at", shrunk_points),
-        ("inside half-space",),
-    ),
-    SharedFault(
-        "laws and points of fields inside",
-        "weights of the laws",
-        swap("cases.inside_laws:_disc", heavier),
-        ("inside half-space",),
-    ),
-    SharedFault(
-        "contact modulus", "E* of boundary elements and MDR", swap("bem.kernels.moduli:contact_modulus", times), ELASTIC
-    ),
-    SharedFault(
-        "springs and profile of MDR",
-        "MDR profile",
-        override("mdr.spring_bed:Springs", "at", deeper),
-        ELASTIC,
-    ),
-    SharedFault(
-        "boundary elements on a grid",
-        "influence of a loaded rectangle",
-        swap("bem.grid.influence:rectangle_influence", times),
-        ("grids",),
-    ),
-    SharedFault("heights of profiles", "heights", HEIGHTS, ("grids",)),
-    SharedFault(
-        "interpolation of tabulated profiles",
-        "slopes between the points",
-        both(
-            HEIGHTS,
-            wrong_method(f"{PROFILES}:Tabulated", "slope_at"),
-            override("mdr.profiles:PiecewiseTip", "__init__", steeper),
-        ),
-        ("table",),
-    ),
-    *(
-        SharedFault(
-            "relaxation functions",
-            f"{name}: times and viscosities",
+CHI = "bem.kernels.stack:StackKernel", "one_minus_chi"
+PAIR = ("pair",), ("cases.library.coated_pair",)
+SLOPES = both(
+    HEIGHTS,
+    wrong_method(f"{PROFILES}:Tabulated", "slope_at"),
+    override("mdr.profiles:PiecewiseTip", "__init__", steeper),
+)
+IMPACT, IMPACTS = "contact.answer.paths:ImpactHistory", ("punch impact", "sphere impact")
+MODULI = "contact.scene.graded_layer:ExponentialDepth"
+# By the shared thing and what is wrong with it: the fault, the probes and the modules to import again.
+PLANTED = {
+    "layer kernel": {"1 - chi": (wrong_method(*CHI), ("cone", "paraboloid"))},
+    "kernel of stacks": {"1 - chi": (wrong_method(*CHI), ("stack",))},
+    "kernel of graded layers": {
+        "1 - chi": (wrong_method("bem.kernels.graded:GradedKernel", "one_minus_chi"), ("graded",))
+    },
+    "moduli over depth": {"E(z)": (wrong_method(MODULI, "at"), ("graded",))},
+    "fields inside from the contact's density": {
+        "fields of the half-space's part": (
+            wrong_method("mdr.inside:Body", "_half_space"),
+            ("inside", "inside half-space"),
+        )
+    },
+    "von Mises stress": {
+        "the stress": (wrong_property("contact.answer.inside:InsideFields", "von_mises"), ("inside half-space",))
+    },
+    "laws and points of fields inside": {
+        "points": (swap("cases.recording:fields_at", shrunk_points), ("inside half-space",)),
+        "weights of the laws": (swap("cases.inside_laws:_disc", heavier), ("inside half-space",)),
+    },
+    "contact modulus": {
+        "E* of boundary elements and MDR": (swap("bem.kernels.moduli:contact_modulus", times), ELASTIC)
+    },
+    "springs and profile of MDR": {"MDR profile": (override("mdr.spring_bed:Springs", "at", deeper), ELASTIC)},
+    "boundary elements on a grid": {
+        "influence of a loaded rectangle": (swap("bem.grid.influence:rectangle_influence", times), ("grids",))
+    },
+    "heights of profiles": {"heights": (HEIGHTS, ("grids",))},
+    "interpolation of tabulated profiles": {"slopes between the points": (SLOPES, ("table",))},
+    "relaxation functions": {
+        f"{name}: times and viscosities": (
             override(f"contact.scene.effects:{name}", "relaxation", longer_relaxation),
             (probe,),
         )
         for name, probe in (("KelvinVoigt", "punch impact"), ("StandardSolid", "sphere impact"))
-    ),
-    *(
-        SharedFault(
-            "restitution and duration of an impact",
-            what,
-            wrong_property("contact.answer.paths:ImpactHistory", name),
-            ("punch impact", "sphere impact"),
-        )
-        for what, name in (("restitution", "coefficient_of_restitution"), ("duration", "contact_time"))
-    ),
-    *(
-        SharedFault(
-            "reduction of two coated bodies, Eqs. (23)-(25)",
-            what,
-            wrong_reduction(**change),
-            ("pair",),
-            ("cases.library.coated_pair",),
-        )
-        for what, change in (
-            ("curvature, Eq. (23)", {"indenter": "radius_of_curvature"}),
-            ("modulus, Eq. (24)", {"layer": "youngs_modulus"}),
-            ("thickness, Eq. (25)", {"layer": "thickness"}),
-        )
-    ),
-    *(SharedFault("numbers of the scene", what, too_large(of=of), probes) for what, (of, probes) in NUMBERS.items()),
-    *(
-        SharedFault(
-            "numbers of the scene",
-            f"modulus at the {end}",
-            too_large_once(of=f"contact.scene.graded_layer:ExponentialDepth.{end}"),
-            ("graded",),
-        )
-        for end in ("surface", "base")
-    ),
-    SharedFault("record of an answer", "values", swap("cases.recording:_quantity", misread), ELASTIC),
-    SharedFault(
-        "rings on which pressures are compared",
-        "places of the samples",
-        swap("cases.norms:ring_quadrature", shrunk_rings),
-        ("cone",),
-    ),
-)
+    },
+    "restitution and duration of an impact": {
+        "restitution": (wrong_property(IMPACT, "coefficient_of_restitution"), IMPACTS),
+        "duration": (wrong_property(IMPACT, "contact_time"), IMPACTS),
+    },
+    "reduction of two coated bodies, Eqs. (23)-(25)": {
+        "curvature, Eq. (23)": (wrong_reduction(indenter="radius_of_curvature"), *PAIR),
+        "modulus, Eq. (24)": (wrong_reduction(layer="youngs_modulus"), *PAIR),
+        "thickness, Eq. (25)": (wrong_reduction(layer="thickness"), *PAIR),
+    },
+    "numbers of the scene": {
+        **{what: (too_large(of=of), probes) for what, (of, probes) in NUMBERS.items()},
+        **{f"modulus at the {end}": (too_large_once(of=f"{MODULI}.{end}"), ("graded",)) for end in ("surface", "base")},
+    },
+    "record of an answer": {"values": (swap("cases.recording:_quantity", misread), ELASTIC)},
+    "rings on which pressures are compared": {
+        "places of the samples": (swap("cases.norms:ring_quadrature", shrunk_rings), ("cone",))
+    },
+}
+FAULTS = tuple(SharedFault(shared, what, *fault) for shared, group in PLANTED.items() for what, fault in group.items())
 # Shared by nobody, but planted as well: the same mistake in the other method.
 OWN = SharedFault(
     "nothing: modulus of finite elements",

@@ -94,7 +94,7 @@ def row(fault, seen):
 
 HEAD = """# What two methods share
 
-Written by `python -m tests.planted.sharing_table`. The list is `cases/declare/shared.py`, the faults are
+Written by `python -m tests.planted.sharing_table`. The list is `cases/declare/shared.toml`, the faults are
 `tests/planted/sharing.py`. An agreement of two methods says nothing about what both use. "Independent method" is said
 only of a comparison that rests on no shared code; every other agreement names what is shared.
 

@@ -5,10 +5,8 @@ from collections import Counter
 import pytest
 
 from cases.verdicts import Status
-from tests.planted.faults import FAULTS
+from tests.planted.faults import AREAS, FAULTS
 from tests.planted.planting import forget_computed
-
-AREAS = {"kernels", "mdr", "transforms", "weak forms", "time stepping", "comparators", "baselines", "profiles"}
 
 
 @pytest.fixture(autouse=True)
@@ -42,5 +40,5 @@ def test_a_planted_fault_is_caught_with_the_right_status(fault, monkeypatch, tmp
 
 def test_there_are_thirty_faults_of_every_kind_and_no_two_alike():
     assert len(FAULTS) >= 30
-    assert {fault.area for fault in FAULTS} == AREAS
+    assert all(AREAS.values())
     assert max(Counter(fault.name for fault in FAULTS).values()) == 1

@@ -9,7 +9,7 @@ from typing import Final
 
 import numpy as np
 
-from cases.declare.quantities import relative_change, values_of
+from cases.declare.quantities import values_of
 from cases.units import Units, in_units
 from contact import Method, PronySeries, Scene, Solution
 from contact.scene.effects import Viscoelasticity
@@ -18,6 +18,11 @@ OTHER_TIME: Final = Units(time=3.7)
 
 # Share of a split branch that its first half keeps.
 _SHARE: Final = 0.3
+
+
+def relative_change(values, others):
+    """The largest difference over the largest of the first values."""
+    return float(np.max(np.abs(values - others)) / max(float(np.max(np.abs(values))), np.finfo(float).tiny))
 
 
 def _series(scene: Scene) -> PronySeries | None:

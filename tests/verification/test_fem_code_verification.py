@@ -5,6 +5,7 @@ import pytest
 
 from cases.answers import Table
 from cases.convergence import behaviour_of_errors
+from cases.library._common import reasons
 from cases.library.finite_element_verification import (
     CASE,
     MIXED,
@@ -36,6 +37,7 @@ def test_every_claim_of_the_page_passes(case):
     assert [(v.claim, v.scene, v.message) for v in case.verdicts if v.status is not Status.PASS] == []
     assert {claim.kind for claim in case.verdicts} == {Kind.ORDER, Kind.INVARIANT}
     assert max(claim.fraction for claim in case.verdicts) <= 1.0
+    assert {claim.why for claim in case.verdicts} == set(reasons(CASE.name).values())
 
 
 def test_every_pair_has_both_orders_and_mixed_ones_at_both_ratios_of_poisson(case):

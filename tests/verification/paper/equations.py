@@ -15,8 +15,8 @@ from cases.library.sphere_impact import (
     RADIUS_OF_CURVATURE,
     RELAXATION_TIME,
     VELOCITY,
+    impact,
 )
-from cases.library.sphere_impact import scene_of as impact_of
 from contact import CoatedPair, ContactRadii, FlatPunch, IndentationDepths, Layer, Paraboloid, PowerLaw, Profile, Scene
 from docs.gallery._parts import SOURCE, UNBONDED, layer, name_of, punch
 from docs.gallery._thin_layers import thin_cone_pressure, thin_profile
@@ -112,7 +112,7 @@ def same_thin_impact(support: str) -> Measured:
 
 def _thin_impact(support: str, thickness: float, speed: float) -> float:
     """On a layer of so many micrometres, at so many times the usual velocity."""
-    scene = impact_of(1e-3)
+    scene = impact(1e-3).scene
     thin = scene.layer.replace(thickness=1e-6 * thickness, support=support)
     loading = scene.loading.replace(velocity=speed * 1e-3 * VELOCITY)
     return float(solve_impact(scene.replace(layer=thin, loading=loading), SOURCE, {}).coefficient_of_restitution)

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from functools import cache, partial
 
 from cases.library.flat_punch_impact import restitution
-from cases.library.sphere_impact import scene_of, twice_the_radius_at_half_the_speed
+from cases.library.sphere_impact import impact, twice_the_radius_at_half_the_speed
 from contact import ImpactHistory, Layer
 from docs.gallery._parts import SOURCE, UNBONDED, layer, name_of
 from docs.gallery.figure_12 import elastic_half_space
@@ -30,7 +30,7 @@ KINDS = {True: "elastic", False: "viscoelastic"}
 @cache
 def hit(thickness: float, *, elastic: bool = False) -> ImpactHistory:
     """The sphere of Fig. 12 on a layer [m]; zero for the half-space."""
-    scene = scene_of(thickness)
+    scene = impact(thickness).scene
     return solve_impact(scene.replace(effects=()) if elastic else scene, SOURCE, {})
 
 
@@ -65,7 +65,7 @@ def duration(thickness: float, *, elastic: bool) -> Measured:
 
 def similar() -> Measured:
     """Restitution with twice the radius at half the speed, over the original one."""
-    other = solve_impact(twice_the_radius_at_half_the_speed(scene_of(2e-3)), SOURCE, {})
+    other = solve_impact(twice_the_radius_at_half_the_speed(impact(2e-3).scene), SOURCE, {})
     return deviation(other.coefficient_of_restitution, hit(2e-3).coefficient_of_restitution, 1e-9)
 
 
@@ -73,7 +73,7 @@ def by_finite_elements() -> Measured:
     """Largest force on 2 mm by finite elements over that by MDR."""
     from fem_reference import Fem
 
-    run = Fem().solve(scene_of(2e-3))
+    run = Fem().solve(impact(2e-3).scene)
     if not isinstance(run, ImpactHistory):
         raise TypeError("finite elements answer an impact with another history")
     error = float(run.uncertainty("peak_force").max()) / run.peak_force
