@@ -475,7 +475,7 @@ class HistorySetup:
             compliance = np.array([[per_shear / contact.stiffness]])
             return proportional_modes(compliance, np.ones(1), np.ones(1), contact.unknowns)
         strip = condense(*self._mesh(radius, cells), self.log)
-        return proportional_modes(strip.pressed * per_shear, strip.resultants, strip.radii, strip.unknowns)
+        return proportional_modes(strip.compliance * per_shear, strip.resultants, strip.radii, strip.unknowns)
 
     def _mesh(self, radius: float, cells: int) -> tuple[Parts, Section]:
         layer, indenter = self.scene.layer, self.scene.indenter
