@@ -59,7 +59,7 @@ def solve_complementarity(
     seen: set[bytes] = set()
     returns = False
     for _ in range(MOST_SETS):
-        pressure = _pressure(compliance, approach, active)
+        pressure = pressure_on(compliance, approach, active)
         # p_i > g_i / C_ii: on the active set g = 0, and off it p = 0.
         following = diagonal * pressure > np.where(active, 0.0, compliance @ pressure - approach)
         wrong = np.flatnonzero(following != active)
@@ -74,8 +74,8 @@ def solve_complementarity(
     raise NotConvergedError(f"the contact set is not settled after {MOST_SETS} attempts")
 
 
-def _pressure(compliance: FloatArray, approach: FloatArray, active: BoolArray) -> FloatArray:
-    """Pressure with zero gap on the active set."""
+def pressure_on(compliance: FloatArray, approach: FloatArray, active: BoolArray) -> FloatArray:
+    """Pressures (n,) with zero gap on the active set and no pressure elsewhere; negative where that pulls."""
     pressure = np.zeros_like(approach)
     if active.any():
         _, pressure[active], failed = dposv(compliance[np.ix_(active, active)], approach[active])

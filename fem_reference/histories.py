@@ -16,12 +16,10 @@ from contact import (
     Impact,
     ImpactHistory,
     InvalidInput,
-    KelvinVoigt,
     NotConvergedError,
     Scene,
     StageLog,
     UnsupportedSceneError,
-    Viscoelasticity,
 )
 from contact.answer.solution import Setting
 from contact.records.validation import FloatArray
@@ -30,11 +28,10 @@ from contact.stated import SAFETY
 from fem_reference.equilibria import refuse_touching_at
 from fem_reference.materials import contact_modulus, shear_modulus
 from fem_reference.motions import (
-    CondensedLayer,
     HistorySetup,
+    Motion,
     Resolution,
-    Sample,
-    columns,
+    Strip,
     segments,
     simulate_impact,
     simulate_prescribed,
@@ -84,13 +81,13 @@ def impact(scene: Scene, settings: Discretisation, *, written: Mapping[str, Sett
     radius, span = _pilot(setups[0][0])
 
     def answer(setup: HistorySetup, resolution: Resolution) -> ImpactHistory:
-        condensed = setup.condensed(radius, resolution.cells)
-        return _impact_in_si(setup, condensed, _fall(setup, span / resolution.steps, condensed), written)
+        strip = setup.strip(radius, resolution.cells)
+        return _impact_in_si(setup, strip, _fall(setup, span / resolution.steps, strip), written)
 
     half_both, half_cells, found = (answer(*each) for each in setups)
+    # Half the cells and half the steps may cancel: both changes count.
     pairs = (found, half_cells), (half_cells, half_both)
     refuse_touching_at(scene, found.peak_contact_radius, log)
-    # Half the cells and half the steps may cancel: both changes count.
     errors = {
         name: np.full(len(found), SAFETY * sum(_change(*pair, name).max() for pair in pairs) + FLOOR)
         for name in found.ARRAYS
@@ -98,7 +95,6 @@ def impact(scene: Scene, settings: Discretisation, *, written: Mapping[str, Sett
     }
     for name in (*found.SCALARS, "coefficient_of_restitution", "contact_time"):
         errors[name] = np.array([SAFETY * sum(_scalar_change(*pair, name) for pair in pairs) + FLOOR])
-    errors["coefficient_of_restitution"] += _energy_lost(found)
     errors["contact_time"] += _end_by_roundings(found)
     cell, peak_radius = radius / setups[-1][1].cells, found.peak_contact_radius
     at_kink = any(abs(peak_radius - kink) < 2 * cell for kink in scene.indenter.kinks)
@@ -114,9 +110,9 @@ def history(scene: Scene, settings: Discretisation, *, written: Mapping[str, Set
         InvalidInput: nothing is ever pressed.
         UnsupportedSceneError: a dashpot would take an infinite force.
     """
-    setups = HistorySetup.resolutions(scene, settings, log)
-    values = scene.loading.depth if isinstance(scene.loading, DepthHistory) else scene.loading.force  # type: ignore[attr-defined]
-    if isinstance(scene.loading, DepthHistory) and values[0] > 0 and setups[0][0].relaxation.viscosity > 0:
+    setups, by_depth = HistorySetup.resolutions(scene, settings, log), isinstance(scene.loading, DepthHistory)
+    values: FloatArray = scene.loading.depth if by_depth else scene.loading.force  # type: ignore[attr-defined]
+    if by_depth and values[0] > 0 and setups[0][0].relaxation.viscosity > 0:
         raise UnsupportedSceneError(
             f"loading.depth begins at {values[0]:g} m: a dashpot answers this jump by an infinite force; begin at zero "
             "and give the ramp"
@@ -125,20 +121,20 @@ def history(scene: Scene, settings: Discretisation, *, written: Mapping[str, Set
     radius, _ = setups[0][0].fitted_radius(1.6 * guess, partial(_follow, setups[0][0], values, PILOT_OCTAVE))
 
     def answer(setup: HistorySetup, resolution: Resolution) -> HistoryPath:
-        condensed = setup.condensed(radius, resolution.cells)
-        return _history_in_si(setup, condensed, _follow(setup, values, resolution.per_octave, condensed), written)
+        strip = setup.strip(radius, resolution.cells)
+        channels = _channels(setup, strip, _follow(setup, values, resolution.per_octave, strip), written)
+        channels["contact_radius"] = np.where(channels["normal_force"] > 0, channels["contact_radius"], 0.0)
+        return HistoryPath(**channels)
 
     half_both, half_cells, found = (answer(*each) for each in setups)
+    pairs = (found, half_cells), (half_cells, half_both)
     largest, cell = float(found.contact_radius.max()), radius / setups[-1][1].cells
     refuse_touching_at(scene, largest, log)
-    errors = {}
-    for name in (name for name in found.ARRAYS if name != "time"):
-        changes = [(_change(*pair, name), pair[1]) for pair in ((found, half_cells), (half_cells, half_both))]
-        near = [
-            _largest_near(change, companion, found, NARROW * cell) + SHARE_OF_MEAN * change.mean()
-            for change, companion in changes
-        ]
-        errors[name] = SAFETY * sum(near) + FLOOR
+    errors = {
+        name: SAFETY * np.sum([_change_near(*pair, name, found, NARROW * cell) for pair in pairs], axis=0) + FLOOR
+        for name in found.ARRAYS
+        if name != "time"
+    }
     # Pressures of a layer that relaxes do not end like sqrt(a - r).
     errors["contact_radius"] = errors["contact_radius"] + (1.0 if scene.effects else EDGE_READING) * cell / largest
     return _with_errors(found, errors)
@@ -155,11 +151,11 @@ def _pilot(setup: HistorySetup) -> tuple[float, float]:
     guess, span = _scales(setup.scene)
     step = span / PILOT_STEPS
     while True:
-        radius, samples = setup.fitted_radius(1.6 * guess, partial(_fall, setup, step))
-        velocity, contact = columns(samples)["velocity"], samples[-1].time
+        radius, motion = setup.fitted_radius(1.6 * guess, partial(_fall, setup, step))
+        velocity, contact = motion.velocity, float(motion.time[-1])
         change = float(np.abs(np.diff(velocity)).max() / velocity[0])
         finer = max(1.0, change * contact / (200 * step) / WANTED_CHANGE)
-        is_fine = len(samples) > PILOT_STEPS // 2 and change <= LARGEST_CHANGE
+        is_fine = len(velocity) > PILOT_STEPS // 2 and change <= LARGEST_CHANGE
         if finer > MOST and (is_fine or step < span / PILOT_STEPS):
             raise NotConvergedError(
                 "a strong dashpot stops the body far sooner than contact ends: equal steps that follow its stop are "
@@ -208,68 +204,57 @@ def _radius_of_load(scene: Scene, largest: float) -> float:
     return first_radius(indenter, lambda r: r * height(indenter, r) >= load)
 
 
-def _fall(setup: HistorySetup, duration: float, condensed: CondensedLayer) -> list[Sample]:
-    """Samples of the impact with time steps of this duration [s], in the units of the condensed layer."""
+def _fall(setup: HistorySetup, duration: float, strip: Strip) -> Motion:
+    """The impact with time steps of this duration [s], in the units of the strip."""
     loading: Any = setup.scene.loading
-    mass = loading.mass / (shear_modulus(setup.scene.layer) * condensed.radius)
+    mass = loading.mass / (shear_modulus(setup.scene.layer) * strip.radius)
     with setup.log.stage("time_steps"):
-        samples = simulate_impact(condensed, mass, loading.velocity / condensed.radius, duration)
-    setup.log.count("steps", len(samples))
-    return samples
+        motion = simulate_impact(strip, mass, loading.velocity / strip.radius, duration)
+    setup.log.count("steps", len(motion.time))
+    return motion
 
 
-def _follow(setup: HistorySetup, values: FloatArray, per_octave: int, condensed: CondensedLayer) -> list[Sample]:
-    """Samples of the response to depths [m] or forces [N], in the units of the condensed layer."""
+def _follow(setup: HistorySetup, values: FloatArray, per_octave: int, strip: Strip) -> Motion:
+    """The response to depths [m] or forces [N], in the units of the strip."""
     loading: Any = setup.scene.loading
     by_depth = isinstance(loading, DepthHistory)
-    unit = condensed.radius * (1.0 if by_depth else shear_modulus(setup.scene.layer) * condensed.radius)
+    unit = strip.radius * (1.0 if by_depth else shear_modulus(setup.scene.layer) * strip.radius)
     with setup.log.stage("time_steps"):
         steps = segments(loading.time, per_octave)
-        samples = simulate_prescribed(condensed, loading.time, values / unit, steps, by_depth=by_depth)
-    setup.log.count("steps", len(samples))
-    return samples
+        motion = simulate_prescribed(strip, loading.time, values / unit, steps, by_depth=by_depth)
+    setup.log.count("steps", len(motion.time))
+    return motion
 
 
-def _channels(setup: HistorySetup, condensed: CondensedLayer, samples: list[Sample]) -> dict[str, Any]:
+def _channels(setup: HistorySetup, strip: Strip, motion: Motion, written: Mapping[str, Setting]) -> dict[str, Any]:
     """Arguments that `ImpactHistory` and `HistoryPath` share, in SI units; radii are at least that of a flat end."""
-    length, found = condensed.radius, columns(samples)
     return {
         "scene": setup.scene,
         "method": "fem",
+        "settings": written,
         "error_estimate": {},
-        "cost": setup.log.cost(unknowns=condensed.unknowns),
+        "cost": setup.log.cost(unknowns=strip.modes.unknowns),
         "stages": setup.log.records,
-        "time": found["time"],
-        "indentation_depth": found["depth"] * length,
-        "normal_force": found["force"] * shear_modulus(setup.scene.layer) * length**2,
-        "contact_radius": np.maximum(found["radius"] * length, setup.scene.indenter.flat_radius),
+        "time": motion.time,
+        "indentation_depth": motion.depth * strip.radius,
+        "normal_force": motion.force * shear_modulus(setup.scene.layer) * strip.radius**2,
+        "contact_radius": np.maximum(motion.radius * strip.radius, setup.scene.indenter.flat_radius),
     }
 
 
-def _impact_in_si(
-    setup: HistorySetup, condensed: CondensedLayer, samples: list[Sample], written: Mapping[str, Setting]
-) -> ImpactHistory:
+def _impact_in_si(setup: HistorySetup, strip: Strip, motion: Motion, written: Mapping[str, Setting]) -> ImpactHistory:
     loading: Any = setup.scene.loading
-    channels, found = _channels(setup, condensed, samples), columns(samples)
+    channels = _channels(setup, strip, motion, written)
     peaks: dict[str, Any] = {name: peak(channels[channel]) for name, channel in PEAKS.items()}
-    velocity, energy = found["velocity"] * condensed.radius, shear_modulus(setup.scene.layer) * condensed.radius**3
+    velocity, energy = motion.velocity * strip.radius, shear_modulus(setup.scene.layer) * strip.radius**3
     return ImpactHistory(
         **channels,
-        settings=written,
         velocity=velocity,
         kinetic_energy=loading.mass * velocity**2 / 2,
-        stored_energy=found["stored"] * energy,
-        dissipated_energy=found["dissipated"] * energy,
+        stored_energy=motion.stored * energy,
+        dissipated_energy=motion.dissipated * energy,
         **peaks,
     )
-
-
-def _history_in_si(
-    setup: HistorySetup, condensed: CondensedLayer, samples: list[Sample], written: Mapping[str, Setting]
-) -> HistoryPath:
-    channels = _channels(setup, condensed, samples)
-    channels["contact_radius"] = np.where(channels["normal_force"] > 0, channels["contact_radius"], 0.0)
-    return HistoryPath(**channels, settings=written)
 
 
 def _with_errors(answer: A, errors: Mapping[str, FloatArray]) -> A:
@@ -297,28 +282,22 @@ def _scalar_change(answer: ImpactHistory, companion: ImpactHistory, name: str) -
     return max(change, float(_change(answer, companion, PEAKS[name])[values >= NEAR_PEAK * values.max()].max()))
 
 
-def _largest_near(change: FloatArray, companion: HistoryPath, answer: HistoryPath, narrow: float) -> FloatArray:
-    """Largest change (n,) near each instant of the answer.
+def _change_near(
+    answer: HistoryPath, companion: HistoryPath, name: str, found: HistoryPath, narrow: float
+) -> FloatArray:
+    """Largest change of a quantity near each of n instants, and a share of its mean, shape (n,).
 
     Args:
-        change: at the companion's instants, shape (m,).
-        companion: the coarser answer.
-        answer: the answer, of n instants.
+        answer: the finer answer.
+        companion: the coarser answer, at whose m instants both are compared.
+        name: of the quantity.
+        found: the answer of n instants.
         narrow: contact radius [m] below which the largest change of all such narrow contacts is taken.
     """
-    place = np.searchsorted(companion.time, answer.time)
-    shifts = range(-WINDOW, WINDOW)
-    near: FloatArray = np.max([change[np.clip(place + k, 0, len(change) - 1)] for k in shifts], axis=0)
-    at_narrow = change[companion.contact_radius < narrow]
-    return np.asarray(np.where(answer.contact_radius < narrow, np.maximum(near, at_narrow.max(initial=0.0)), near))
-
-
-def _energy_lost(answer: ImpactHistory) -> float:
-    """Relative error of the restitution e by the defect dE of the energy balance: de/e = dE / (2 kinetic energy)."""
-    if isinstance(answer.scene.effect(Viscoelasticity), KelvinVoigt):
-        return 0.0  # the dissipation of a dashpot is summed to first order in the step only, and shows no error
-    total = answer.kinetic_energy + answer.stored_energy + answer.dissipated_energy
-    return float(abs(total[-1] - total[0]) / (2.0 * answer.kinetic_energy[-1]))
+    change, place = _change(answer, companion, name), np.searchsorted(companion.time, found.time)
+    near: FloatArray = np.max([change[np.clip(place + k, 0, len(change) - 1)] for k in range(-WINDOW, WINDOW)], axis=0)
+    at_narrow = change[companion.contact_radius < narrow].max(initial=0.0)
+    return np.asarray(np.maximum(near, at_narrow * (found.contact_radius < narrow)) + SHARE_OF_MEAN * change.mean())
 
 
 def _end_by_roundings(answer: ImpactHistory) -> float:

@@ -85,15 +85,16 @@ class Top:
         resultants: w, force per nodal pressure, shape (n,).
         viscosity: eta / G_0 [s].
         dissipated_energy: energy lost so far, over G_0 L^3.
-        dashpot_force: share of the dashpot in the force after the last step, ``eta v . D (x_1 - x_0)/dt``: with
-            ``M v = w`` the force is ``F = w . p = v . M^T p = v . (K + D G*) x``. Exact after Euler steps only.
+        dashpot_force: share of the dashpot in the force after the last step, ``eta v . D (x_1 - x_0)/dt``, with the
+            amplitudes v of a uniform displacement: ``M v = w``, so that ``F = w . p = v . (K + D G*) x``. Exact after
+            Euler steps only.
     """
 
     def __init__(self, modes: Modes, relaxation: ShearRelaxation) -> None:
         unit, acts = relaxation.at_once, relaxation.moduli > 0
         self.resultants, self.viscosity = modes.resultants, relaxation.viscosity / unit
         self.dissipated_energy = self.dashpot_force = 0.0
-        self._lever = np.linalg.lstsq(modes.displacements, modes.resultants)[0]
+        self._uniform = np.linalg.lstsq(modes.displacements, modes.resultants)[0]
         self._modes, self._volume, self._shear = modes.displacements, modes.volume, modes.shear
         self._long_term = relaxation.long_term_modulus / unit
         self._moduli, self._times = relaxation.moduli[acts] / unit, relaxation.times[acts]
@@ -135,7 +136,7 @@ class Top:
         following = (self._modes.T @ pressure - self._shear * self._memory) / self._stiffness
         change = following - self._now
         self.dissipated_energy += self._dissipation(change)
-        self.dashpot_force = self.viscosity / self._duration * float(self._lever @ (self._shear * change))
+        self.dashpot_force = self.viscosity / self._duration * float(self._uniform @ (self._shear * change))
         self._branches = self._alpha[:, None] * self._branches + np.outer(self._beta, change)
         self._before, self._now, self._last = self._now, following, self._duration
 
@@ -204,15 +205,16 @@ def compressible_modes(parts: Parts, section: Section) -> Modes:
         displacements.append(responses)
         volume_forces.append(loads[:count] - modulus * (deviator @ responses))
     u, forces = np.hstack(displacements), np.hstack(volume_forces)
-    modes, volume, shear = _energy_modes(u, u.T @ forces, u.T @ np.asarray(deviator @ u))
+    modes, volume, shear = _energy_modes(u.T @ forces, u.T @ np.asarray(deviator @ u))
     moments, resultants = (u.T @ loads[:count]).T @ modes, loads.sum(axis=0)
     return Modes(moments, volume, shear, resultants, tractions.radii, layer.space.size)
 
 
-def _energy_modes(u: FloatArray, volume: FloatArray, shear: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Coefficients (m, r) of the columns of ``u`` in modes that diagonalise both energies, and their K and D (r,).
+def _energy_modes(volume: FloatArray, shear: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Coefficients (m, r) of m displacements in modes that diagonalise both energies, and their K and D (r,).
 
-    Modes are normalised to K + D = 1. ``volume`` and ``shear`` (m, m) are the energies ``u^T K_v u`` and ``u^T D_v u``.
+    Modes are normalised to K + D = 1. ``volume`` and ``shear`` (m, m) are the energies ``u^T K_v u`` and ``u^T D_v u``
+    of the displacements u.
     """
     volume, shear = (volume + volume.T) / 2, (shear + shear.T) / 2
     energy, vectors = np.linalg.eigh(volume + shear)

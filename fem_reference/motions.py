@@ -7,12 +7,12 @@ constant one, contact at depth delta is the complementarity problem
 
 Prescribed depths or forces are linear between the given instants. In an impact the body, of mass M, moves by the
 trapezoidal rule, hence its kinetic energy changes exactly by the work of the force. The rule gives
-``delta_1 = delta_0 + dt v_0 - dt^2 (F_0 + F_1) / (4 M)``, linear in F_1 = w . p_1. Inserted above, it eliminates the
-depth: a step is one complementarity problem with the matrix
+``delta_1 = delta_0 + dt v_0 - dt^2 (F_0 + F_1) / (4 M)``, linear in F_1 = w . p_1. Depth and force of a step then obey
 
-    A + kappa w w^T,      kappa = dt^2 / (4 M),
+    delta + kappa F = reach,      kappa = dt^2 / (4 M),      reach = delta_0 + dt v_0 - kappa F_0,
 
-and ``delta_0 + dt v_0 - kappa F_0`` in place of delta.
+as if the layer were pressed through a spring of compliance kappa. Inserted above, this eliminates the depth: a step is
+one complementarity problem with the matrix A + kappa w w^T and reach in place of delta.
 """
 
 from __future__ import annotations
@@ -20,16 +20,15 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 import numpy as np
 from scipy.interpolate import make_interp_spline
-from scipy.optimize import brentq
 
 from contact import FlatPunch, InvalidInput, NotConvergedError, Scene, StageLog
 from contact.records.validation import BoolArray, FloatArray
-from fem_reference.contact_set import Complementary, edge_radius, solve_complementarity
-from fem_reference.materials import Parts, relaxation_of
+from fem_reference.contact_set import Complementary, edge_radius, pressure_on, solve_complementarity
+from fem_reference.materials import Parts, ShearRelaxation, relaxation_of
 from fem_reference.memory import Modes, Top, compressible_modes, proportional_modes
 from fem_reference.mesh import Section
 from fem_reference.prescribed_contact import solve_contact
@@ -43,9 +42,11 @@ MAX_STEPS = 200_000
 # Duration of the step for a load that jumps at the first instant, over that of the next step.
 INSTANT = 1e-7
 # Fewest events (a vertex touches or leaves) in a segment whose dashpot force is smoothed.
-FEWEST_TOUCHES = 4
-# An event within this share of a step counts as at its start.
+FEWEST_EVENTS = 4
+# Events closer than this share of a step are one event. With a hundredth of it roundings split them.
 SLIGHTLY = 1e-6
+# Secants to the next event. One suffices where moduli relax in proportion, and three for other layers.
+MOST_SECANTS = 20
 # Octaves of steps in a segment, the fewest and the most, and the number that all segments of a history share. Steps
 # double from octave to octave: after a kink of the load the layer relaxes on every time scale.
 FEWEST, MOST, SHARED = 3, 12, 48
@@ -61,37 +62,26 @@ FULL, FITTING, SPARE = 0.9, 0.3, 1.25
 
 
 @dataclass(frozen=True)
-class CondensedLayer:
+class Strip:
     """A layer at rest and its indenter, condensed to the contact strip.
 
     Units: lengths by the strip's radius L, stresses by the instantaneous shear modulus G_0, times in seconds.
 
     Attributes:
-        surface: the layer; it has a memory, so a condensed layer serves one history.
-        radii: vertices of the pressures over L, shape (n,); one entry for a flat punch, unless a compressible layer
-            relaxes.
+        modes: the layer; its vertices are one for a flat punch, unless a compressible layer relaxes.
+        relaxation: of its shear.
         profile: moments ``int phi_i f 2 pi r dr`` of the indenter's profile, shape (n,).
         radius: L [m].
-        unknowns: size of the linear system before condensation.
     """
 
-    surface: Top
-    radii: FloatArray
+    modes: Modes
+    relaxation: ShearRelaxation
     profile: FloatArray
     radius: float
-    unknowns: int
-
-    def sample(
-        self, time: float, depth: float, velocity: float, pressure: FloatArray, *, dashpot: float = 0.0
-    ) -> Sample:
-        """The sample at a time [s]: contact radius and force of the pressures (n,), and the layer's energies."""
-        top, edge = self.surface, edge_radius(self.radii, pressure)
-        force = float(top.resultants @ pressure)
-        return Sample(time, depth, velocity, force, edge, top.stored_energy, top.dissipated_energy, dashpot)
 
 
-class Sample(NamedTuple):
-    """One instant of a motion, in the units of its condensed layer.
+class Motion(NamedTuple):
+    """Quantities at the instants of a motion, each of shape (instant,), in the units of its `Strip`.
 
     Attributes:
         time: t [s].
@@ -104,26 +94,44 @@ class Sample(NamedTuple):
         dashpot: share of the dashpot in the force, see `Top.dashpot_force`.
     """
 
-    time: float
-    depth: float
-    velocity: float
-    force: float
-    radius: float = 0.0
-    stored: float = 0.0
-    dissipated: float = 0.0
-    dashpot: float = 0.0
+    time: FloatArray
+    depth: FloatArray
+    velocity: FloatArray
+    force: FloatArray
+    radius: FloatArray
+    stored: FloatArray
+    dissipated: FloatArray
+    dashpot: FloatArray
 
 
-def columns(samples: Sequence[Sample]) -> dict[str, FloatArray]:
-    """Samples as one array per quantity."""
-    return dict(zip(Sample._fields, np.array(samples).T, strict=True))
+class Record:
+    """A motion while it is simulated: the memory of the layer, and one row of `Motion` per instant."""
+
+    def __init__(self, strip: Strip) -> None:
+        self.strip, self.top, self.rows = strip, Top(strip.modes, strip.relaxation), list[tuple[float, ...]]()
+
+    def add(self, time: float, depth: float, velocity: float, pressure: FloatArray) -> None:
+        """Add the instant at which the layer has taken a step with the end pressures (n,)."""
+        top, edge = self.top, edge_radius(self.strip.modes.radii, pressure)
+        force = float(top.resultants @ pressure)
+        energies = top.stored_energy, top.dissipated_energy
+        self.rows.append((time, depth, velocity, force, edge, *energies, top.dashpot_force))
+
+    @property
+    def motion(self) -> Motion:
+        """The motion so far."""
+        return Motion(*np.array(self.rows).T)
 
 
-def simulate_impact(condensed: CondensedLayer, mass: float, velocity: float, duration: float) -> list[Sample]:
-    """Samples of an impact in equal steps, from first touch to the loss of contact.
+def simulate_impact(strip: Strip, mass: float, velocity: float, duration: float) -> Motion:
+    """An impact in equal steps, from first touch to the loss of contact.
+
+    The last step ends where contact is lost, after a part of ``duration``. There the pressure is zero. Memory, depth
+    and velocity take a step of that length, by the same rules as every step: the work of the force still equals the
+    change of the kinetic energy, and the energies of the layer are those at the loss of contact.
 
     Args:
-        condensed: the layer at rest and its indenter.
+        strip: the layer at rest and its indenter.
         mass: M / (G_0 L) [s^2].
         velocity: v_0 / L [1/s].
         duration: of a step [s].
@@ -131,42 +139,41 @@ def simulate_impact(condensed: CondensedLayer, mass: float, velocity: float, dur
     Raises:
         NotConvergedError: the body never comes off (a layer without long-term elasticity may hold it).
     """
-    surface = condensed.surface
-    w, kappa = surface.resultants, duration**2 / (4 * mass)
-    depth, force, time = 0.0, float(w @ _touch(condensed, velocity, INSTANT * duration)), 0.0
-    samples, active, overlaps = [Sample(0.0, 0.0, velocity, force)], None, (0.0, 0.0, 0.0)
+    record, active, overlaps = Record(strip), None, (0.0, 0.0, 0.0)
+    top, depth, time, kappa = record.top, 0.0, 0.0, duration**2 / (4 * mass)
+    w = top.resultants
+    record.add(time, depth, velocity, _first_pressure(record, velocity, INSTANT * duration))
     for _ in range(MAX_STEPS):
-        matrix, offset = surface.begin(duration)
-        ballistic = depth + duration * velocity - kappa * force
-        approach = ballistic * w - condensed.profile - offset
-        state = solve_complementarity(matrix + kappa * np.outer(w, w), approach, active)
-        surface.accept(state.pressure)
-        following, overlaps = float(w @ state.pressure), (*overlaps[1:], float((approach / w).max()))
-        mean, active = (force + following) / 2, state.active
-        is_free = following == 0 and velocity - duration * mean / mass < 0
-        # In the last step depth and velocity are interpolated to the instant of release.
-        part = duration * (_release_fraction(*overlaps) if is_free else 1.0)
-        depth += part * velocity - part * duration * mean / (2 * mass)
-        velocity -= part * mean / mass
-        force, time = following, time + part
-        samples.append(condensed.sample(time, depth, velocity, state.pressure))
+        force = record.rows[-1][3]
+        matrix, offset = top.begin(duration)
+        reach, gap = depth + duration * velocity - kappa * force, strip.profile + offset
+        approach = reach * w - gap
+        pressure, _, active = solve_complementarity(matrix + kappa * np.outer(w, w), approach, active)
+        mean, overlaps = (force + float(w @ pressure)) / 2, (*overlaps[1:], float((approach / w).max()))
+        is_free, part = not pressure.any() and velocity < duration * mean / mass, duration
         if is_free:
-            return samples
+            part *= _release_fraction(*overlaps)
+            top.begin(part)
+        top.accept(pressure)
+        depth += part * velocity - part**2 * mean / (2 * mass)
+        velocity, time = velocity - part * mean / mass, time + part
+        record.add(time, depth, velocity, pressure)
+        if is_free:
+            return record.motion
     raise NotConvergedError("the body does not come off", {"last_force": force, "last_velocity": velocity})
 
 
-def _touch(condensed: CondensedLayer, velocity: float, instant: float) -> FloatArray:
+def _first_pressure(record: Record, velocity: float, instant: float) -> FloatArray:
     """Pressures (n,) at first touch: a dashpot reacts to the first velocity under the flat part of the profile.
 
     Without a dashpot there is no force at depth zero. With one it is proportional to the velocity.
     """
-    surface = condensed.surface
-    if surface.viscosity == 0:
-        return np.zeros_like(condensed.profile)
-    matrix, offset = surface.begin(instant)
-    approach = instant * velocity * surface.resultants - condensed.profile - offset
-    pressure = solve_complementarity(matrix, approach).pressure
-    surface.accept(pressure)
+    top, profile = record.top, record.strip.profile
+    if top.viscosity == 0:
+        return np.zeros_like(profile)
+    matrix, offset = top.begin(instant)
+    pressure = solve_complementarity(matrix, instant * velocity * top.resultants - profile - offset).pressure
+    top.accept(pressure)
     return pressure
 
 
@@ -211,83 +218,78 @@ def segments(time: FloatArray, per_octave: int) -> list[FloatArray]:
 
 
 def simulate_prescribed(
-    condensed: CondensedLayer, time: FloatArray, values: FloatArray, steps: Sequence[FloatArray], *, by_depth: bool
-) -> list[Sample]:
+    strip: Strip, time: FloatArray, values: FloatArray, steps: Sequence[FloatArray], *, by_depth: bool
+) -> Motion:
     """Response to depths or forces that are linear between the given instants; a first load above zero acts at once.
 
     Args:
-        condensed: the layer at rest and its indenter.
+        strip: the layer at rest and its indenter.
         time: instants [s].
-        values: depths or forces at these instants, in the units of the condensed layer.
+        values: depths or forces at these instants, in the units of the strip.
         steps: ends of the steps of each segment [s].
         by_depth: whether ``values`` are depths.
 
     Raises:
         NotConvergedError: no depth carries the force.
     """
-    samples: list[Sample] = []
-    surface, depth = condensed.surface, 0.0
-    active: BoolArray | None = None
+    record, depth = Record(strip), float(values[0]) if by_depth else 0.0
+    top, pressure = record.top, np.zeros_like(strip.profile)
+    active = np.zeros(len(pressure), dtype=bool)
 
-    def advance(duration: float, load: float) -> FloatArray:
-        """Pressures (n,) at the end of a step [s] to this load; memory, depth and active set are updated."""
-        nonlocal depth, active
-        matrix, offset = surface.begin(duration)
-        gap = condensed.profile + offset
+    def advance(duration: float, load: float) -> None:
+        """A step [s] to this load."""
+        nonlocal depth, pressure, active
+        matrix, offset = top.begin(duration)
+        gap = strip.profile + offset
         if by_depth:
-            state, depth = solve_complementarity(matrix, load * surface.resultants - gap, active), load
+            pressure, _, active = solve_complementarity(matrix, load * top.resultants - gap, active)
+            depth = load
         else:
-            state, depth = _depth_of_force(matrix, surface.resultants, gap, load, depth)
-        surface.accept(state.pressure)
-        active = state.active
-        return state.pressure
+            (pressure, _, active), depth = _carrying(matrix, gap, top.resultants, load, depth)
+        top.accept(pressure)
 
-    pressure = np.zeros_like(condensed.profile)
     if values[0] > 0:
-        pressure = advance(INSTANT * float(steps[0][0] - time[0]), float(values[0]))
-    samples.append(condensed.sample(float(time[0]), float(values[0]) if by_depth else depth, 0.0, pressure))
+        advance(INSTANT * float(steps[0][0] - time[0]), float(values[0]))
+    record.add(float(time[0]), depth, 0.0, pressure)
     for ends, (t0, t1), (v0, v1) in zip(steps, pairwise(time), pairwise(values), strict=True):
         if by_depth:
-            surface.restart()
-        marks: list[tuple[float, float]] = []
-        active, first = None, len(samples)
+            top.restart()
+        rate, events, first = (v1 - v0) / (t1 - t0), list[tuple[float, float]](), len(record.rows)
         for before, now in pairwise([t0, *ends]):
-            load = v1 if now == t1 else v0 + (v1 - v0) * (now - t0) / (t1 - t0)
-            if by_depth and surface.viscosity and v1 > v0 and active is not None:
-                rate = (v1 - v0) / (t1 - t0)
-                pressure, active, found = touch_to_touch(condensed, depth, rate, active, float(now - before))
-                marks += [(before + after, force) for after, force in found]
-                depth = float(load)
+            load = float(v1 if now == t1 else v0 + rate * (now - t0))
+            if by_depth and top.viscosity and rate > 0 and now > ends[0]:
+                pressure, active, found = from_event_to_event(record, depth, rate, active, float(now - before))
+                events += [(before + after, force) for after, force in found]
+                depth = load
             else:
-                pressure = advance(float(now - before), float(load))
-            samples.append(condensed.sample(float(now), depth, 0.0, pressure, dashpot=surface.dashpot_force))
-        samples[first:] = smooth_dashpot(samples[first:], marks)
-    return samples
+                advance(float(now - before), load)
+            record.add(float(now), depth, 0.0, pressure)
+        record.rows[first:] = smooth_dashpot(record.rows[first:], events)
+    return record.motion
 
 
-def smooth_dashpot(samples: list[Sample], marks: Sequence[tuple[float, float]]) -> list[Sample]:
-    """Samples of a segment, the dashpot's share of the force made piecewise linear in time.
+def smooth_dashpot(rows: list[tuple[float, ...]], events: Sequence[tuple[float, float]]) -> list[tuple[float, ...]]:
+    """Rows of a segment, the dashpot's share of the force made piecewise linear in time.
 
-    Between two events (a vertex touches or leaves) the computed share is constant and correct in the middle of the
-    interval. These values are interpolated, and replace the computed ones.
+    Between two events the computed share is constant and correct in the middle of the interval. These values are
+    interpolated, and replace the computed ones.
 
     Args:
-        samples: of the segment.
-        marks: the instant [s] of each event in the segment, and the dashpot's force in the interval before it.
+        rows: of `Motion`.
+        events: the instant [s] of each event in the segment, and the dashpot's force in the interval before it.
     """
-    if len(marks) < FEWEST_TOUCHES:
-        return samples
-    ends, forces = np.array(marks).T
-    middles, time = (ends[1:] + ends[:-1]) / 2, columns(samples)["time"]
-    smooth = make_interp_spline(middles, forces[1:], k=1)(time)
-    return [
-        each if each.time < middles[0] else each._replace(force=max(0.0, each.force + float(force) - each.dashpot))
-        for each, force in zip(samples, smooth, strict=True)
-    ]
+    if len(events) < FEWEST_EVENTS:
+        return rows
+    ends, forces = np.array(events).T
+    middles, motion = (ends[1:] + ends[:-1]) / 2, Motion(*np.array(rows).T)
+    smooth = make_interp_spline(middles, forces[1:], k=1)(motion.time)
+    force = np.maximum(0.0, motion.force + smooth - motion.dashpot)
+    found = motion._replace(force=np.where(motion.time < middles[0], motion.force, force))
+    return list(zip(*found, strict=True))
 
 
-def touch_to_touch(
-    condensed: CondensedLayer, depth: float, rate: float, active: BoolArray, duration: float
+def from_event_to_event(
+    record: Record, depth: float, rate: float, active: BoolArray, duration: float
 ) -> tuple[FloatArray, BoolArray, list[tuple[float, float]]]:
     """A step under a growing depth in parts that end where a vertex touches or leaves, for a layer with a dashpot.
 
@@ -296,8 +298,12 @@ def touch_to_touch(
     a staircase: it jumps where a vertex touches. Steps across a jump would give the force an error of the order of the
     cell.
 
+    The slack of a vertex is p_i A_ii where it is pressed and the gap g_i where it is free. It is negative where the set
+    is wrong. The next event is the first zero of a slack: the secant through two instants has it, exactly where moduli
+    relax in proportion, else after a few repetitions (regula falsi).
+
     Args:
-        condensed: the layer, whose memory moves on, and its indenter.
+        record: whose memory moves on.
         depth: at the start.
         rate: of the depth.
         active: pressed vertices at the start.
@@ -307,54 +313,77 @@ def touch_to_touch(
         Pressures (n,) and pressed vertices (n,) at the end, and for each event the time since the start of the step [s]
         and the dashpot's force before it.
     """
-    touches: list[tuple[float, float]] = []
-    surface, elapsed, active = condensed.surface, 0.0, active.copy()
+    events: list[tuple[float, float]] = []
+    top, elapsed, active = record.top, 0.0, active.copy()
 
     def problem(part: float) -> tuple[FloatArray, FloatArray]:
         """Compliance A and approach delta w - f - o after a part [s], one Euler step of the dashpot."""
-        surface.restart()
-        matrix, offset = surface.begin(part)
-        return matrix, (depth + rate * (elapsed + part)) * surface.resultants - condensed.profile - offset
+        top.restart()
+        matrix, offset = top.begin(part)
+        return matrix, (depth + rate * (elapsed + part)) * top.resultants - record.strip.profile - offset
 
-    def held(part: float) -> tuple[FloatArray, FloatArray]:
-        """Pressures with the active set fixed after a part [s], and slacks (n,), negative where the set is wrong.
-
-        The slack is p_i A_ii at a pressed vertex and the gap g_i at a free one; a margin for roundings is added.
-        """
+    def fixed(part: float) -> tuple[FloatArray, FloatArray]:
+        """Pressures with the active set fixed after a part [s], and slacks (n,), both with a margin for roundings."""
         matrix, approach = problem(part)
-        pressure = np.zeros_like(approach)
-        if active.any():
-            pressure[active] = np.linalg.solve(matrix[np.ix_(active, active)], approach[active])
+        pressure = pressure_on(matrix, approach, active)
         slack = np.where(active, matrix.diagonal() * pressure, matrix @ pressure - approach)
         return pressure, slack + 1e-11 * np.abs(approach).max()
 
-    def least(part: float) -> float:
-        """Smallest slack: its zero is the next event."""
-        return float(held(part)[1].min())
-
     for _ in range(2 * len(active)):
         left = duration - elapsed
-        pressure, slack = held(left)
-        if slack.min() >= 0.0:
-            surface.accept(pressure)
-            return np.maximum(pressure, 0.0), active, touches
-        # A part of zero where a vertex touches or leaves at the start.
-        first = SLIGHTLY * left
-        part = 0.0 if least(first) < 0.0 else float(brentq(least, first, left, xtol=0.1 * first, rtol=1e-7))
-        wrong = held(min(left, part + first))[1] < 0.0
-        if part:
-            surface.accept(held(part)[0])
+        pressure, late = fixed(left)
+        if late.min() >= 0.0:
+            top.accept(pressure)
+            return np.maximum(pressure, 0.0), active, events
+        part, tiny = 0.0, SLIGHTLY * left
+        early = fixed(tiny)[1]
+        wrong = early < 0.0
+        # Where a vertex touches or leaves at the start the set changes there.
+        if not wrong.any():
+            part, wrong, pressure = _first_zero(fixed, (tiny, early), (left, late), tiny)
+            top.accept(pressure)
             elapsed += part
-            touches.append((elapsed, surface.dashpot_force))
+            events.append((elapsed, top.dashpot_force))
         active ^= wrong
     # Too many events: the rest of the step is one complementarity problem.
     state = solve_complementarity(*problem(duration - elapsed), active)
-    surface.accept(state.pressure)
-    return state.pressure, state.active, touches
+    top.accept(state.pressure)
+    return state.pressure, state.active, events
 
 
-def _depth_of_force(
-    matrix: FloatArray, w: FloatArray, gap: FloatArray, force: float, depth: float
+def _first_zero(
+    fixed: Callable[[float], tuple[FloatArray, FloatArray]],
+    low: tuple[float, FloatArray],
+    high: tuple[float, FloatArray],
+    tiny: float,
+) -> tuple[float, BoolArray, FloatArray]:
+    """Instant of the first zero of the slacks, the vertices (n,) that reach it, and the pressures (n,) there.
+
+    Args:
+        fixed: pressures and slacks at an instant.
+        low: an instant at which no slack is negative, and the slacks there.
+        high: a later one at which one is.
+        tiny: accuracy of the instant.
+    """
+    (t0, early), (t1, late), found = low, high, low[0]
+    pressure = fixed(t0)[0]
+    for _ in range(MOST_SECANTS):
+        zeros = np.full(len(late), np.inf)
+        falls = late < 0.0
+        zeros[falls] = t0 + (t1 - t0) * early[falls] / (early - late)[falls]
+        if abs(zeros.min() - found) <= tiny:
+            break
+        found = float(zeros.min())
+        pressure, slack = fixed(found)
+        if slack.min() < 0.0:
+            t1, late = found, slack
+        else:
+            t0, early = found, slack
+    return found, zeros <= found + 2 * tiny, pressure
+
+
+def _carrying(
+    matrix: FloatArray, gap: FloatArray, w: FloatArray, force: float, depth: float
 ) -> tuple[Complementary, float]:
     """Contact under a given force F, and its depth: Newton's method on the convex, piecewise linear F(delta).
 
@@ -363,28 +392,26 @@ def _depth_of_force(
 
     Args:
         matrix: A, shape (n, n).
-        w: moments of one, shape (n,).
         gap: f + o, moments of the profile and of the surface without pressure, shape (n,).
+        w: moments of one, shape (n,).
         force: F.
         depth: first guess.
 
     Raises:
         NotConvergedError: no depth carries the force.
     """
-    # The depth of first touch.
-    least = float(np.min(gap / w))
+    touch = float(np.min(gap / w))
     if force == 0:
-        return solve_complementarity(matrix, np.minimum(least * w - gap, 0.0)), min(depth, least)
-    depth, change = max(depth, least + 1e-9 * abs(least) + 1e-15), np.inf
+        return solve_complementarity(matrix, np.minimum(touch * w - gap, 0.0)), min(depth, touch)
+    depth, change, active = max(depth, touch + 1e-9 * abs(touch) + 1e-15), np.inf, None
     for _ in range(60):
-        state = solve_complementarity(matrix, depth * w - gap)
+        state = solve_complementarity(matrix, depth * w - gap, active)
         defect = force - float(w @ state.pressure)
         # A small force cannot be met better than its depth is rounded, where o is large.
         if abs(defect) <= 1e-10 * force or abs(change) <= 1e-14 * abs(depth):
             return state, depth
-        act = state.active if state.active.any() else gap / w <= depth + 1e-12
-        block = matrix[np.ix_(act, act)]
-        change = defect / float(w[act] @ np.linalg.solve(block, w[act]))
+        active = state.active if state.active.any() else gap / w <= depth + 1e-12
+        change = defect / float(w @ pressure_on(matrix, w, active))
         depth += change
     raise NotConvergedError("no depth carries the prescribed force", {"force_defect": defect})
 
@@ -404,19 +431,17 @@ class Resolution(NamedTuple):
 
 
 class HistorySetup:
-    """Condensed layers of one scene at one resolution, a fresh one for every motion that is simulated."""
+    """Strips of one scene at one resolution."""
 
     def __init__(self, scene: Scene, settings: Discretisation, log: StageLog) -> None:
         self.scene, self.log, self.relaxation = scene, log, relaxation_of(scene)
         self._settings = replace(settings, truncation=max(settings.truncation, TRUNCATION * settings.coarsening**6))
-        self._modes: dict[tuple[float, int], Modes] = {}
+        self._strips: dict[tuple[float, int], Strip] = {}
         relaxes = bool(np.any(self.relaxation.moduli)) or self.relaxation.viscosity > 0
         self._needs_field = relaxes and scene.layer.poissons_ratio < 0.5
 
     @classmethod
-    def resolutions(
-        cls, scene: Scene, settings: Discretisation, log: StageLog
-    ) -> list[tuple[HistorySetup, Resolution]]:
+    def resolutions(cls, scene: Scene, settings: Discretisation, log: StageLog) -> list[tuple[Self, Resolution]]:
         """Setups with resolutions of half the cells and half the steps, of half the cells only, and of the answer.
 
         In a history half the steps end at every other instant of the full ones, see `segments`. The two differences
@@ -427,19 +452,18 @@ class HistorySetup:
         half_both, half_cells = Resolution(cells, steps, octave), Resolution(cells, 2 * steps, 2 * octave)
         return [(coarser, half_both), (coarser, half_cells), (setup, Resolution(2 * cells, 2 * steps, 2 * octave))]
 
-    def condensed(self, radius: float, cells: int) -> CondensedLayer:
-        """The layer at rest with a strip of ``radius`` [m]."""
-        if (radius, cells) not in self._modes:
-            self._modes[radius, cells] = self._condensed_modes(radius, cells)
-        modes = self._modes[radius, cells]
-        space, indenter = TraceSpace(modes.radii, 1), self.scene.indenter
-        profile = np.zeros(1)
-        if len(modes.radii) > 1:
-            inside = np.minimum(space.gauss(4)[0] * radius, min(radius, indenter.max_radius))
-            profile = space.moments(shape(indenter, inside).height / radius, 4)
-        return CondensedLayer(Top(modes, self.relaxation), modes.radii, profile, radius, modes.unknowns)
+    def strip(self, radius: float, cells: int) -> Strip:
+        """The layer at rest and the indenter, on a strip of ``radius`` [m]."""
+        if (radius, cells) not in self._strips:
+            modes, indenter, profile = self._modes(radius, cells), self.scene.indenter, np.zeros(1)
+            if len(modes.radii) > 1:
+                space = TraceSpace(modes.radii, 1)
+                inside = np.minimum(space.gauss(4)[0] * radius, min(radius, indenter.max_radius))
+                profile = space.moments(shape(indenter, inside).height / radius, 4)
+            self._strips[radius, cells] = Strip(modes, self.relaxation, profile, radius)
+        return self._strips[radius, cells]
 
-    def _condensed_modes(self, radius: float, cells: int) -> Modes:
+    def _modes(self, radius: float, cells: int) -> Modes:
         """Modes of a strip of ``radius`` [m]; a factor G/E* turns compliances at E* = 1 into those at G = 1."""
         per_shear = (1 - self.scene.layer.poissons_ratio) / 2  # E* = 2 G / (1 - nu)
         if self._needs_field:
@@ -451,7 +475,7 @@ class HistorySetup:
             compliance = np.array([[per_shear / contact.stiffness]])
             return proportional_modes(compliance, np.ones(1), np.ones(1), contact.unknowns)
         strip = condense(*self._mesh(radius, cells), self.log)
-        return proportional_modes(strip.pressed * per_shear, strip.resultants, strip.radii, strip.unknowns)
+        return proportional_modes(strip.compliance * per_shear, strip.resultants, strip.radii, strip.unknowns)
 
     def _mesh(self, radius: float, cells: int) -> tuple[Parts, Section]:
         layer, indenter = self.scene.layer, self.scene.indenter
@@ -461,14 +485,12 @@ class HistorySetup:
                 return contact_section(layer, ScaledIndenter(indenter, radius), settings)
             return strip_section(layer, radius, cells, indenter.kinks, self._settings, outside=OUTSIDE)
 
-    def fitted_radius(
-        self, guess: float, simulate: Callable[[CondensedLayer], list[Sample]]
-    ) -> tuple[float, list[Sample]]:
-        """Radius [m] of a strip a quarter larger than the largest contact, and the samples of the last pilot.
+    def fitted_radius(self, guess: float, simulate: Callable[[Strip], Motion]) -> tuple[float, Motion]:
+        """Radius [m] of a strip a quarter larger than the largest contact, and the motion on the last pilot strip.
 
         Args:
             guess: first radius of a strip [m].
-            simulate: samples of the motion on a condensed layer.
+            simulate: the motion on a strip.
 
         Raises:
             InvalidInput: contact reaches the end of the profile.
@@ -476,11 +498,11 @@ class HistorySetup:
         """
         indenter = self.scene.indenter
         if isinstance(indenter, FlatPunch):
-            return indenter.radius, simulate(self.condensed(indenter.radius, PILOT_CELLS))
+            return indenter.radius, simulate(self.strip(indenter.radius, PILOT_CELLS))
         radius = min(guess, indenter.max_radius)
         for _ in range(12):
-            record = simulate(self.condensed(radius, PILOT_CELLS))
-            largest = max(sample.radius for sample in record)
+            motion = simulate(self.strip(radius, PILOT_CELLS))
+            largest = float(motion.radius.max())
             if largest == 0:
                 raise NotConvergedError(
                     "the pilot simulation presses at no step: a strong dashpot stops the body, or nothing presses"
@@ -488,6 +510,6 @@ class HistorySetup:
             if largest > FULL and radius >= indenter.max_radius:
                 raise InvalidInput(f"contact reaches the end of the profile at {radius:g} m; load less")
             if FITTING <= largest <= FULL:
-                return min(SPARE * largest * radius, indenter.max_radius), record
+                return min(SPARE * largest * radius, indenter.max_radius), motion
             radius = min(1.6 * radius, indenter.max_radius) if largest > FULL else radius * max(1.5 * largest, 0.1)
         raise NotConvergedError("no strip of the surface fits the contact", {"strip_radius": radius})

@@ -140,9 +140,8 @@ class Surface:
 
     Attributes:
         tractions: piecewise linear functions; their nodes are the candidates for contact.
-        pressed: Z_p, moments of u_z under each pressure, shape (n, n).
-        coupled: Z_q, moments of u_z under each tangential traction, shape (n, n); empty without these.
-        rubbed: R_q, moments of u_r under each tangential traction, shape (n, n); empty without these.
+        compliance: C, moments of u_z, and of u_r, under each pressure, and each tangential traction, shape (2 n, 2 n);
+            Z_p alone, shape (n, n), without tangential tractions.
         resultants: ``w_i = int phi_i 2 pi r dr``, shape (n,).
         base_forces: force on the base under each traction, shape (n,) or (2 n,).
         top: polynomials on the whole top of the mesh.
@@ -153,9 +152,7 @@ class Surface:
     """
 
     tractions: TraceSpace
-    pressed: FloatArray
-    coupled: FloatArray
-    rubbed: FloatArray
+    compliance: FloatArray
     resultants: FloatArray
     base_forces: FloatArray
     top: TraceSpace
@@ -245,9 +242,7 @@ def condense(
     n, top = len(tractions.radii), layer.top_nodes(np.inf)
     return Surface(
         tractions=tractions,
-        pressed=compliance[:n, :n],
-        coupled=compliance[:n, n:],
-        rubbed=compliance[n:, n:],
+        compliance=compliance,
         resultants=loads.sum(axis=0)[:n],
         base_forces=-solver.reactions(solution, 2 * layer.nodes_on("base") + 1).sum(axis=0),
         top=TraceSpace(layer.space.positions[0, top], STRIP_ORDER),

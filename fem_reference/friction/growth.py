@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Self
 
 import numpy as np
 from scipy.optimize import brentq
@@ -19,37 +20,51 @@ from contact import ContactRadii, Friction, InvalidInput, NormalForces, NotConve
 from contact.records.validation import FloatArray
 from contact.stated import SAFETY
 from fem_reference.equilibria import searched_radius
-from fem_reference.friction.step import RubbedContact, RubbedState, grown, stick_radius
+from fem_reference.friction.step import (
+    RubbedContact,
+    RubbedState,
+    advance,
+    at_load,
+    at_rest,
+    grown,
+    stick_radius,
+)
 from fem_reference.materials import contact_modulus
 from fem_reference.profiles import shape
 from fem_reference.settings import Discretisation
 from fem_reference.stated import LEAST_SHARE
 from fem_reference.surface import RUBBED_STRIDE, STRIP_CELLS, condense, strip_section
 
-# Share of its strip that the largest contact fills: a few nodes beyond it are needed to follow its growth.
+# Share of its strip that the largest contact fills. Above 0.95 too few nodes beyond it are left to follow its growth.
 FILLED = 0.9
-# A quarter of the fewest cells of the finer strip, and its most cells. With fewer the difference of two strips is
-# accidental; the time grows like the cube.
+# One pair of strips serves contacts with radii down to this share of its largest. With half of it the smallest has a
+# quarter of the cells.
+SERVED = 0.5
+# A quarter of the fewest cells of the finer strip, and its most cells. With half as few the difference of two strips is
+# accidental. The time grows like the cube.
 FEWEST_CELLS, MOST_CELLS = 20, 480
 # Share of a profile whose heights are used: at its very end a sphere's slope has no bound.
 INSIDE = 0.999
 # Growth of the mesh outside a strip of STRIP_CELLS cells, and the `Discretisation.growth` at which a strip has so many.
 AWAY, USUAL_GROWTH = 0.5, 0.5
-# A touching node lies this share of a cell inside the contact's edge where the edge slides.
+# A touching node lies this share of a cell inside the contact's edge where the edge slides: the limit on fine strips
+# without friction, compared with MDR. Where it is wrong by 0.01, radii on 60 cells err by 2e-4.
 EDGE_SHARE = 0.028
 # Where the edge sticks, the share is less by this times eps^2, with eps = ln(3 - 4 nu)/(2 pi) of the oscillating
-# singularity at the edge of a rigid punch that sticks.
+# singularity at the edge of a rigid punch that sticks (Johnson, Contact Mechanics, section 5.5): compared with MDR's
+# radii under full stick.
 LESS_BY_STICK = 0.25
 # Error of EDGE_SHARE in cells: twice the largest measured.
 EDGE_UNCERTAIN = 0.0015
 # One touching point on either side per so many of the strip, and at least two, are fitted by a polynomial of this
-# degree in the logarithm of the depth.
+# degree in the logarithm of the depth. Half as many points follow the noise of single cells.
 PER_NEIGHBOUR, DEGREE = 15, 3
 # Order of the heat's error in the cell: slip begins at the edge, where the pressure vanishes like sqrt(a - r).
 HEAT_ORDER = 1.5
 # The stick radius is extrapolated if the stick region and the slip region each have so many cells of the finer strip.
+# With half of it its two strips err by unlike laws.
 FEWEST_STUCK = 8
-# Error of an extrapolated stick radius, in cells.
+# Error of an extrapolated stick radius, in cells: twice the largest measured on half-spaces (Spence 1975).
 STICK_UNCERTAIN = 0.2
 
 
@@ -137,32 +152,31 @@ class Growing:
         return np.asarray(self.contact.radius**2 * np.array([state.force for state in self.states]))
 
     @cached_property
+    def touching(self) -> FloatArray:
+        """Radius of the touching node over that of the strip, shape (k,)."""
+        return self.contact.surface.radii[1 : len(self.states) + 1]
+
+    @cached_property
     def radius(self) -> FloatArray:
         """Contact radius a [m], shape (k,): the touching node and `EDGE_SHARE` of a cell."""
-        radii, touching = self.contact.surface.radii, self.contact.surface.radii[1 : len(self.states) + 1]
         share = EDGE_SHARE - np.where(self.stick == 1.0, self.less_by_stick, 0.0)
-        return np.asarray(self.contact.radius * (touching + share * radii[1]))
+        return np.asarray(self.contact.radius * self.touching + share * self.cell)
 
-    def radius_of(self, name: str, value: float) -> float:
-        """Contact radius [m] at a radius [m], depth [m] or force/E* [m^2], linear between touching points."""
-        return float(np.interp(value, getattr(self, name), self.radius))
+    @property
+    def cell(self) -> float:
+        """Cell of the strip [m]."""
+        return self.contact.radius * float(self.contact.surface.radii[1])
 
     @property
     def less_by_stick(self) -> float:
         """Distance, in cells, by which an edge that sticks lies farther in than one that slides."""
         return LESS_BY_STICK * (math.log(3.0 - 4.0 * self.contact.surface.poissons_ratio) / (2.0 * math.pi)) ** 2
 
-    @property
-    def edge_error(self) -> float:
-        """Error of the edge in cells. With finite friction slip may be narrower than a cell, and not be resolved."""
-        return EDGE_UNCERTAIN + (self.less_by_stick if math.isfinite(self.contact.coefficient) else 0.0)
-
     @cached_property
     def stick(self) -> FloatArray:
         """Stick radius over a, shape (k,)."""
-        radii, touching = self.contact.surface.radii, self.contact.surface.radii[1 : len(self.states) + 1]
-        inner = np.array([stick_radius(self.contact, state) for state in self.states])
-        return np.asarray(np.where(inner == touching, 1.0, inner / (touching + EDGE_SHARE * radii[1])))
+        inner, touching = np.array([stick_radius(self.contact, state) for state in self.states]), self.touching
+        return np.asarray(np.where(inner == touching, 1.0, inner / (touching + EDGE_SHARE * touching[0])))
 
     @cached_property
     def heat(self) -> FloatArray:
@@ -189,6 +203,12 @@ class Growing:
             return math.exp(log_force) / depth * exponent
         return math.exp(self.local(np.log(getattr(self, name)), depth)[0])
 
+    def state_at(self, depth: float) -> RubbedState:
+        """The equilibrium at a depth [m]."""
+        passed = int(np.searchsorted(self.depth[:-1], depth))
+        before = self.states[passed - 1] if passed else at_rest(self.contact)
+        return advance(self.contact, before, passed + 1, at_load(depth / self.contact.radius, by_depth=True))
+
 
 @dataclass(frozen=True)
 class GrowthRecord:
@@ -203,9 +223,13 @@ class GrowthRecord:
     coarse: Growing
 
     @classmethod
-    def of(cls, fine: RubbedContact, coarse: RubbedContact) -> GrowthRecord:
+    def of(cls, fine: RubbedContact, coarse: RubbedContact) -> Self:
         """The contact grown on each of two strips."""
         return cls(Growing(fine, grown(fine)), Growing(coarse, grown(coarse)))
+
+    def serves(self, name: str, value: float) -> bool:
+        """Whether a radius [m], depth [m] or force/E* [m^2] has enough cells."""
+        return bool(np.interp(value, getattr(self.fine, name), self.fine.radius) >= SERVED * self.fine.radius[-1])
 
     def numbers(self, name: str, value: float, *, extrapolated: bool = True) -> dict[str, float]:
         """Radius, depth [m], force/E* [m^2], stiffness/E* [m], stick radius [m] and heat/E* [m^3] in one state.
@@ -245,39 +269,35 @@ class GrowthRecord:
         fine, coarse = (float(np.interp(depth, strip.depth, strip.stick)) for strip in (self.fine, self.coarse))
         if min(fine, coarse) == 1.0:
             return 1.0
-        few = min(fine, 1.0 - fine) < FEWEST_STUCK * self.cell / radius
-        if few:
+        if min(fine, 1.0 - fine) < FEWEST_STUCK * self.fine.cell / radius:
             return fine if extrapolated else coarse
         return min(self._at("stick", depth, extrapolated), 1.0)
 
-    @property
-    def cell(self) -> float:
-        """Cell of the finer strip [m]."""
-        return self.fine.contact.radius * float(self.fine.contact.surface.radii[1])
-
     def errors(self, name: str, value: float) -> dict[str, float]:
-        """Relative errors of `numbers`: the changes by the extrapolation, and the uncertain edges within a cell.
+        """Errors of `numbers`, of the stick radius over a, of the heat over F delta, and relative for the others.
 
-        One change may vanish by accident: each is at least `LEAST_SHARE` of the largest of depth, force and stiffness.
+        They are the changes by the extrapolation, and the uncertain edges within a cell. One change may vanish by
+        accident: each is at least `LEAST_SHARE` of the largest of depth, force and stiffness.
         """
         found, other = self.numbers(name, value), self.numbers(name, value, extrapolated=False)
-        change = {each: abs(other[each] / v - 1.0) if v else 0.0 for each, v in found.items() if each != name}
-        least = LEAST_SHARE * max(change[each] for each in change if each not in ("heat", "stick", "radius"))
-        cell = self.cell / found["radius"]
-        error = {each: SAFETY * max(moved, least) for each, moved in change.items()} | {name: 0.0}
-        # The radius errs by the edge. At a prescribed radius it shifts the depth by d ln(delta)/d ln(a) times as much,
-        # and dF/F = (k_N delta/F) d(delta)/delta. The stiffness grows more slowly than the force.
-        exponent = found["stiffness"] * found["depth"] / found["force"]
-        edge = self.fine.edge_error * cell
+        radius, cell = found["radius"], self.fine.cell / found["radius"]
+        scale = found | {"stick": radius, "heat": found["force"] * found["depth"]}
+        least = LEAST_SHARE * max(abs(other[each] / found[each] - 1.0) for each in ("depth", "force", "stiffness"))
+        error = {
+            each: SAFETY * max(abs(other[each] - size), least * size) / scale[each] for each, size in found.items()
+        } | {name: 0.0}
+        # Slip may be narrower than a cell: the edge is that of a contact that sticks, or that of one that slides.
+        edge = cell * (EDGE_UNCERTAIN + self.fine.less_by_stick * math.isfinite(self.fine.contact.coefficient))
         if name == "radius":
+            # The edge shifts the depth by d ln(delta)/d ln(a) times as much, and dF/F = (k_N delta/F) d(delta)/delta.
+            # The stiffness grows more slowly than the force.
             depth = edge / self.fine.local(np.log(self.fine.radius), found["depth"])[1]
+            exponent = found["stiffness"] * found["depth"] / found["force"]
             for each, power in (("depth", 1.0), ("force", exponent), ("stiffness", exponent)):
                 error[each] += power * depth
         else:
             error["radius"] += edge
-        if found["stick"] < found["radius"]:
-            near = min(found["stick"], found["radius"] - found["stick"]) < FEWEST_STUCK * self.cell
-            error["stick"] += edge + (1.0 if near else STICK_UNCERTAIN) * self.cell / max(found["stick"], self.cell)
-        else:
-            error["stick"] = error["radius"]
-        return error
+        if found["stick"] == radius:
+            return error | {"stick": error["radius"]}
+        few = min(found["stick"], radius - found["stick"]) < FEWEST_STUCK * self.fine.cell
+        return error | {"stick": error["stick"] + edge + (1.0 if few else STICK_UNCERTAIN) * cell}

@@ -10,8 +10,9 @@ step ends where the next node touches. Displacements are imposed as moments ``in
 
     Z_p p + Z_q q = delta w - f,    u_r = Z_q^T p + R_q q,
 
-with the compliances of `Surface`; Z_q^T is reciprocity. A semismooth Newton method finds the sliding nodes: a node
-slides if the traction that would keep it, ``q - Du_r / R_ii`` with the diagonal of R_q, exceeds mu p.
+with the compliances of `Surface`; Z_q^T is reciprocity. Pressures and shears together are the tractions (2 n,), and the
+moments of u_z and u_r together the displacements (2 n,) = C (p, q). A semismooth Newton method finds the sliding nodes:
+a node slides if the traction that would keep it, ``q - Du_r / R_ii`` with the diagonal of R_q, exceeds mu p.
 
 Between two touching points the set of pressed nodes does not change. A contact is followed, loading and unloading, in
 steps that end where the next node touches, where the last one leaves, or where a depth or force is met before that.
@@ -62,16 +63,6 @@ class RubbedContact:
     coefficient: float
     radius: float
 
-    def displacement(self, pressure: FloatArray, shear: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Moments of u_z and u_r, shape (n,) each, under pressures (n,) and radial tractions (n,)."""
-        s = self.surface
-        return s.pressed @ pressure + s.coupled @ shear, pressure @ s.coupled + s.rubbed @ shear
-
-    def stored_energy(self, state: RubbedState) -> float:
-        """Elastic energy (p . u_z + q . u_r) / 2 over E* L^3, with moments u_z and u_r."""
-        normal, radial = self.displacement(state.pressure, state.shear)
-        return float(state.pressure @ normal + state.shear @ radial) / 2.0
-
 
 @dataclass(frozen=True)
 class RubbedState:
@@ -79,9 +70,8 @@ class RubbedState:
 
     Attributes:
         depth: delta / L.
-        pressure: p at the nodes, shape (n,).
-        shear: q at the nodes, shape (n,).
-        radial: moments of u_r, shape (n,).
+        tractions: p and q at the nodes, shape (2 n,).
+        displacements: moments of u_z and u_r, shape (2 n,).
         touched: moments of u_r at the instant when each node touched, shape (n,); for free nodes the present ones.
         sliding: 0 where a node sticks, else the sign of q, shape (n,).
         active: number of pressed nodes, the first ones from the axis.
@@ -91,9 +81,8 @@ class RubbedState:
     """
 
     depth: float
-    pressure: FloatArray
-    shear: FloatArray
-    radial: FloatArray
+    tractions: FloatArray
+    displacements: FloatArray
     touched: FloatArray
     sliding: IntArray
     active: int
@@ -101,16 +90,37 @@ class RubbedState:
     work: float = 0.0
     dissipated: float = 0.0
 
+    @property
+    def pressure(self) -> FloatArray:
+        """p at the nodes, shape (n,)."""
+        return self.tractions[: len(self.touched)]
 
-def at_rest(contact: RubbedContact) -> RubbedState:
+    @property
+    def shear(self) -> FloatArray:
+        """q at the nodes, shape (n,)."""
+        return self.tractions[len(self.touched) :]
+
+    @property
+    def radial(self) -> FloatArray:
+        """Moments of u_r, shape (n,)."""
+        return self.displacements[len(self.touched) :]
+
+    @property
+    def stored_energy(self) -> float:
+        """Elastic energy (p . u_z + q . u_r) / 2 over E* L^3."""
+        return float(self.tractions @ self.displacements) / 2.0
+
+
+def at_rest(contact: RubbedContact, *, work: float = 0.0, dissipated: float = 0.0) -> RubbedState:
     """The state without contact: zero tractions and displacements."""
-    zero = np.zeros(len(contact.profile))
-    return RubbedState(0.0, zero, zero, zero, zero, np.zeros(len(zero), dtype=np.int64), 0)
+    n = len(contact.profile)
+    zero, both = np.zeros(n), np.zeros(2 * n)
+    return RubbedState(0.0, both, both, zero, zero.astype(np.int64), 0, work=work, dissipated=dissipated)
 
 
-# The equation that determines the end of a step: coefficients of the active pressures and the depth (active + 1,), of
-# all shears (n,), and the right-hand side.
-Equation: TypeAlias = tuple[FloatArray, FloatArray, float]
+# The equation that determines the end of a step: coefficients of the tractions (2 n,) and of the depth, and the
+# right-hand side.
+Equation: TypeAlias = tuple[FloatArray, float, float]
 Control: TypeAlias = Callable[[RubbedContact, int], Equation]
 
 
@@ -119,23 +129,18 @@ def touching(contact: RubbedContact, active: int) -> Equation:
 
     In unloading the same equation, with one node less, is the instant at which the last pressed node leaves.
     """
-    s = contact.surface
-    row = np.append(s.pressed[active, :active], -s.resultants[active])
-    return row, s.coupled[active], -float(contact.profile[active])
+    surface = contact.surface
+    return surface.compliance[active], -float(surface.resultants[active]), -float(contact.profile[active])
 
 
-def at_depth(depth: float) -> Control:
-    """The step ends at a depth over L."""
-    return lambda contact, active: (np.append(np.zeros(active), 1.0), np.zeros(len(contact.profile)), depth)
+def at_load(load: float, *, by_depth: bool) -> Control:
+    """The step ends at a depth over L, or at a force w . p over E* L^2."""
 
+    def equation(contact: RubbedContact, active: int) -> Equation:
+        w = np.concatenate([contact.surface.resultants, np.zeros(len(contact.profile))])
+        return (0.0 * w, 1.0, load) if by_depth else (w, 0.0, load)
 
-def at_force(force: float) -> Control:
-    """The step ends at a force over E* L^2: w . p = F."""
-    return lambda contact, active: (
-        np.append(contact.surface.resultants[:active], 0.0),
-        np.zeros(len(contact.profile)),
-        force,
-    )
+    return equation
 
 
 def advance(contact: RubbedContact, before: RubbedState, active: int, control: Control) -> RubbedState:
@@ -148,12 +153,12 @@ def advance(contact: RubbedContact, before: RubbedState, active: int, control: C
     sliding = _first_guess(before, active, contact.coefficient)
     seen: set[bytes] = set()
     for _ in range(MOST_SETS):
-        pressure, shear, depth = _equilibrium(contact, before, sliding, active, control)
-        radial = contact.displacement(pressure, shear)[1]
-        found = _sliding(contact, pressure, shear, radial - before.radial, sliding)
+        tractions, depth = _equilibrium(contact, before, sliding, active, control)
+        moved = contact.surface.compliance @ tractions
+        after = replace(before, depth=depth, tractions=tractions, displacements=moved, sliding=sliding, active=active)
+        found = _sliding(contact, before, after)
         if np.array_equal(found, sliding):
-            after = replace(before, depth=depth, pressure=pressure, shear=shear, radial=radial, sliding=found)
-            return _accounted(contact, before, replace(after, active=active))
+            return _accounted(contact, before, after)
         sliding = found if found.tobytes() not in seen else _one_changed(sliding, found)
         seen.add(sliding.tobytes())
     raise NotConvergedError(f"the sliding part of the contact is not settled after {MOST_SETS} attempts")
@@ -176,58 +181,47 @@ def _first_guess(before: RubbedState, active: int, coefficient: float) -> IntArr
 
 def _equilibrium(
     contact: RubbedContact, before: RubbedState, sliding: IntArray, active: int, control: Control
-) -> tuple[FloatArray, FloatArray, float]:
-    """Pressure (n,), shear (n,) and depth with a given set of sliding nodes; the axis does not move and has no shear.
+) -> tuple[FloatArray, float]:
+    """Tractions (2 n,) and depth with a given set of sliding nodes; the axis does not move and has no shear.
 
-    Unknowns are the pressures of active nodes, the depth and the shears of sticking nodes; at the others q = s mu p
-    with s = ``sliding``. The rows are, in this order, ``Z_p p + Z_q q - delta w = -f`` at active nodes, the equation of
-    ``control``, and ``Z_q^T p + R_q q = u_r before`` at sticking nodes.
+    Unknowns are the pressures of active nodes, the shears of sticking ones, and the depth; at the others q = s mu p
+    with s = ``sliding``. The rows are ``Z_p p + Z_q q - delta w = -f`` at active nodes, ``Z_q^T p + R_q q = u_r`` as
+    before at sticking nodes, and the equation of ``control``.
     """
-    s, own = contact.surface, slice(0, active)
-    slides = sliding[own] != 0
-    stuck = np.flatnonzero(~slides)
-    stuck = stuck[stuck > 0]
+    compliance, n = contact.surface.compliance, len(contact.profile)
+    slides = sliding[:active] != 0
+    stuck = 1 + np.flatnonzero(~slides[1:])
     friction = np.zeros(active)
-    friction[slides] = contact.coefficient * sliding[own][slides]
-    row, shear_row, value = control(contact, active)
-    matrix = np.zeros((active + 1 + len(stuck), active + 1 + len(stuck)))
-    right = np.concatenate([-contact.profile[own], [value], before.radial[stuck]])
-    matrix[own, own] = s.pressed[own, own] + s.coupled[own, own] * friction
-    matrix[own, active] = -s.resultants[own]
-    matrix[own, active + 1 :] = s.coupled[own, stuck]
-    matrix[active, : active + 1] = row
-    matrix[active, own] += shear_row[own] * friction
-    matrix[active, active + 1 :] = shear_row[stuck]
-    matrix[active + 1 :, own] = s.coupled[own, stuck].T + s.rubbed[stuck, own] * friction
-    matrix[active + 1 :, active + 1 :] = s.rubbed[np.ix_(stuck, stuck)]
+    friction[slides] = contact.coefficient * sliding[:active][slides]
+    unknown, pressures, shears = np.append(np.arange(active), n + stuck), slice(0, active), slice(n, n + active)
+    row, depth_share, value = control(contact, active)
+    rows, size = np.vstack([compliance[unknown], row]), len(unknown)
+    matrix = np.zeros((size + 1, size + 1))
+    matrix[:, :size] = rows[:, unknown]
+    matrix[:, pressures] += rows[:, shears] * friction
+    matrix[pressures, size], matrix[size, size] = -contact.surface.resultants[pressures], depth_share
+    right = np.concatenate([-contact.profile[pressures], before.radial[stuck], [value]])
     solved = np.linalg.solve(matrix, right)
-    pressure, shear = np.zeros(len(contact.profile)), np.zeros(len(contact.profile))
-    pressure[own] = solved[own]
-    shear[own] = friction * pressure[own]
-    shear[stuck] = solved[active + 1 :]
-    return pressure, shear, float(solved[active])
+    tractions = np.zeros(2 * n)
+    tractions[unknown] = solved[:size]
+    tractions[shears] += friction * solved[pressures]
+    return tractions, float(solved[size])
 
 
-def _sliding(
-    contact: RubbedContact, pressure: FloatArray, shear: FloatArray, moved: FloatArray, sliding: IntArray
-) -> IntArray:
+def _sliding(contact: RubbedContact, before: RubbedState, after: RubbedState) -> IntArray:
     """Nodes that slide (n,), as in `RubbedState`: sign of the traction that would keep them, where it exceeds mu p.
 
-    Args:
-        contact: layer and indenter.
-        pressure: p at the nodes, shape (n,).
-        shear: q at the nodes, shape (n,).
-        moved: change of the moments of u_r in the step, shape (n,).
-        sliding: state with which these were solved, which stays where the traction equals mu p to rounding.
+    ``after`` was solved with its set of sliding nodes, which stays where the traction equals mu p to rounding.
     """
+    sliding, n = after.sliding, len(contact.profile)
     if not math.isfinite(contact.coefficient):
         return np.zeros_like(sliding)
-    holding = shear - moved / contact.surface.rubbed.diagonal()
-    limit = contact.coefficient * np.maximum(pressure, 0.0)
+    holding = after.shear - (after.radial - before.radial) / contact.surface.compliance.diagonal()[n:]
+    limit = contact.coefficient * np.maximum(after.pressure, 0.0)
     found = np.where(np.abs(holding) <= limit, 0.0, np.sign(holding)).astype(np.int64)
     tied = (np.abs(np.abs(holding) - limit) <= TIE * limit) & (sliding * holding >= 0.0)
     # The axis does not move, and where nothing presses nothing holds.
-    return np.where(tied | (np.arange(len(limit)) == 0) | (pressure <= 0.0), sliding, found)
+    return np.where(tied | (np.arange(n) == 0) | (after.pressure <= 0.0), sliding, found)
 
 
 def _accounted(contact: RubbedContact, before: RubbedState, after: RubbedState) -> RubbedState:
@@ -238,16 +232,14 @@ def _accounted(contact: RubbedContact, before: RubbedState, after: RubbedState) 
     last. Neither is negative.
     """
     _refuse_rings(contact, after)
-    moved = after.radial - before.radial
     steady = before.sliding == after.sliding
     traction = np.where(steady, (before.shear + after.shear) / 2.0, after.shear)
-    heat = -(traction * moved)[after.sliding != 0]
+    heat = -(traction * (after.radial - before.radial))[after.sliding != 0]
     force = float(contact.surface.resultants @ after.pressure)
-    touched = np.where(np.arange(len(moved)) < after.active, before.touched, after.radial)
     return replace(
         after,
         force=force,
-        touched=touched,
+        touched=np.where(np.arange(len(traction)) < after.active, before.touched, after.radial),
         work=before.work + (before.force + force) / 2.0 * (after.depth - before.depth),
         dissipated=before.dissipated + float(heat.sum()),
     )
@@ -257,13 +249,11 @@ def _refuse_rings(contact: RubbedContact, state: RubbedState) -> None:
     """Refuse a negative pressure in the contact, and an overlap u_z < delta - f anywhere on the strip."""
     if state.active < RESOLVED:
         return
-    gap = contact.displacement(state.pressure, state.shear)[0] - (
-        state.depth * contact.surface.resultants - contact.profile
-    )
-    scale = np.abs(state.depth * contact.surface.resultants).max() + np.abs(contact.profile).max()
+    sunk, n = state.depth * contact.surface.resultants, len(contact.profile)
+    gap = state.displacements[:n] - (sunk - contact.profile)
     pulled = state.pressure < -TOLERANCE * np.abs(state.pressure).max()
-    overlapped = gap < -TOLERANCE * scale
-    if (wrong := pulled | overlapped).any():
+    wrong = pulled | (gap < -TOLERANCE * (np.abs(sunk).max() + np.abs(contact.profile).max()))
+    if wrong.any():
         place, end = (contact.radius * contact.surface.radii[i] for i in (int(np.argmax(wrong)), state.active))
         kind = "would pull" if pulled.any() else "would overlap"
         raise no_single_circle(float(end), f"{kind} at r = {place:g} m")
@@ -271,11 +261,10 @@ def _refuse_rings(contact: RubbedContact, state: RubbedState) -> None:
 
 def grown(contact: RubbedContact) -> list[RubbedState]:
     """The states at touching points, in which node 1, 2, .. of the strip just touches, as the contact grows."""
-    state, states = at_rest(contact), []
+    states = [at_rest(contact)]
     for active in range(1, len(contact.profile) - SPARE):
-        state = advance(contact, state, active, touching)
-        states.append(state)
-    return states
+        states.append(advance(contact, states[-1], active, touching))
+    return states[1:]
 
 
 def followed(contact: RubbedContact, targets: Sequence[float], *, by_depth: bool) -> list[RubbedState]:
@@ -285,15 +274,14 @@ def followed(contact: RubbedContact, targets: Sequence[float], *, by_depth: bool
         InvalidInput: the contact reaches the end of the strip.
     """
     state, active, states = at_rest(contact), 1, []
-    control = at_depth if by_depth else at_force
     for target in targets:
-        state, active = _towards(contact, state, active, target, control)
+        state, active = _towards(contact, state, active, target, by_depth)
         states.append(state)
     return states
 
 
 def _towards(
-    contact: RubbedContact, state: RubbedState, active: int, target: float, control: Callable[[float], Control]
+    contact: RubbedContact, state: RubbedState, active: int, target: float, by_depth: bool
 ) -> tuple[RubbedState, int]:
     """The state at one target, and the number of nodes that are pressed just before it is reached.
 
@@ -302,36 +290,23 @@ def _towards(
         state: the state at the last target.
         active: number of nodes pressed just before that.
         target: depth or force.
-        control: `at_depth` or `at_force`.
+        by_depth: whether the target is a depth.
     """
-
-    def measure(state: RubbedState) -> float:
-        return state.depth if control is at_depth else state.force
-
-    start = measure(state)
-    if target == start:
-        return state, active
-    loading = target > start
-    while True:
+    start = state.depth if by_depth else state.force
+    loading, control = target > start, at_load(target, by_depth=by_depth)
+    while target != start:
         ahead = active if loading else active - 1
-        if not ahead and control is at_force and target > 0:
-            return advance(contact, state, active, control(target)), active
-        if not ahead:
-            return at_rest_again(contact, state), 1
         if ahead >= len(contact.profile) - SPARE:
             raise InvalidInput(f"contact reaches the end of the profile at {contact.radius:g} m; press less")
-        event = advance(contact, state, ahead, touching)
-        short = target - measure(event) if loading else measure(event) - target
-        if short <= CLOSE * abs(target):
-            reached = advance(contact, state, active, control(target))
-            return (reached, active) if reached.force >= 0 else (at_rest_again(contact, state), 1)
+        event = advance(contact, state, ahead, touching) if ahead else None
+        reached = (event.depth if by_depth else event.force) if event else 0.0
+        if event is None or (target - reached if loading else reached - target) <= CLOSE * abs(target):
+            found = advance(contact, state, active, control) if event or (target > 0 and not by_depth) else None
+            if found is None or found.force < 0:
+                return at_rest(contact, work=state.work, dissipated=state.dissipated), 1
+            return found, active
         state, active = event, active + 1 if loading else active - 1
-
-
-def at_rest_again(contact: RubbedContact, state: RubbedState) -> RubbedState:
-    """The state after the contact is lost; work and heat so far stay."""
-    rest = at_rest(contact)
-    return type(rest)(**{**vars(rest), "work": state.work, "dissipated": state.dissipated})
+    return state, active
 
 
 def stick_radius(contact: RubbedContact, state: RubbedState) -> float:

@@ -35,7 +35,7 @@ def test_stick_held_at_zero(monkeypatch):
     right = step._equilibrium
 
     def wrong(contact, before, *others):
-        return right(contact, dataclasses.replace(before, radial=np.zeros_like(before.radial)), *others)
+        return right(contact, dataclasses.replace(before, displacements=0.0 * before.displacements), *others)
 
     monkeypatch.setattr(step, "_equilibrium", wrong)
     with pytest.raises(CAUGHT):
@@ -47,7 +47,8 @@ def test_pressure_that_pushes_the_surface_the_other_way(monkeypatch):
     right = step.RubbedContact
 
     def turned(surface, *others):
-        return right(dataclasses.replace(surface, coupled=-surface.coupled), *others)
+        sign = np.where(np.arange(len(surface.compliance)) < len(surface.radii), 1.0, -1.0)
+        return right(dataclasses.replace(surface, compliance=np.outer(sign, sign) * surface.compliance), *others)
 
     monkeypatch.setattr("fem_reference.friction.growth.RubbedContact", turned)
     with pytest.raises(CAUGHT):
@@ -73,8 +74,9 @@ def test_new_points_forget_that_they_slid_on_the_way(monkeypatch):
     right = step.advance
 
     def wrong(contact, before, active, control):
-        ahead = np.arange(len(before.radial)) >= before.active
-        return right(contact, dataclasses.replace(before, radial=np.where(ahead, 0.0, before.radial)), active, control)
+        radial = np.where(np.arange(len(before.radial)) >= before.active, 0.0, before.radial)
+        moved = np.append(before.displacements[: len(radial)], radial)
+        return right(contact, dataclasses.replace(before, displacements=moved), active, control)
 
     monkeypatch.setattr(step, "advance", wrong)
     with pytest.raises(CAUGHT):

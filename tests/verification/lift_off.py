@@ -82,7 +82,7 @@ def on_strip(scene: AnyScene, reach: float, depth: float, cells: int) -> Touchin
     quadrature, _ = strip.tractions.gauss(4)
     inside = np.minimum(quadrature * reach, scene.indenter.max_radius)
     profile = strip.moments(shape(scene.indenter, inside).height / reach)
-    state = solve_complementarity(strip.pressed, depth / reach * strip.resultants - profile)
+    state = solve_complementarity(strip.compliance, depth / reach * strip.resultants - profile)
     last = int(np.flatnonzero(state.active)[-1]) if state.active.any() else 0
     is_disc = bool(state.active[: last + 1].all())
     return Touching(is_disc, float(strip.radii[last]) * reach, float(strip.resultants @ state.pressure) * reach**2)
