@@ -31,7 +31,7 @@ from mdr.many_layers import equilibria_on_layers, takes_part
 from mdr.own_units import OwnUnits, is_power_law, own_units
 
 if TYPE_CHECKING:
-    from mdr.impact.results import ImpactResults
+    from mdr.impact.solver import ImpactResults
 
 Progress: TypeAlias = Callable[[int, int], None]
 

@@ -2,61 +2,66 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass, replace
-from typing import NamedTuple
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.polynomial import legendre
-from numpy.typing import NDArray
 
-from contact.records.validation import FloatArray, IntArray
+from contact.records.validation import BoolArray, FloatArray
 from mdr.impact.motion import Bodies, Growth, Phase, Shrinkage, State
-from mdr.impact.rules import rule
+from mdr.impact.rules import rule, slopes
 
 # Samples of a phase from which the search for the largest force starts. With a third of them narrow peaks are missed.
 _PLACES = 129
+# Newton steps of that search: from neighbouring samples two reach the last digit of the force, one leaves 1e-9.
+_PEAK_STEPS = 3
+
+# Last correction below which a growth has a turn. With a tenth a longer track is tabulated later, if at all.
+_TURNS = 1e-3
 
 
-class Pressed(NamedTuple):
-    """Growth of some impacts within one piece of their tracks, and the shrinkage back through it; None if elastic."""
+class Divided(Exception):
+    """Impacts that cannot go on together.
 
-    lanes: IntArray
-    growth: Growth
-    shrinkage: Shrinkage | None
+    Args:
+        apart: Those that pass a break of the profile, or that exceed the depth up to which their track is tabulated.
+        is_short: Whether it is the latter.
+    """
+
+    def __init__(self, apart: BoolArray, *, is_short: bool) -> None:
+        super().__init__()
+        self.apart, self.is_short = apart, is_short
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Course:
-    """Motions of n impacts.
+    """Motions of n impacts through the same pieces of their tracks.
 
     Attributes:
         bodies: The impacts.
-        parts: Growths in their order, each with its shrinkage.
+        growths: In their order.
+        shrinkages: In theirs, back through the same pieces; none if elastic.
         turn: State at the turn.
         end: State at the release.
         unsure: Sums over the phases of the last corrections of speed/v_0, ln(duration) and rebound/speed, shape (3, n).
-        short: Whether a contact grows beyond its track, shape (n,); its results are invalid then.
     """
 
     bodies: Bodies
-    parts: tuple[Pressed, ...]
+    growths: list[Growth]
+    shrinkages: list[Shrinkage]
     turn: State
     end: State
     unsure: FloatArray
-    short: NDArray[np.bool_]
 
     @property
-    def is_elastic(self) -> bool:
-        """Whether the layer is elastic, so that the shrinkage mirrors the growth."""
-        return not (self.bodies.rates.any() or self.bodies.viscosity.any())
+    def phases(self) -> list[Phase]:
+        """All in their order."""
+        return [*self.growths, *self.shrinkages]
 
     def outcomes(self) -> FloatArray:
         """Restitution, contact time, largest force over 2 E*, depth and radius, shape (5, n)."""
-        force, radius = np.zeros((2, self.short.size))
-        for index, growth, _ in self.parts:
-            force[index] = np.maximum(force[index], _largest(growth))
-            radius[index] = growth.radius[:, -1]
+        force = np.max([_largest(growth) for growth in self.growths], axis=0)
+        radius = self.growths[-1].radius[:, -1]
         return np.stack([-self.end.speed / self.bodies.velocity, self.end.time, force, self.turn.depth, radius])
 
 
@@ -68,123 +73,101 @@ def course(bodies: Bodies, nodes: int, guess: Course | FloatArray) -> Course:
         nodes: Number of nodes per phase.
         guess: The same motions at another resolution; or durations of the growths [s] and their initial decay rates
             of the speed [1/s], shape (2, n).
+
+    Raises:
+        Divided: If some impacts pass more breaks of the profile than others, or exceed their tracks.
     """
     n, m = bodies.rates.shape
-    state = State(np.zeros(n), bodies.velocity.copy(), np.zeros(n), np.zeros((n, m)), np.zeros((n, m)))
-    unsure, short = np.zeros((3, n)), np.zeros(n, dtype=bool)
+    touch = State(np.zeros(n), bodies.velocity.copy(), np.zeros(n), np.zeros((n, m)), np.zeros((n, m)))
     like = guess if isinstance(guess, Course) else None
-    if isinstance(guess, Course):
-        parts = list(_alike(bodies, nodes, state, guess))
-    else:
-        parts = list(_growths(bodies, nodes, guess, state, short))
-    turn = State(*(one.copy() for one in state))
-    found = Course(bodies, tuple(parts), turn, state, unsure, short)
-    for number in reversed(range(len(parts))):
-        index, growth, _ = parts[number]
-        unsure[:2, index] += growth.unsure
-        if not found.is_elastic:
-            shrinkage = _mirrored(growth, state.take(index), like.parts[number].shrinkage if like else None)
-            shrinkage.solve(growth, searched=like is not None)
-            # If a dashpot has stopped a body, the speeds of its rebound are far below v_0.
-            whole = np.abs(shrinkage.speed).max(axis=1) / shrinkage.bodies.velocity
-            speed, duration = shrinkage.unsure
-            unsure[:, index] += np.stack([speed * whole, duration, speed])
-            state.put(index, shrinkage.finish())
-            parts[number] = Pressed(index, growth, shrinkage)
-    if found.is_elastic:
-        state = state._replace(time=2 * turn.time, speed=-bodies.velocity, depth=0 * turn.depth)
-    return replace(found, parts=tuple(parts), end=state)
+    growths = _alike(bodies, nodes, touch, like) if like else _growths(bodies, nodes, touch, np.asarray(guess))
+    turn = growths[-1].finish()
+    unsure = np.zeros((3, n))
+    for growth in growths:
+        unsure[:2] += growth.unsure
+    if bodies.is_elastic:
+        end = turn._replace(time=2 * turn.time, speed=-bodies.velocity, depth=0 * turn.depth)
+        return Course(bodies, growths, [], turn, end, unsure)
+    shrinkages, state = list[Shrinkage](), turn
+    for number, growth in enumerate(growths[::-1]):
+        back = _mirrored(growth, state, like.shrinkages[number] if like else None)
+        shrinkages.append(back)
+        state = back.finish()
+        # If a dashpot has stopped a body, the speeds of its rebound are far below v_0.
+        whole = np.abs(back.speed).max(axis=1) / bodies.velocity
+        speed, duration = back.unsure
+        unsure += np.stack([speed * whole, duration, speed])
+    return Course(bodies, growths, shrinkages, turn, state, unsure)
 
 
-def _growths(
-    bodies: Bodies, nodes: int, guess: FloatArray, state: State, short: NDArray[np.bool_]
-) -> Iterator[Pressed]:
-    """Solve the growths piece by piece; the state advances to the turn.
+def _growths(bodies: Bodies, nodes: int, state: State, guess: FloatArray) -> list[Growth]:
+    """Growths piece by piece to the turn. On each the turn is sought first; beyond its end it is solved up to that.
 
-    On each piece the turn is sought first. Bodies that turn beyond its end are solved again up to the end.
+    Raises:
+        Divided: As `course` does.
     """
-    going = np.arange(bodies.velocity.size)
-    r = rule(nodes, bodies.power, ending=False)
-    duration, rate = guess
-    lost = np.exp(-(rate * duration)[:, None] * r.share[:-1])
-    speed = bodies.velocity[:, None] * (1 - r.share[:-1]) * lost
-    for piece in range(max(len(track.pieces) for track in bodies.tracks) or 1):
-        own = bodies.take(going)
-        trial = Growth(own, piece, r, state.take(going), duration, speed)
-        trial.solve(None)
-        until = np.array([track.until(piece) for track in own.tracks])
-        passes = trial.depth[:, -1] > until
-        is_last = np.array([piece + 1 >= len(track.pieces) for track in own.tracks])
-        short[going[passes & is_last]] = True
-        stays, goes = np.flatnonzero(~passes), np.flatnonzero(passes & ~is_last)
-        if stays.size:
-            yield _pressed(trial.part(stays), going[stays], state, None)
-        if not goes.size:
-            return
-        part = trial.part(goes)
-        passed = np.array([[np.interp(until[i], trial.depth[i], r.share)] for i in goes])
-        before, r = r, rule(nodes, 2, ending=False)
-        duration = part.duration * (1 - passed[:, 0])
-        speed = _speeds(part, passed + (1 - passed) * r.share[:-1])
-        part.speed = _speeds(part, passed * before.share[:-1])
-        part.duration = part.duration * passed[:, 0]
-        yield _pressed(part, going[goes], state, until[goes])
-        going = going[goes]
+    r, (duration, rate), found = rule(nodes, bodies.power, ending=False), guess, list[Growth]()
+    speed = bodies.velocity[:, None] * (1 - r.share[:-1]) * np.exp(-(rate * duration)[:, None] * r.share[:-1])
+    while True:
+        growth = Growth(bodies, len(found), r, state, duration, speed)
+        growth.solve(None)
+        until, depth = bodies.until(len(found)), growth.depth
+        # A body that never turns in a layer that relaxes completely is no reason for a longer track.
+        short = (depth[:, -1] > bodies.reach) & (growth.unsure.sum(axis=0) < _TURNS)
+        passes = depth[:, -1] > until
+        if short.any() or passes.any() > passes.all():
+            raise Divided(short if short.any() else passes, is_short=bool(short.any()))
+        found.append(growth)
+        if not passes.any():
+            return found
+        passed = np.array([[np.interp(*row, r.share)] for row in zip(until, depth, strict=True)])
+        last, r = r, rule(nodes, 2, ending=False)
+        duration, speed = growth.duration * (1 - passed[:, 0]), growth.speeds(passed + (1 - passed) * r.share[:-1])
+        growth.speed = growth.speeds(passed * last.share[:-1])
+        growth.duration = growth.duration * passed[:, 0]
+        growth.solve(until)
+        state = growth.finish()
 
 
-def _alike(bodies: Bodies, nodes: int, state: State, like: Course) -> Iterator[Pressed]:
-    """Solve the growths through the same pieces as in another course, whose motion is the first guess."""
-    for index, old, _ in like.parts:
+def _alike(bodies: Bodies, nodes: int, state: State, like: Course) -> list[Growth]:
+    """Growths through the same pieces as in another course, whose motion is the first guess."""
+    found = list[Growth]()
+    for old in like.growths:
+        state = found[-1].finish() if found else state
         r = rule(nodes, old.rule.power, ending=False)
-        speed = _speeds(old, np.broadcast_to(r.share[:-1], (index.size, nodes)))
-        growth = Growth(bodies.take(index), old.piece, r, state.take(index), old.duration, speed)
-        until = None if old.turned else np.array([track.until(old.piece) for track in growth.bodies.tracks])
-        yield _pressed(growth, index, state, until)
-
-
-def _pressed(growth: Growth, index: IntArray, state: State, until: FloatArray | None) -> Pressed:
-    """Solve a growth to the turn, or to depths `until`, and store the state at its end in `state`."""
-    growth.solve(until)
-    state.put(index, growth.finish(turned=until is None))
-    return Pressed(index, growth, None)
+        growth = Growth(bodies, old.piece, r, state, old.duration, old.speeds(r.share[None, :-1]))
+        growth.solve(None if old.turned else bodies.until(old.piece))
+        found.append(growth)
+    return found
 
 
 def _mirrored(growth: Growth, start: State, like: Shrinkage | None) -> Shrinkage:
-    """The unsolved shrinkage back through a growth; the guess is that of another resolution or the elastic one."""
-    nodes = growth.speed.shape[1]
-    r = rule(nodes, growth.rule.power, ending=True)
+    """The shrinkage back through a growth; the guess is that of another resolution or the elastic one."""
+    r = rule(growth.speed.shape[1], growth.rule.power, ending=True)
     if like is None:
         # An elastic body that entered a piece at a speed v leaves it at -v.
         duration, speed = growth.duration.copy(), -growth.speed[:, ::-1]
         share = np.broadcast_to(1 - r.share[:-1], speed.shape)
     else:
-        duration, speed = like.duration, _speeds(like, np.broadcast_to(r.share[:-1], growth.speed.shape))
+        duration, speed = like.duration, like.speeds(r.share[None, :-1])
         share = np.array([np.interp(r.share[:-1], like.rule.share[:-1], one) for one in like.share])
-    guess = Shrinkage(growth.bodies, growth.piece, r, start, duration, speed)
-    guess.share = share
-    return guess
+    found = Shrinkage(growth.bodies, growth.piece, r, start, duration, speed)
+    found.solve(growth, share, searched=like is not None)
+    return found
 
 
-def _speeds(phase: Phase, share: FloatArray) -> FloatArray:
-    """Speeds of a phase at shares of its duration, shape (n, k)."""
-    r = phase.rule
-    s = 1 - (1 - share) ** (1 / r.power) if isinstance(phase, Shrinkage) else share ** (1 / r.power)
-    return r.at(phase.speed, s)
-
-
-def _largest(phase: Growth) -> FloatArray:
+def _largest(growth: Growth) -> FloatArray:
     """Largest force over 2 E* of a growth, by Newton steps on its polynomial from the largest of `_PLACES` samples.
 
     A viscous layer relaxes at the turn, so that the force is smaller after it.
     """
-    fit = (phase.rule.analysis @ phase.force[..., None])[..., 0]
-    places = np.linspace(0, 1, _PLACES)
-    values = phase.rule.at(phase.force, np.broadcast_to(places, (fit.shape[0], _PLACES)))
-    s = places[np.clip(values.argmax(axis=1), 1, _PLACES - 2)]
-    slope, second = (legendre.legder(fit.T, order) * 2.0**order for order in (1, 2))
-    for _ in range(4):
-        rise, curved = (
-            np.array([legendre.legval(2 * x - 1, one) for x, one in zip(s, c.T, strict=True)]) for c in (slope, second)
-        )
-        s = np.clip(s - np.where(curved < 0, rise / np.where(curved < 0, curved, 1.0), 0.0), 0, 1)
-    return np.asarray(np.maximum(phase.rule.at(phase.force, s[:, None])[:, 0], values.max(axis=1)))
+    r, places = growth.rule, np.linspace(0, 1, _PLACES)
+    fit = (r.analysis @ growth.force[..., None])[..., 0]
+    values = r.at(growth.force, places[None])
+    s = places[np.minimum(np.maximum(values.argmax(axis=1), 1), _PLACES - 2)]
+    for _ in range(_PEAK_STEPS):
+        basis = legendre.legvander(2 * s - 1, r.nodes.size - 1)
+        rise, curved = ((basis[:, None] @ rows @ fit[..., None])[:, 0, 0] for rows in slopes(r.nodes.size))
+        step = np.where(curved < 0, rise / np.where(curved < 0, curved, 1.0), 0.0)
+        s = np.minimum(np.maximum(s - step, 0.0), 1.0)
+    return np.asarray(np.maximum(r.at(growth.force, s[:, None])[:, 0], values.max(axis=1)))

@@ -19,20 +19,21 @@ from contact import ImpactHistory, StageLog
 from contact.answer.solution import Setting
 from contact.records.validation import FloatArray
 from contact.stated import stated_error
+from mdr.impact.blows import OUTCOMES, Attempt, Blow, Outcome
 from mdr.impact.course import Course
-from mdr.impact.motion import Growth, Phase, Shrinkage
-from mdr.impact.results import OUTCOMES, Attempt, Blow, in_si
+from mdr.impact.motion import Growth, Shrinkage
 from mdr.impact.rules import interpolated, rule
 
 
-def history(blow: Blow, attempt: Attempt, log: StageLog, settings: Mapping[str, Setting]) -> ImpactHistory:
+def history(blow: Blow, outcome: Outcome, log: StageLog, settings: Mapping[str, Setting]) -> ImpactHistory:
     """Samples of an attempt with one impact at its touch, the nodes of all phases, its turn and its release, in SI."""
-    rows, phases = samples(attempt.course), _phases(attempt.course)
+    attempt = outcome.attempt
+    rows, phases = samples(attempt.course), attempt.course.phases
     length, depth, stiffness = blow.units.length, blow.units.depth, 2 * blow.units.stiffness
-    force, peak_depth, radius = in_si(blow, attempt, 0)[2:].tolist()
+    force, peak_depth, radius = outcome.in_si(blow)[2:].tolist()
     energy, unit = blow.speed**2 * stiffness / (2 * blow.pull), stiffness * depth**2
     log.count("nodes", sum(phase.speed.size for phase in phases))
-    log.count("sweeps", sum(phase.sweeps for phase in (*phases, *_phases(attempt.finer))))
+    log.count("sweeps", sum(phase.sweeps for phase in (*phases, *attempt.finer.phases)))
     errors = dict(zip(OUTCOMES, attempt.error, strict=True)) | _series_errors(attempt, rows.shape[1])
     return ImpactHistory(
         scene=blow.scene,
@@ -55,14 +56,9 @@ def history(blow: Blow, attempt: Attempt, log: StageLog, settings: Mapping[str, 
     )
 
 
-def _phases(course: Course) -> list[Phase]:
-    """Growths in their order, and shrinkages in theirs."""
-    return [*(part.growth for part in course.parts), *(p.shrinkage for p in course.parts[::-1] if p.shrinkage)]
-
-
 def _series_errors(attempt: Attempt, count: int) -> dict[str, FloatArray]:
     """Errors of all samples, relative to the largest of each series: the largest change to the companion at a node."""
-    pairs = list(zip(_phases(attempt.course), _phases(attempt.finer), strict=True))
+    pairs = list(zip(attempt.course.phases, attempt.finer.phases, strict=True))
     series = np.hstack([own.series()[:, 0] for own, _ in pairs])
     other = np.hstack([fine.rule.at(fine.series()[:, 0], own.rule.nodes[None]) for own, fine in pairs])
     base = attempt.error[2:].max()
@@ -79,16 +75,15 @@ def samples(course: Course) -> FloatArray:
     bodies, columns = course.bodies, []
     energy, squares = np.zeros(2), np.zeros(bodies.rates.shape[1])
     kept = []
-    for _, growth, _ in course.parts:
+    for growth in course.growths:
         rows, energy, squares, held = _growing(growth, energy[1], squares)
         columns.append(rows)
         kept.append(held)
-    if course.is_elastic:
+    if bodies.is_elastic:
         back = np.hstack(columns)[:, -2::-1]
         back[0], back[2] = course.end.time[0] - back[0], -back[2]
         return np.hstack([*columns, back])
-    for (_, _, shrinkage), held in zip(course.parts[::-1], kept[::-1], strict=True):
-        assert shrinkage is not None
+    for shrinkage, held in zip(course.shrinkages, kept[::-1], strict=True):
         rows, energy[1] = _shrinking(shrinkage, held, energy[1])
         columns.append(rows)
     end, track = course.end, bodies.tracks[0]
@@ -140,7 +135,7 @@ def _shrinking(phase: Shrinkage, held: FloatArray, lost: float) -> tuple[FloatAr
     T, w, rates, eta = phase.duration[0], b.weights[0], b.rates[0], b.viscosity[0]
     s, K, m = phase.stress[0, :, :-1], phase.stiffness[0], b.rates.shape[1]
     P, released = K * s**2, np.zeros(K.size + 1)
-    if b.tracks[0].pieces:
+    if not b.tracks[0].is_punch:
         place = phase.share ** (1 / growth.rule.power)
         old = interpolated(np.concatenate([growth.past, held[None]], axis=1), place)[0]
         fade = np.exp(-rates[:, None] * phase.ago(phase.share))

@@ -23,14 +23,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import NamedTuple, Self
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from contact.records.validation import FloatArray, IntArray
-from mdr.impact.beds import Track
+from contact.records.validation import BoolArray, FloatArray
 from mdr.impact.rules import Rule, interpolated
+from mdr.impact.track import Track
 
 # Sweeps of Newton's method; five are usual.
 _SWEEPS = 60
@@ -53,35 +52,40 @@ class Bodies:
 
     Attributes:
         tracks: K and a of each.
+        power: p of the first phase.
+        reach: Depth up to which each is tabulated, shape (n,).
         velocity: v_0, shape (n,).
         pull: 2 E*/M [1/s^2] in these units, shape (n,).
         weights: w_j, shape (n, m).
         rates: r_j [1/s], shape (n, m).
         viscosity: eta [s], shape (n,).
-        power: p of the first phase.
     """
 
     tracks: Sequence[Track]
+    power: int
+    reach: FloatArray
     velocity: FloatArray
     pull: FloatArray
     weights: FloatArray
     rates: FloatArray
     viscosity: FloatArray
-    power: int
 
-    def take(self, some: IntArray) -> Bodies:
-        """Some of the impacts."""
-        own = [self.tracks[i] for i in some.tolist()]
-        velocity, pull, viscosity = self.velocity[some], self.pull[some], self.viscosity[some]
-        return Bodies(own, velocity, pull, self.weights[some], self.rates[some], viscosity, self.power)
+    @property
+    def is_elastic(self) -> bool:
+        """Whether the layer is elastic, so that shrinkages mirror growths."""
+        return not (self.rates.any() or self.viscosity.any())
 
     def springs(self, depth: FloatArray, piece: int) -> FloatArray:
         """K, dK/d(depth) and a at depths of shape (n, k) on one piece, shape (3, n, k)."""
-        found = np.empty((3, *depth.shape))
+        depth, found = np.minimum(depth, self.reach[:, None]), np.empty((3, *depth.shape))
         for track in {id(one): one for one in self.tracks}.values():
             own = [i for i, one in enumerate(self.tracks) if one is track]
             found[:, own] = track.at(depth[own], piece)
         return found
+
+    def until(self, piece: int) -> FloatArray:
+        """Depths at the end of a piece, infinite if it is the last, shape (n,)."""
+        return np.array([track.until(piece) for track in self.tracks])
 
 
 class State(NamedTuple):
@@ -92,15 +96,6 @@ class State(NamedTuple):
     depth: FloatArray
     stress: FloatArray
     load: FloatArray
-
-    def take(self, some: IntArray) -> State:
-        """Of some of the impacts."""
-        return State(*(one[some] for one in self))
-
-    def put(self, some: IntArray, other: State) -> None:
-        """Replace that of some of the impacts."""
-        for own, new in zip(self, other, strict=True):
-            own[some] = new
 
 
 @dataclass(eq=False)
@@ -131,6 +126,21 @@ class Phase:
     force: FloatArray = field(default_factory=lambda: np.zeros(0))
     radius: FloatArray = field(default_factory=lambda: np.zeros(0))
 
+    @property
+    def depth(self) -> FloatArray:
+        """At nodes and end."""
+        rise = _times(self.rule.integrals, self.speed)
+        return np.asarray(self.start.depth[:, None] + self.duration[:, None] * rise)
+
+    def series(self) -> FloatArray:
+        """Depth, speed, force over 2 E* and radius at the nodes, shape (4, n, k)."""
+        k = self.speed.shape[1]
+        return np.stack([self.depth[:, :k], self.speed, self.force, self.radius[:, :k]])
+
+    def speeds(self, share: FloatArray) -> FloatArray:
+        """Speeds at shares of the duration, shape (n, k)."""
+        return self.rule.at(self.speed, self.rule.place(share))
+
     def lengthen(self) -> None:
         """Operators that depend on the duration."""
         b, T = self.bodies, self.duration
@@ -140,8 +150,8 @@ class Phase:
         self._memory[:, 1:] = T[:, None, None, None] * self.rule.memory(b.rates[:, 1:] * T[:, None])
         self._fade = np.exp(-(b.rates * T[:, None])[..., None] * self.rule.share)
         whole = (b.weights[..., None, None] * self._memory).sum(axis=1)
-        self._relax, self._relax_end = whole[:, :-1], whole[:, -1]
-        self._answer = self._relax + b.viscosity[:, None, None] * np.eye(self.rule.nodes.size)
+        self._relax_end = whole[:, -1]
+        self._answer = whole[:, :-1] + b.viscosity[:, None, None] * np.eye(self.rule.nodes.size)
 
     def remembered(self, source: FloatArray, start: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Solution of u' = w source - r u at nodes and end, and its change with T; shapes (n, m, k + 1)."""
@@ -153,37 +163,19 @@ class Phase:
         change = _times(self._memory, driven - rates * grown[..., :-1]) / T - rates * self.rule.share * faded
         return grown + faded, change
 
-    def part(self, some: IntArray) -> Self:
-        """The same of some of its impacts."""
-        own = self.bodies.take(some), self.piece, self.rule, self.start.take(some)
-        return type(self)(*own, self.duration[some], self.speed[some])
-
-    @property
-    def depth(self) -> FloatArray:
-        """At nodes and end."""
-        rise = _times(self.rule.integrals, self.speed)
-        return np.asarray(self.start.depth[:, None] + self.duration[:, None] * rise)
-
-    def cut(self, ended: NDArray[np.bool_]) -> bool:
+    def cut(self, ended: BoolArray) -> bool:
         """Cut durations to the first node that is beyond the end of the phase; whether there are some.
 
         The equations of the end have later solutions, at which a body turns or a force vanishes again.
         """
-        r = self.rule
-        ended = ended & (r.share[:-1] < _ENDED)
-        share = np.where(ended.any(axis=1), r.share[ended.argmax(axis=1)], 1.0)
-        if (share == 1).all():
+        shares = self.rule.share[:-1]
+        ended = ended & (shares < _ENDED)
+        if not ended.any():
             return False
-        places = share[:, None] * r.share[:-1]
-        s = 1 - (1 - places) ** (1 / r.power) if isinstance(self, Shrinkage) else places ** (1 / r.power)
-        self.speed = np.where((share < 1)[:, None], r.at(self.speed, s), self.speed)
+        share = np.where(ended.any(axis=1), shares[ended.argmax(axis=1)], 1.0)
+        self.speed = np.where((share < 1)[:, None], self.speeds(share[:, None] * shares), self.speed)
         self.duration = self.duration * share
         return True
-
-    def series(self) -> FloatArray:
-        """Depth, speed, force over 2 E* and radius at the nodes, shape (4, n, k)."""
-        k = self.speed.shape[1]
-        return np.stack([self.depth[:, :k], self.speed, self.force, self.radius[:, :k]])
 
     def newton(self, force: FloatArray, by_speed: FloatArray, by_time: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Residual of the motion and its derivatives by speeds and ln T, the end's speed in the last row.
@@ -199,12 +191,13 @@ class Phase:
         lost = pull * T * _times(integrals, force)
         system = np.empty((n, k + 1, k + 1))
         system[:, :, :k] = (pull * T)[..., None] * (integrals @ by_speed)
-        system[:, :, k] = pull * T * _times(integrals, force + T * by_time)
+        system[:, :, k] = lost + pull * T**2 * _times(integrals, by_time)
         system[:, np.arange(k), np.arange(k)] += 1
         missed = np.concatenate([self.speed, np.zeros((n, 1))], axis=1) - self.start.speed[:, None] + lost
+        self.force, self.end_speed = force, -missed[:, -1]
         return missed, system
 
-    def iterate(self, system: Callable[[NDArray[np.bool_] | None], tuple[FloatArray, FloatArray]]) -> None:
+    def iterate(self, system: Callable[[BoolArray | None], tuple[FloatArray, FloatArray]]) -> None:
         """Newton's method on a residual and its derivatives; `system` is told which impacts are done."""
         n = self.duration.size
         done, last, longest = np.zeros(n, dtype=bool), np.full(n, np.inf), np.full(n, _LONGEST_STEP)
@@ -215,8 +208,7 @@ class Phase:
             scale = np.maximum(np.abs(self.speed).max(axis=1), np.abs(self.start.speed))
             # Nodes move with the duration: the change of a speed at its instant counts.
             drift = self.bodies.pull[:, None] * self.force * self.duration[:, None] * self.rule.share[:-1]
-            both = np.abs(np.stack([np.zeros_like(scale), step[:, -1]]))
-            both[0] = np.abs(step[:, :-1] + drift * step[:, -1:]).max(axis=1) / scale
+            both = np.stack([np.abs(step[:, :-1] + drift * step[:, -1:]).max(axis=1) / scale, np.abs(step[:, -1])])
             both = np.where(np.isfinite(both), both, np.inf)
             size = both.sum(axis=0)
             stalled = (size < _STALLED) | ((both[0] < _STALLED_SPEED) & (size < _LONGEST_STEP))
@@ -225,7 +217,8 @@ class Phase:
             done, self.sweeps = ~now, sweep + 1
             if done.all():
                 return
-            longest = np.clip(np.where(size > _FALLS * last, longest / 2, longest * 1.5), _SHORTEST_STEP, _LONGEST_STEP)
+            slower = np.where(size > _FALLS * last, longest / 2, longest * 1.5)
+            longest = np.minimum(np.maximum(slower, _SHORTEST_STEP), _LONGEST_STEP)
             share = np.minimum(1.0, longest / np.maximum(both[1], 1e-300))
             move = np.where((now & np.isfinite(size))[:, None], share[:, None] * step, 0.0)
             self.speed = self.speed - move[:, :-1]
@@ -234,12 +227,13 @@ class Phase:
 
 
 class Growth(Phase):
-    """From the touch, or a break, to the turn or the next break at the depth `until`."""
+    """From the touch, or a break, to the turn or the next break at depths `until`."""
 
     def solve(self, until: FloatArray | None) -> None:
         """Newton's method."""
+        self.turned = until is None
 
-        def system(done: NDArray[np.bool_] | None) -> tuple[FloatArray, FloatArray]:
+        def system(done: BoolArray | None) -> tuple[FloatArray, FloatArray]:
             if done is not None:
                 self.cut((self.speed < 0) & ~done[:, None])
             return self._system(until)
@@ -249,32 +243,28 @@ class Growth(Phase):
     def _system(self, until: FloatArray | None) -> tuple[FloatArray, FloatArray]:
         self.lengthen()
         b, v, k = self.bodies, self.speed, self.speed.shape[1]
-        T, inner = self.duration[:, None], self.rule.integrals[:-1]
-        self.stiffness, rise, self.radius = b.springs(self.depth, self.piece)
+        T, inner, last = self.duration[:, None], self.rule.integrals[:-1], self.rule.integrals[-1]
+        depth = self.depth
+        self.stiffness, rise, self.radius = b.springs(depth, self.piece)
         K, rise = self.stiffness[:, :-1], rise[:, :-1]
         self.load, change = self.remembered(K * v, self.start.load)
         force = self.load[..., :-1].sum(axis=1) + b.viscosity[:, None] * K * v
-        deeper = _times(inner, v)
         by_speed = self._answer * K[:, None] + (self._answer * (v * rise * T)[:, None]) @ inner
-        by_time = change[..., :-1].sum(axis=1) + _times(self._answer, rise * v * deeper)
+        by_time = change[..., :-1].sum(axis=1) + _times(self._answer, rise * v * _times(inner, v))
         missed, system = self.newton(force, by_speed, by_time)
-        self.force, self.end_speed = force, -missed[:, -1]
         if until is not None:
-            last = self.rule.integrals[-1]
-            missed[:, -1] = self.depth[:, -1] - until
+            missed[:, -1] = depth[:, -1] - until
             system[:, -1, :k] = T * last
-            system[:, -1, k] = (self.duration[:, None] * v * last).sum(axis=1)
+            system[:, -1, k] = (T * v * last).sum(axis=1)
         return missed, system
 
-    def finish(self, *, turned: bool) -> State:
+    def finish(self) -> State:
         """Rows that a shrinkage looks up, and the state at the end."""
-        self.turned = turned
-        stress, _ = self.remembered(self.speed, self.start.stress)
-        self.stress = stress
-        speed = np.zeros_like(self.end_speed) if turned else self.end_speed
+        speed, depth = np.zeros_like(self.end_speed) if self.turned else self.end_speed, self.depth
+        self.stress, _ = self.remembered(self.speed, self.start.stress)
         ends = np.concatenate([self.speed, speed[:, None]], axis=1)
-        self.past = np.concatenate([stress, self.load, self.depth[:, None], ends[:, None]], axis=1)
-        return State(self.start.time + self.duration, speed, self.depth[:, -1], stress[..., -1], self.load[..., -1])
+        self.past = np.concatenate([self.stress, self.load, depth[:, None], ends[:, None]], axis=1)
+        return State(self.start.time + self.duration, speed, depth[:, -1], self.stress[..., -1], self.load[..., -1])
 
 
 class Shrinkage(Phase):
@@ -285,52 +275,38 @@ class Shrinkage(Phase):
     stress: FloatArray
     forgotten: FloatArray
 
-    def solve(self, growth: Growth, *, searched: bool) -> None:
-        """Newton's method; from theta at `share` of the growth, which is searched for at once or after one sweep."""
-        self.growth = growth
+    def solve(self, growth: Growth, share: FloatArray, *, searched: bool) -> None:
+        """Newton's method; theta, first at a share of the growth, is searched for at once or after one sweep."""
+        self.growth, self.share = growth, share
         none = np.zeros(self.duration.size, dtype=bool) if searched else None
         self.iterate(lambda done: self._system(none if done is None else done))
 
-    def _system(self, found: NDArray[np.bool_] | None, *, whole: bool = True) -> tuple[FloatArray, FloatArray]:
+    def _system(self, found: BoolArray | None, *, whole: bool = True) -> tuple[FloatArray, FloatArray]:
         self.lengthen()
         b, g, v, k = self.bodies, self.growth, self.speed, self.speed.shape[1]
-        rates, eta = b.rates, b.viscosity[:, None]
         self.stress, change = self.remembered(v, self.start.stress)
-        total = self.stress[..., :-1].sum(axis=1) + eta * v
-        self.total = total
-        if g.bodies.tracks[0].pieces:
+        total = self.stress[..., :-1].sum(axis=1) + b.viscosity[:, None] * v
+        if b.tracks[0].is_punch:
+            K, lost, later, self.radius = g.stiffness[:, :-1], 0 * v, 0 * v, g.radius[:, :-1]
+        else:
             if found is not None:
-                if whole and self._shortened(total, found):
+                # A layer that relaxed nearly whole lets go early, and its force would come back later.
+                held = (g.start.stress[..., None] * self.since(0 * v)).sum(axis=1)
+                released = (total < held) & ((b.viscosity == 0) & ~found)[:, None]
+                if whole and self.cut(released):
                     return self._system(found, whole=False)
                 self._find_edge(total, found)
             K, lost, later = self._at_edge()
-        else:
-            K, lost, later = g.stiffness[:, :-1], np.zeros_like(v), np.zeros_like(v)
-            self.radius = g.radius[:, :-1]
         self.stiffness = K
-        force = K * total - lost
-        by_speed = K[..., None] * self._answer
         by_time = K * change[..., :-1].sum(axis=1) - later
-        missed, system = self.newton(force, by_speed, by_time)
-        self.force, self.end_speed = force, -missed[:, -1]
+        missed, system = self.newton(K * total - lost, K[..., None] * self._answer, by_time)
         end = self.start.time + self.duration - g.start.time
-        held = np.exp(-rates * end[:, None]) * g.start.stress
-        released = self.stress[..., -1].sum(axis=1) + b.viscosity * self.end_speed - held.sum(axis=1)
-        system[:, -1] *= -eta
+        held = np.exp(-b.rates * end[:, None]) * g.start.stress
+        system[:, -1] *= -b.viscosity[:, None]
         system[:, -1, :k] += self._relax_end
-        system[:, -1, k] += self.duration * (change[..., -1].sum(axis=1) + (rates * held).sum(axis=1))
-        missed[:, -1] = released
+        system[:, -1, k] += self.duration * (change[..., -1].sum(axis=1) + (b.rates * held).sum(axis=1))
+        missed[:, -1] = self.stress[..., -1].sum(axis=1) + b.viscosity * self.end_speed - held.sum(axis=1)
         return missed, system
-
-    def _shortened(self, total: FloatArray, found: NDArray[np.bool_]) -> bool:
-        """Cut durations to the first node at which no spring is pressed any more; whether there are some.
-
-        A layer that relaxed nearly whole lets go early, and its force would come back later.
-        """
-        first = self.growth.start.stress[..., None]
-        held = (first * np.exp(-self.bodies.rates[..., None] * self.ago(np.zeros_like(total))[:, None])).sum(axis=1)
-        relaxes = (self.bodies.viscosity == 0) & ~found
-        return self.cut((total < held) & relaxes[:, None])
 
     def ago(self, share: FloatArray) -> FloatArray:
         """t - theta at the nodes."""
@@ -338,46 +314,49 @@ class Shrinkage(Phase):
         now = self.start.time[:, None] + self.duration[:, None] * self.rule.share[:-1]
         return np.asarray(now - g.start.time[:, None] - g.duration[:, None] * share)
 
-    def _find_edge(self, total: FloatArray, found: NDArray[np.bool_]) -> None:
+    def since(self, share: FloatArray) -> FloatArray:
+        """exp(-r_j (t - theta)) at the nodes, shape (n, m, k)."""
+        return np.asarray(np.exp(-self.bodies.rates[..., None] * self.ago(share)[:, None]))
+
+    def _find_edge(self, total: FloatArray, found: BoolArray) -> None:
         """theta, as a share of the growth, by safeguarded Newton steps for y = (1 - share)^q, nearly linear in time.
 
         q = 2 from a turn on, where both speeds vanish. Impacts that are `found` keep theirs.
         """
-        g, b = self.growth, self.bodies
+        g, b, m = self.growth, self.bodies, self.bodies.rates.shape[1]
         q = 2.0 if g.turned else 1.0
-        y = (1 - self.share) ** q
-        low, high, done = np.zeros_like(y), np.ones_like(y), np.repeat(found[:, None], y.shape[1], axis=1)
-        m = b.rates.shape[1]
+        y, done = (1 - self.share) ** q, np.broadcast_to(found[:, None], self.share.shape)
+        low, high = np.zeros_like(y), np.ones_like(y)
         for _ in range(_EDGE_STEPS):
             share = 1 - y ** (1 / q)
-            old = interpolated(g.past, share ** (1 / g.rule.power))
-            fade = np.exp(-b.rates[..., None] * self.ago(share)[:, None])
+            old = interpolated(g.past, g.rule.place(share))
+            fade = self.since(share)
             excess = total - (fade * old[:, :m]).sum(axis=1)
             low, high = np.where(excess < 0, y, low), np.where(excess < 0, high, y)
             slope = (fade * b.weights[..., None]).sum(axis=1) * old[:, -1] * g.duration[:, None]
-            with np.errstate(all="ignore"):
-                new = y - excess * q * y ** (1 - 1 / q) / slope
-            new = np.where((new >= low) & (new <= high), new, (low + high) / 2)
-            y, done = np.where(done, y, new), done | (np.abs(new - y) < _EDGE_STEP)
+            step = excess * q * y ** (1 - 1 / q) / slope
+            new, middle = y - step, (low + high) / 2
+            # Before the first touch nothing is pressed: a root beyond y = 1 is there.
+            new = np.where((new > high) & (high == 1), 1.0, np.where((new >= low) & (new <= high), new, middle))
+            moved = np.abs(new - y)
+            y, done = np.where(done, y, new), done | (moved < _EDGE_STEP)
             if done.all():
                 break
         self.share = np.where(found[:, None], self.share, 1 - y ** (1 / q))
 
     def _at_edge(self) -> tuple[FloatArray, FloatArray, FloatArray]:
         """K, what the springs in contact have forgotten since, and its change with T; shape (n, k) each."""
-        g, b = self.growth, self.bodies
-        m = b.rates.shape[1]
-        old = interpolated(g.past, self.share ** (1 / g.rule.power))
+        g, b, m = self.growth, self.bodies, self.bodies.rates.shape[1]
+        old = interpolated(g.past, g.rule.place(self.share))
         K, _, self.radius = b.springs(old[:, -2], self.piece)
-        fade = np.exp(-b.rates[..., None] * self.ago(self.share)[:, None])
-        self.forgotten = fade * (old[:, :m] * K[:, None] - old[:, m : 2 * m])
+        self.forgotten = self.since(self.share) * (old[:, :m] * K[:, None] - old[:, m : 2 * m])
         later = (-b.rates[..., None] * self.rule.share[:-1] * self.forgotten).sum(axis=1)
         return K, self.forgotten.sum(axis=1), later
 
     def finish(self) -> State:
         """The state at the end."""
-        end, start = self.growth.start, self.start
-        return State(start.time + self.duration, self.end_speed, self.depth[:, -1], self.stress[..., -1], end.load)
+        time, load = self.start.time + self.duration, self.growth.start.load
+        return State(time, self.end_speed, self.depth[:, -1], self.stress[..., -1], load)
 
 
 def _solved(matrix: FloatArray, right: FloatArray) -> FloatArray:

@@ -33,6 +33,7 @@ class Rule:
     Attributes:
         nodes: s, shape (n,).
         power: p.
+        ending: Whether s crowds at the end.
         share: t/T at the nodes and the end, shape (n + 1,).
         gaps: (t_m - t)/T at the nodes t of the panels before t_m, shape (n + 1, q).
         weights: Of these nodes, shape (n + 1, q).
@@ -44,6 +45,7 @@ class Rule:
 
     nodes: FloatArray
     power: float
+    ending: bool
     share: FloatArray
     gaps: FloatArray
     weights: FloatArray
@@ -71,6 +73,10 @@ class Rule:
         basis = np.ascontiguousarray(legendre.legvander(2 * s - 1, self.nodes.size - 1)) @ self.analysis
         return np.asarray((basis @ values[..., None])[..., 0])
 
+    def place(self, share: FloatArray) -> FloatArray:
+        """s at shares of the duration."""
+        return 1 - (1 - share) ** (1 / self.power) if self.ending else share ** (1 / self.power)
+
 
 @lru_cache(maxsize=64)
 def rule(count: int, power: float, *, ending: bool) -> Rule:
@@ -94,7 +100,16 @@ def rule(count: int, power: float, *, ending: bool) -> Rule:
     rows = legendre.legvander(2 * s - 1, count - 1) @ analysis
     integrals = np.cumsum((weights[:, None, :] @ rows)[:, 0], axis=0)
     at_end = analysis.sum(axis=0)
-    return Rule(nodes, power, share, share[:, None] - place, weights, rows, integrals, analysis, at_end)
+    return Rule(nodes, power, ending, share, share[:, None] - place, weights, rows, integrals, analysis, at_end)
+
+
+@lru_cache(maxsize=64)
+def slopes(count: int) -> FloatArray:
+    """Legendre coefficients of the first and second derivatives by s of P_0(2 s - 1), .., shape (2, count, count)."""
+    unit, found = np.eye(count), np.zeros((2, count, count))
+    for order, rows in enumerate(found, 1):
+        rows[: max(count - order, 0)] = legendre.legder(unit, order)[: max(count - order, 0)] * 2.0**order
+    return found
 
 
 @lru_cache(maxsize=64)

@@ -6,19 +6,20 @@ Quasi-static: waves in the layer are neglected.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from itertools import groupby
 from typing import TypeAlias
 
 import numpy as np
 
-from bem.equation import Sizes
 from bem.flat_punch import FlatPunchSource
 from contact import FlatPunch, ImpactHistory, InvalidInput, Scene, StageLog
 from contact.answer.small_strains import refuse_deep
 from contact.answer.solution import Setting
+from contact.records.validation import FloatArray
 from mdr.equilibria import is_simple, refuse_inadmissible, springs_on
+from mdr.impact.blows import OUTCOMES, blow_of, solved
 from mdr.impact.history import history
-from mdr.impact.results import OUTCOMES, Blow, ImpactResults, blow_of, in_si, solved, time_power
 from mdr.method import DEFAULT_ACCURACY
 from mdr.radius_search import RadiusSearch
 
@@ -30,6 +31,27 @@ CHUNK = 64
 _CONTACTS = 6
 
 Progress: TypeAlias = Callable[[int, int], None]
+
+
+@dataclass(frozen=True, kw_only=True)
+class ImpactResults:
+    """Outcome of many impacts, each array of shape (n,).
+
+    Attributes:
+        coefficient_of_restitution: [-].
+        contact_time: [s].
+        peak_force: [N].
+        peak_depth: [m].
+        peak_contact_radius: [m].
+        relative_error: Of these five, in this order, shape (5, n).
+    """
+
+    coefficient_of_restitution: FloatArray
+    contact_time: FloatArray
+    peak_force: FloatArray
+    peak_depth: FloatArray
+    peak_contact_radius: FloatArray
+    relative_error: FloatArray
 
 
 def solve_impact(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[str, Setting]) -> ImpactHistory:
@@ -50,9 +72,9 @@ def solve_impact(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[st
     with log.stage("equivalent_system"):
         blow, sizes = blow_of(scene, flat_punch), flat_punch.sizes
     with log.stage("impact"):
-        attempt, _ = solved([blow], sizes, accuracy)[0]
-    _refuse_inadmissible(scene, flat_punch, in_si(blow, attempt, 0)[4])
-    return history(blow, attempt, log, known)
+        outcome = solved([blow], sizes, accuracy)[0]
+    _refuse_inadmissible(scene, flat_punch, outcome.in_si(blow)[4])
+    return history(blow, outcome, log, known)
 
 
 def impact_batch(
@@ -76,14 +98,14 @@ def impact_batch(
     sizes, accuracy = flat_punch.sizes, _checked(accuracy)
     blows = [blow_of(scene, flat_punch) for scene in scenes]
     values, errors, done = np.empty((5, len(blows))), np.empty((5, len(blows))), 0
-    kinds = [_kind(blow, sizes) for blow in blows]
+    kinds = [blow.kind for blow in blows]
     for _, group in groupby(sorted(range(len(blows)), key=kinds.__getitem__), key=kinds.__getitem__):
         members = list(group)
         for start in range(0, len(members), CHUNK):
             chunk = members[start : start + CHUNK]
             found = solved([blows[i] for i in chunk], sizes, accuracy, chunk)
-            for i, (attempt, place) in zip(chunk, found, strict=True):
-                values[:, i], errors[:, i] = in_si(blows[i], attempt, place), attempt.error[:, place]
+            for i, one in zip(chunk, found, strict=True):
+                values[:, i], errors[:, i] = one.in_si(blows[i]), one.attempt.error[:, one.place]
                 refuse_deep(scenes[i], values[3, i])
                 _refuse_inadmissible(scenes[i], flat_punch, values[4, i])
             done += len(chunk)
@@ -101,11 +123,6 @@ def _checked(accuracy: float) -> float:
     if not _BEST_ACCURACY <= accuracy <= _LEAST_ACCURACY:
         raise InvalidInput(f"accuracy = {accuracy:g}: choose between {_BEST_ACCURACY:g} and {_LEAST_ACCURACY:g}")
     return accuracy
-
-
-def _kind(blow: Blow, sizes: Sizes) -> tuple[bool, int, int, bool]:
-    """What impacts that are solved together have in common."""
-    return isinstance(blow.bed.indenter, FlatPunch), time_power(blow, sizes), blow.rates.size, blow.viscosity == 0
 
 
 def _refuse_inadmissible(scene: Scene, flat_punch: FlatPunchSource, radius: float) -> None:

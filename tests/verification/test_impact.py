@@ -1,5 +1,8 @@
 """Impacts against closed forms, published values and a second scheme."""
 
+import warnings
+from time import process_time
+
 import numpy as np
 import pytest
 from scipy.special import gamma
@@ -267,3 +270,22 @@ def test_a_body_that_viscosity_nearly_stops_states_what_roundings_do_to_its_cont
     one, other = (method.solve(scene) for method in (Mdr(), Mdr().refined()))
     stated = one.error_estimate["contact_time"] + other.error_estimate["contact_time"]
     assert abs(one.contact_time / other.contact_time - 1) < stated < 0.1
+
+
+BLUNT = TruncatedCone(flat_radius=2e-4, slope=0.1)
+
+
+@pytest.mark.parametrize("time", [1e-8, 1e-4])
+@pytest.mark.parametrize("tip", [FlatPunch(radius=1e-3), Paraboloid(radius_of_curvature=5e-3), Cone(slope=0.1), BLUNT])
+def test_an_indenter_that_never_turns_is_refused_at_once_and_quietly(tip, time):
+    """A layer that relaxes completely took 5 to 10 s, with hundreds of warnings from numpy."""
+    model = PronySeries(long_term_shear_modulus=0.0, shear_moduli=[1e6], relaxation_times=[time])
+    scene = Scene(
+        layer=incompressible(1e-3, 1e6), indenter=tip, loading=Impact(mass=1e-3, velocity=0.01), effects=(model,)
+    )
+    start = process_time()
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        with pytest.raises(NotConvergedError, match="comes to rest"):
+            history(scene)
+    assert process_time() - start < 2.0
