@@ -73,10 +73,11 @@ class Sizes(NamedTuple):
     def polynomials(self, octave: int, *, is_graded: bool, kinked: bool) -> int:
         """Number of polynomials for contacts of a/h up to 2^octave.
 
-        On graded layers B has (a - t) ln(a - t) at the edge, and series of kinked profiles converge slowly near it.
+        On graded layers B has (a - t) ln(a - t) at the edge, and series of kinked profiles converge slowly near it: to
+        1e-7 of the depth.
         """
         count = self.least + int(self.rate * np.sqrt(2.0**octave))
-        return count + int((240 if kinked else 60) * (1 + self.extra / 12)) if is_graded else count
+        return count + int((300 if kinked else 60) * (1 + self.extra / 12)) if is_graded else count
 
     def scaled(self, factor: float) -> Sizes:
         """Sizes with about `factor` times the resolution."""

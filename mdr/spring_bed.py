@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike
 from bem.equation import COARSE, USUAL, FlatPunches, Radius, Rows, Sizes, flat_punches
 from bem.kernels.moduli import contact_modulus
 from bem.kernels.of_layer import ContactKernel, contact_kernel, unit_of
-from bem.numerics import EPS, graded
+from bem.numerics import EPS
 from contact import ElasticLayer, Profile
 from contact.records.validation import FloatArray
 from mdr.profiles import Tip, tip_of
@@ -128,7 +128,7 @@ class Springs:
             moments = self.tip.moments(a, punch.shape[1], self.sizes.extra)
             y1 = 1 + resolvent[:, 0]
             alone = self.tip.transform(a) if excess is None else self.tip.transform_beyond(excess[index])
-            transform = alone + (resolvent * moments).sum(axis=1) + self._beyond_polynomials(a, moments)
+            transform = alone + (resolvent * moments).sum(axis=1)
             found.y1[index], found.g[index] = y1, transform / y1
             found.K[index], found.M[index] = a * punch[:, 0], a * (punch * moments).sum(axis=1)
         return found
@@ -139,25 +139,6 @@ class Springs:
         for start in range(0, x.size, _BLOCK):
             for rows in self.punches.at(ratios[start : start + _BLOCK]):
                 yield rows._replace(which=start + rows.which)
-
-    def _beyond_polynomials(self, a: FloatArray, moments: FloatArray) -> FloatArray | float:
-        """What polynomials miss of int B(a, t) g_hs dt on graded layers under kinked profiles.
-
-        At the edge B ~ -(c_1/pi) ln(a^2 - t^2), and int_0^1 b_n ln(1 - s^2) ds = -sqrt(4n + 1)/(n (2n + 1)).
-        """
-        if not (self.kernel.tail and self.tip.breaks):
-            return 0.0
-        v, w = graded(16 + self.sizes.extra, 12)
-        n = np.arange(1, moments.shape[1])
-        missed = -moments @ np.concatenate([[2 * np.log(2) - 2], -np.sqrt(4 * n + 1) / (n * (2 * n + 1))])
-        inner = [self.tip.flat, *(b for b in self.tip.breaks if b > self.tip.flat), np.inf]
-        ends = np.minimum(np.array(inner), a[:, None])
-        for low, high in zip(ends.T[:-1, :, None], ends.T[1:, :, None], strict=True):
-            t = low + (high - low) * v
-            rest = (a[:, None] - high + (high - low) * (1 - v)) * (a[:, None] + t) / a[:, None] ** 2
-            logarithm = np.log(np.maximum(rest, 1e-300))
-            missed = missed + (w * (high - low) * self.tip.quick(t) * logarithm).sum(axis=1) / a
-        return np.asarray(-self.kernel.tail[0] * (a / self.unit) / np.pi * missed)
 
     def floor(self, radii: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Relative rounding errors of depth, and of force and stiffness, at radii [m], shape (n,)."""
