@@ -1,8 +1,10 @@
-"""What holds for every test: no width of a terminal, no random examples, no limit of the depth in tests of numbers."""
+"""What holds for every test: no width of a terminal, no random examples, no limit of the depth in tests of numbers, and
+the marker `first(n)`."""
 
 from __future__ import annotations
 
 import math
+from collections import Counter
 from pathlib import Path
 
 import pytest
@@ -21,6 +23,19 @@ settings.load_profile("repeatable")
 def _no_terminal_width(monkeypatch):
     """Parallel test runners set COLUMNS; the tables of the command line must not depend on it."""
     monkeypatch.delenv("COLUMNS", raising=False)
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items):
+    """Marks the parameters of a test `first(n)` after the first n as slow."""
+    seen: Counter[str] = Counter()
+    for item in items:
+        first = item.get_closest_marker("first")
+        if first and not item.get_closest_marker("slow"):
+            test = item.nodeid.partition("[")[0]
+            seen[test] += 1
+            if seen[test] > first.args[0]:
+                item.add_marker("slow")
 
 
 @pytest.hookimpl(wrapper=True)
