@@ -86,9 +86,9 @@ def write_tasks(folder: Path) -> None:
 
 
 def _picture(file: Path, folder: Path) -> str:
-    """The picture of a scene's answer, written into the folder; nothing where the answer is one state."""
+    """The picture of a scene's answer, written into the folder; nothing for fewer than five states."""
     answer: Any = Mdr(accuracy=1e-4).solve(load_scene(file))
-    if len(answer.normal_force) < 3:
+    if len(answer.normal_force) < 5:
         return ""
     with figure_style():
         figure = Figure(figsize=(5.0, 3.0), layout="constrained")
