@@ -174,15 +174,15 @@ def write_accuracy(page: Path) -> None:
     for method in sorted(found):
         rows = [_accuracy_row(name, values) for name, values in sorted(found[method].items()) if len(values) >= 3]
         if rows:
-            head = "| quantity | answers | stated error: median | largest | difference from MDR: median | largest |"
-            parts.append("\n".join([f"## {display_name(method)}\n", head, "|---|--:|--:|--:|--:|--:|", *rows]))
+            head = "| quantity | answers | stated error | difference from MDR |"
+            parts.append("\n".join([f"## {display_name(method)}\n", head, "|---|--:|--:|--:|", *rows]))
     page.write_text("\n\n".join(parts) + "\n", encoding="utf-8")
 
 
 def _accuracy_row(name: str, values: Sequence[Compared]) -> str:
     stated, change = [one.stated for one in values], [one.difference for one in values if one.difference is not None]
-    shown = f"{_small(median(change))} | {_small(max(change))}" if change else " | "
-    return f"| {name.replace('_', ' ')} | {len(values)} | {_small(median(stated))} | {_small(max(stated))} | {shown} |"
+    shown = f"{_small(median(change))}, {_small(max(change))}" if change else ""
+    return f"| {name.replace('_', ' ')} | {len(values)} | {_small(median(stated))}, {_small(max(stated))} | {shown} |"
 
 
 def _small(value: float) -> str:
