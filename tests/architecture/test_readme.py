@@ -22,6 +22,17 @@ def test_an_example_prints_what_the_readme_says(code, expected, capsys, tmp_path
     assert capsys.readouterr().out == expected
 
 
+def test_finite_elements_find_what_the_readme_says(tmp_path, monkeypatch):
+    from fem_reference import Fem
+
+    monkeypatch.chdir(tmp_path)
+    names = {}
+    exec(compile(blocks("python")[0], "README.md", "exec"), names)
+    answer = Fem().solve(names["scene"])
+    force, error = 1e9 * answer.normal_force[-1], 1e9 * answer.uncertainty("normal_force")[-1]
+    assert f"{force:.4f} nN, stated to {error:.0e} nN".replace("e-0", "e-") in TEXT
+
+
 def test_the_examples_have_about_ten_lines():
     assert all(8 <= len(code.strip().splitlines()) <= 12 for code in blocks("python"))
 
