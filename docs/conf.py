@@ -17,8 +17,8 @@ from docs.written import write_accuracy, write_case_figure, write_commands, writ
 
 write_book(load_cases().values(), HERE / "book")
 for case in load_cases():
-    with (HERE / "book" / f"{case}.md").open("a", encoding="utf-8") as page:
-        page.write(write_case_figure(case, HERE / "book"))
+    page, figure = HERE / "book" / f"{case}.md", write_case_figure(case, HERE / "book")
+    page.write_text(page.read_text(encoding="utf-8").replace("\n## ", f"{figure}\n## ", 1), encoding="utf-8")
 write_equations(HERE.parent, HERE / "generated" / "equations.md")
 write_accuracy(HERE / "generated" / "accuracy.md")
 write_commands(HERE / "commands")

@@ -17,6 +17,7 @@ from typer.main import get_command
 from contact import load_scene
 from mdr import Mdr
 from reports.command_line import EXIT_CODES, app
+from reports.pictures import between, solution_figure
 from reports.style import figure_style, look_of, mark_decades, svg_text
 from reports.words import display_name
 
@@ -75,25 +76,30 @@ def write_tasks(folder: Path) -> None:
     """Write the page of tasks: each file of `examples/tasks`, scenes with the picture of their answer."""
     folder.mkdir(parents=True, exist_ok=True)
     tasks, parts = ROOT / "examples" / "tasks", ["# Tasks of ten lines"]
-    parts.append("Scenes are solved by `contact-verify solve FILE.toml`. The pictures are `Mdr().solve(..).plot()`.")
+    parts.append("The pictures are those of `contact-verify solve FILE.toml --write FILE.svg`.")
     for file in sorted(tasks.glob("*.toml")):
         text = file.read_text(encoding="utf-8").partition("\n")[2]
         parts += [f"## {file.stem.replace('_', ' ')}", f"```toml\n{text}```", _picture(file, folder)]
     for file in sorted(tasks.glob("*.py")):
         text = file.read_text(encoding="utf-8")
-        parts += [f"## {file.stem.replace('_', ' ')}", f"```python\n{text}```"]
+        parts += [f"## {file.stem.replace('_', ' ')}", f"```python\n{text}```", _printed(file.name)]
     (folder / "index.md").write_text("\n\n".join(filter(None, parts)) + "\n", encoding="utf-8")
 
 
+def _printed(name: str) -> str:
+    """What a script prints, as the page of the folder has it; a test runs each."""
+    page = (ROOT / "examples" / "tasks" / "README.md").read_text(encoding="utf-8")
+    found = re.search(rf"`{name}`[^\n]*\n(```text\n.*?```)", page, re.DOTALL)
+    return found[1] if found else ""
+
+
 def _picture(file: Path, folder: Path) -> str:
-    """The picture of a scene's answer, written into the folder; nothing where the answer is one state."""
-    answer: Any = Mdr(accuracy=1e-4).solve(load_scene(file))
-    if len(answer.normal_force) < 3:
-        return ""
+    """The picture of a scene's answer, as `solve --write` draws it, written into the folder."""
+    scene, method = load_scene(file), Mdr(accuracy=1e-4)
+    answer, finer = method.solve(scene), between(scene)
     with figure_style():
-        figure = Figure(figsize=(5.0, 3.0), layout="constrained")
-        answer.plot(axes=figure.subplots())
-        (folder / f"{file.stem}.svg").write_text(svg_text(figure, key=file.stem), encoding="utf-8")
+        drawn = solution_figure(answer, None if finer is None else method.solve(finer))
+        (folder / f"{file.stem}.svg").write_text(svg_text(drawn, key=file.stem), encoding="utf-8")
     return f"![{file.stem.replace('_', ' ')}]({file.stem}.svg)"
 
 
@@ -168,15 +174,15 @@ def write_accuracy(page: Path) -> None:
     for method in sorted(found):
         rows = [_accuracy_row(name, values) for name, values in sorted(found[method].items()) if len(values) >= 3]
         if rows:
-            head = "| quantity | answers | stated error: median | largest | difference from MDR: median | largest |"
-            parts.append("\n".join([f"## {display_name(method)}\n", head, "|---|--:|--:|--:|--:|--:|", *rows]))
+            head = "| quantity | answers | stated error | difference from MDR |"
+            parts.append("\n".join([f"## {display_name(method)}\n", head, "|---|--:|--:|--:|", *rows]))
     page.write_text("\n\n".join(parts) + "\n", encoding="utf-8")
 
 
 def _accuracy_row(name: str, values: Sequence[Compared]) -> str:
     stated, change = [one.stated for one in values], [one.difference for one in values if one.difference is not None]
-    shown = f"{_small(median(change))} | {_small(max(change))}" if change else " | "
-    return f"| {name.replace('_', ' ')} | {len(values)} | {_small(median(stated))} | {_small(max(stated))} | {shown} |"
+    shown = f"{_small(median(change))}, {_small(max(change))}" if change else ""
+    return f"| {name.replace('_', ' ')} | {len(values)} | {_small(median(stated))}, {_small(max(stated))} | {shown} |"
 
 
 def _small(value: float) -> str:

@@ -80,9 +80,9 @@ def _holding() -> str:
 
 
 def _held(formula: PublishedFormula, nu: float) -> Iterator[str]:
-    told = (formula.source, formula.checked, formula.claim)
-    told = told if nu == formula.poissons_ratios[0] else ("",) * 3
-    yield from (formula.name, f"{formula.support}, nu = {nu:g}", *told)
+    cells = (formula.source, formula.checked, formula.claim)
+    cells = cells if nu == formula.poissons_ratios[0] else ("",) * 3
+    yield from (formula.name, f"{formula.support}, nu = {nu:g}", *cells)
     for share in SHARES:
         yield _range(formula, nu, audit.holds_to(formula, nu, share))
 

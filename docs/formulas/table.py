@@ -21,7 +21,7 @@ class PublishedFormula:
         name: with the year.
         shape: of the indenter.
         factor: of the force on the half-space, over the variable of the shape and nu.
-        source: where it stands.
+        source: publication and equation.
         checked: what its numbers were compared with, or why they could not be.
         claim: the range that it is given for.
         support: of the layer.

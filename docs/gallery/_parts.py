@@ -92,6 +92,8 @@ def show(figure: Figure) -> None:
     One colour and one entry of the legend per group: solid lines by MDR, dashed by other formulas, symbols by finite
     elements.
     """
+    if any(line.method == MDR for panel in figure.panels for line in panel.series):
+        figure = with_errors(figure)
     columns = min(2, len(figure.panels))
     rows = -(-len(figure.panels) // columns)
     size = (4.5 * columns, 3.6 * rows)

@@ -31,7 +31,7 @@ CASE_SLOPE = 0.1  # of the case, which has the same b/a
 # Places x over a, denser where g starts like a square root.
 _X = FLAT + (1.0 - FLAT) * np.linspace(0.0, 1.0, 101) ** 2
 _STEPS = np.linspace(0.0, 1.0, 61)[1:] ** 2
-# Radii over a, denser beside the ring r = b.
+# Radii over a, denser next to the ring r = b.
 _R = np.concatenate([FLAT * (1.0 - _STEPS[::-1]), FLAT + (1.0 - FLAT) * _STEPS])
 # The pressure is asked for no closer to the singular ring r = b than this fraction of a.
 _CLEAR = 1e-3

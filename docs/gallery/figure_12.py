@@ -13,7 +13,7 @@ from contact import ImpactHistory, StandardSolid
 from docs.gallery._parts import SOURCE, Figure, Panel, Series, by_finite_elements, mdr_line, show, symbols
 from mdr.impact.solver import solve_impact
 
-# Zero stands for the half-space. [m]
+# [m]; zero means the half-space.
 THICKNESSES = (0.0, 3e-3, 2e-3, 1e-3)
 # Thicknesses of the panels over h [m].
 SWEPT = np.geomspace(5e-4, 1e-2, 11)

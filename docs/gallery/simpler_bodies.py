@@ -85,13 +85,15 @@ def bodies() -> tuple[Simplification, ...]:
 def figure() -> Figure:
     """Force and pressure of each body."""
     solved = [(body, dict(body.paths())) for body in bodies()]
-    told = [f"{body.taken_as} {percent(_last(paths[body.taken_as]) / _last(paths['full']))}" for body, paths in solved]
+    errors = [
+        f"{body.taken_as} {percent(_last(paths[body.taken_as]) / _last(paths['full']))}" for body, paths in solved
+    ]
     return Figure(
         name="simpler_bodies",
-        title="What a simpler body errs by",
+        title="Errors of simplified layers",
         caption=(
             "A paraboloid whose radius is ten times the thickness H presses by up to H/10; E* is that of the surface. "
-            f"Pressures: at the largest depth, where the force errs by: {'; '.join(told)}. All lines: MDR."
+            f"Pressures: at the largest depth, where the errors of the force are: {'; '.join(errors)}. All lines: MDR."
         ),
         panels=tuple(panel for body, paths in solved for panel in (_forces(body, paths), _pressures(body, paths))),
     )

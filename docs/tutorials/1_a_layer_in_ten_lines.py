@@ -22,13 +22,13 @@ print(answer)
 print(f"F = {answer.normal_force[-1]:.12e} +- {answer.uncertainty('normal_force')[-1]:.0e}")
 
 # %%
-# The same force with Hertz' formula, which takes the gel for a half-space. Fitted to this curve, Hertz would find a
-# modulus that is too large by the ratio that is printed.
+# Hertz' formula takes the gel for a half-space. At the deepest point it would need a modulus that is larger by the
+# ratio that is printed.
 depth = answer.indentation_depth
 hertz = 4 / 3 * gel.contact_modulus * 50e-6**0.5 * depth**1.5
 figure, axes = plt.subplots(figsize=(5, 3.4), layout="constrained")
 answer.plot(axes=axes)
-axes.plot(1e6 * depth, 1e9 * hertz, "--", label="Hertz, half-space")
+axes.plot(1e9 * depth, 1e9 * hertz, "--", label="Hertz, half-space")
 axes.legend()
 print(f"at {1e9 * depth[-1]:.0f} nm the force is {answer.normal_force[-1] / hertz[-1]:.1f} times that of Hertz")
 

@@ -60,8 +60,8 @@ print(f"R^2 in contact {found.r_squared:.5f}")
 print(*found.warnings, sep="\n")
 
 # %%
-# Three pictures decide whether to trust a fit. The curve and its fit agree. The modulus of each point alone is level
-# (a wrong tip or thickness makes it rise or fall). The residuals are noise.
+# Three pictures decide whether to trust a fit. The curve and its fit agree. The modulus of each single point is
+# constant (with a wrong tip or thickness it rises or falls). The residuals are noise.
 shifted = 1e6 * (found.depth - found.values["contact_point"])
 figure, axes = plt.subplots(1, 3, figsize=(10, 3.2), layout="constrained")
 axes[0].plot(shifted, 1e9 * found.force, ".", ms=2, label="measured")
@@ -78,14 +78,14 @@ axes[2].set(xlabel="depth [µm]", ylabel="measured - fit [nN]")
 # %%
 # What formulas would have found
 # ------------------------------
-# The same curve by formulas in use, with their own contact points. Hertz does not know that the gel is thin.
+# The same curve by formulas in use, with their own contact points. Hertz' formula is that of a half-space.
 for other in found.formulas:
     print(f"{other.formula.name:12} {1e-3 * other.youngs_modulus:.2f} kPa ({100 * other.bias:+.0f} %)")
 
 # %%
 # A wrong scene shows
 # -------------------
-# With a thickness of 30 µm the fit has another modulus, its residuals are no noise any more, and a warning says so.
+# With a thickness of 30 µm the fit has another modulus, and its residuals are larger than the noise. A warning says so.
 wrong = fit_curve(scene.replace(layer=gel.replace(thickness=30e-6)), curve.depth, curve.force)
 print(f"{1e-3 * wrong.youngs_modulus:.2f} kPa")
 print(*wrong.warnings, sep="\n")

@@ -2,8 +2,8 @@
 Pull-off from an adhesive layer
 ===============================
 
-How much force separates a sphere from a soft layer that sticks to it? The contact is followed through its folds, to the
-point where it becomes unstable under a prescribed force or a prescribed displacement.
+How much force separates a sphere from a soft layer that sticks to it? The path of equilibria is followed
+through its folds, and states at which the contact becomes unstable under a prescribed force or displacement are marked.
 """
 
 import matplotlib.pyplot as plt
@@ -23,12 +23,12 @@ path = Mdr().solve(scene)
 print(path)
 
 # %%
-# The largest tension, with the error it states:
+# The largest tension:
 print(f"pull-off force {path.pull_off_force:.10e} N")
 
 # %%
-# The whole path, the unstable part included. The same on a thick layer, where the result is that of Johnson, Kendall
-# and Roberts, is the limit that the case ``paraboloid_adhesion`` checks.
+# The whole path, with its unstable part. On a thick layer it is that of Johnson, Kendall and Roberts, which the case
+# ``paraboloid_adhesion`` checks.
 figure, axes = plt.subplots(figsize=(6, 3.6), layout="constrained")
 axes.plot(1e6 * path.indentation_depth, 1e3 * path.normal_force)
 axes.axhline(0.0, color="0.6", linewidth=0.8)

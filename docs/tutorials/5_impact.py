@@ -2,7 +2,7 @@
 A ball bounces off a viscoelastic layer
 =======================================
 
-Part of the energy stays in the layer; the coefficient of restitution says how much speed comes back.
+The layer dissipates part of the energy. The coefficient of restitution is the rebound speed over the approach speed.
 """
 
 import matplotlib.pyplot as plt
@@ -23,7 +23,7 @@ print(history)
 print(f"restitution {history.coefficient_of_restitution:.9f}, peak force {history.peak_force:.6f} N")
 
 # %%
-# Force over time, and where the energy is.
+# Force over time; kinetic, stored and dissipated energy.
 figure, (left, right) = plt.subplots(1, 2, figsize=(8, 3.4), layout="constrained")
 left.plot(1e3 * history.time, history.normal_force)
 left.set(xlabel="time [ms]", ylabel="normal force [N]")

@@ -2,8 +2,8 @@
 Pyramids, ellipses and square punches
 =====================================
 
-Microscopes press with pyramids and replace them by cones. Here a square pyramid with a blunt tip presses on a thin gel,
-once as it is and once as the cone of equal cross-sections.
+Tips of microscopes are often pyramids, and are modelled as cones. Here a square pyramid with a blunt tip presses on a
+thin gel, and is compared with the cone of equal cross-sections.
 """
 
 import matplotlib.pyplot as plt
@@ -21,7 +21,7 @@ print(path)
 
 # %%
 # The answer is an expansion about the mean profile. Outline and pressure are of first order in the deviation from a
-# circle, force and stiffness of second order, and the stated errors are what the third order may be. Boundary elements
+# circle, force and stiffness of second order, and the stated errors bound the third order. Boundary elements
 # press cells of any outline and assume no circle.
 cells = Bem(points=128).solve(scene)
 cone = Mdr().solve(scene.replace(indenter=tip.substitute))

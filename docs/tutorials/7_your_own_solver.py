@@ -26,11 +26,11 @@ class MyHertz:
     name: ClassVar[str] = "my_hertz"
 
     def supports(self, scene):
-        """Whether this code knows the scene, and if not, why not."""
+        """Whether this code models the scene, and if not, the reason."""
         if scene.effects or not scene.layer.is_half_space:
-            return Unsupported("this code knows the elastic half-space only")
+            return Unsupported("this code models the elastic half-space only")
         if not isinstance(scene.indenter, Paraboloid) or not isinstance(scene.loading, ContactRadii):
-            return Unsupported("this code knows a paraboloid at a contact radius only")
+            return Unsupported("this code models a paraboloid at a contact radius only")
         return Supported()
 
     def solve(self, scene):
@@ -58,7 +58,7 @@ class MyHertz:
 
 
 # %%
-# Compared by hand, the mistake shows as one and the same relative error of the force, nu^2, while the depth is right.
+# The mistake is a relative error of the force of nu^2 at every radius. The depth is right.
 half_space = Layer.half_space(youngs_modulus=1e6, poissons_ratio=0.3)
 scene = Scene(layer=half_space, indenter=Paraboloid(radius_of_curvature=0.01), loading=ContactRadii([1e-4, 1e-3]))
 mine, reference = MyHertz().solve(scene), Mdr().solve(scene)
@@ -76,7 +76,7 @@ class FromDepth(MyHertz):
     name: ClassVar[str] = "from_depth"
 
     def solve(self, scene):
-        """Depth, force and stiffness at whatever the scene prescribes."""
+        """Depth, force and stiffness at the prescribed radii, depths or forces."""
         radius, modulus = scene.indenter.radius_of_curvature, scene.layer.contact_modulus
 
         def respond(depth):
@@ -90,7 +90,7 @@ for quantity in ("indentation_depth", "normal_force", "contact_stiffness"):
     print(quantity, getattr(FromDepth().solve(scene), quantity) / getattr(reference, quantity) - 1)
 
 # %%
-# Registered under the entry point ``contact_verification.methods``, it takes part in every case, and one line in
+# Registered under the entry point ``contact_verification.methods``, it can be named in every case. One line in
 # continuous integration judges it, with a report that names the mistake::
 #
 #     contact-verify run --suite ci --method my_hertz

@@ -22,6 +22,18 @@ def test_an_example_prints_what_the_readme_says(code, expected, capsys, tmp_path
     assert capsys.readouterr().out == expected
 
 
+def test_finite_elements_find_what_the_readme_says(tmp_path, monkeypatch):
+    from fem_reference import Fem
+
+    monkeypatch.chdir(tmp_path)
+    names = {}
+    exec(compile(blocks("python")[0], "README.md", "exec"), names)
+    answer = Fem().solve(names["scene"])
+    force = answer.normal_force[-1]
+    assert f"find {1e9 * force:.3f} nN" in TEXT
+    assert abs(force - names["answer"].normal_force[-1]) < answer.uncertainty("normal_force")[-1]
+
+
 def test_the_examples_have_about_ten_lines():
     assert all(8 <= len(code.strip().splitlines()) <= 12 for code in blocks("python"))
 

@@ -128,7 +128,7 @@ def test_fits_and_sweeps_are_printed_and_what_is_wrong_is_one_line(capsys):
     out = capsys.readouterr().out
     assert "5.002(41)" in out
     assert "+558 %" in out
-    assert np.genfromtxt("fit.csv", delimiter=",", names=True).size == 120
+    assert np.genfromtxt("fit.csv", delimiter=",", names=True).size == 160
     assert run(["solve", "force_steps.toml", "--over", "youngs_modulus=1kPa..1MPa:2:log"]) == 0
     assert "Young's modulus [MPa]" in capsys.readouterr().out
     for arguments, message in (
