@@ -1,5 +1,6 @@
 """An answer as people and spreadsheets read it: tables with error bars, and CSV with every digit."""
 
+from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -59,8 +60,14 @@ def solution_table(solution: Solution) -> Table:
         numbers = np.asarray(getattr(solution, name))[shown] / factor, _uncertainty(solution, name)[shown] / factor
         columns.append([_readable(float(value), float(error)) for value, error in zip(*numbers, strict=True)])
     symbols = ", ".join(f"{SYMBOLS[name]}: {quantity_words(name)}" for name in names)
-    note = f"{where}{symbols}. {BRACKETS}"
-    return Table(title=_title(solution), note=note, heads=tuple(heads), rows=tuple(zip(*columns, strict=True)), words=0)
+    rows = tuple(zip(*columns, strict=True))
+    note = f"{where}{symbols}. {_digits(rows)}"
+    return Table(title=_title(solution), note=note, heads=tuple(heads), rows=rows, words=0)
+
+
+def _digits(rows: Iterable[tuple[str, ...]]) -> str:
+    """Which digits of a table are right."""
+    return BRACKETS if any("(" in cell for row in rows for cell in row) else "All digits printed are right."
 
 
 def _shown_rows(count: int, what: str) -> tuple[IntArray, str]:
@@ -220,7 +227,8 @@ def sweep_table(found: "Sweep") -> Table:
             factor, words = scaled_column(head, values.tolist())
             numbers = zip((values / factor).tolist(), (np.where(exact, 0.0, errors) / factor).tolist(), strict=True)
             texts[words] = [f"{value:.6g}" if error == 0.0 else _readable(value, error) for value, error in numbers]
-    rows = list(zip(*texts.values(), strict=True))
-    shown, where = _shown_rows(len(rows), "rows")
-    title, note = f"Over {quantity_words(found.swept.name)}", f"{where}{BRACKETS}"
-    return Table(title=title, note=note, heads=tuple(texts), rows=tuple(rows[row] for row in shown), words=0)
+    every = list(zip(*texts.values(), strict=True))
+    shown, where = _shown_rows(len(every), "rows")
+    rows = tuple(every[row] for row in shown)
+    title = f"Over {quantity_words(found.swept.name)}"
+    return Table(title=title, note=f"{where}{_digits(rows)}", heads=tuple(texts), rows=rows, words=0)

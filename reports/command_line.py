@@ -137,98 +137,6 @@ def _options(
     pass
 
 
-@app.command("run", epilog=EXIT_CODES)
-def run_suite(
-    cases: Cases = None,
-    *,
-    suite: Annotated[Suite | None, Option(help="Only cases of this suite.")] = None,
-    method: Methods = None,
-    against: Against = None,
-    setting: Annotated[
-        list[str] | None,
-        Option(
-            metavar="NAME=VALUE",
-            help="Setting of a method of an installed package: name=value, method.name=value, or a TOML file with a "
-            "table per method (a table in it, of the name of a scene, is for that scene). Repeatable.",
-        ),
-    ] = None,
-    jobs: Annotated[int, Option(help="Solutions at a time; timings always run alone.")] = 2,
-    out: Annotated[Path, Option(help="Folder of the run: answers, report.html, figures.")] = OUT,
-    resume: Annotated[bool, Option("--resume", help="Keep finished solutions of an earlier run in OUT.")] = False,
-    executor: Annotated[str, Option(help="processes, serial, or a Dask scheduler (tcp://host:port).")] = "processes",
-    time_limit: Annotated[
-        float | None, Option(min=0.0, help="Seconds per solution, 0: no limit; 300 for methods of installed packages.")
-    ] = None,
-    timing: Annotated[bool, Option(help="Measure what accuracy costs in time.")] = True,
-    only: Annotated[
-        Only | None, Option(help="cost: only timings, coarse to fine. stability: only stress tests.")
-    ] = None,
-    listed: Annotated[bool, Option("--list", help="List the cases and stop; show a single CASE in full.")] = False,
-    strict: Strict = False,
-    quiet: Quiet = False,
-) -> int:
-    """Solve the verification cases by every method, judge their claims, and write the report.
-
-    A method of an installed package, named alone, is compared with mdr. With --only stability, CASE names stress tests.
-
-    Ctrl-C leaves a valid partial report, and --resume goes on from there.
-    """
-    from cases.run.runner import RunOptions  # noqa: PLC0415
-    from reports.commands import runs  # noqa: PLC0415
-
-    if listed:
-        runs.list_cases(cases or [], suite or "")
-        return 0
-    options = RunOptions(out=out, suite=suite or "", jobs=jobs, resume=resume, time_limit=time_limit, timing=timing)
-    methods, settings = method or [], setting or []
-    if only is Only.STABILITY:
-        return runs.stress(cases or [], methods, options, quiet=quiet)
-    if only is Only.COST:
-        return runs.cost(cases or [], options, methods=methods, settings=settings, quiet=quiet)
-    asked = runs.Asked(names=cases or [], methods=methods, others=against or [], settings=settings)
-    return runs.run(asked, options, executor=executor, quiet=quiet, strict=strict)
-
-
-@app.command(epilog=EXIT_CODES)
-def gate(
-    run: Folder = OUT,
-    *,
-    baseline: Baselines = Path("baselines"),
-    method: Methods = None,
-    strict: Strict = False,
-    quiet: Quiet = False,
-) -> int:
-    """Compare a finished run with the accepted numbers, and judge its claims again.
-
-    Numbers that changed beyond their tolerance, are missing or are new fail.
-
-    The methods of the run are compared unless --method names some. contact-verify report then draws the pages.
-    """
-    from reports.commands.baselines import run_gate  # noqa: PLC0415
-
-    return run_gate(run, baseline, methods=method or (), strict=strict, quiet=quiet)
-
-
-@app.command(epilog=EXIT_CODES)
-def accept(
-    cases: Cases = None,
-    *,
-    reason: Annotated[str, Option(help="Why these numbers are right; it is kept beside them.")],
-    run: Annotated[Path, Option(help="Folder of the finished run they come from.")] = OUT,
-    baseline: Baselines = Path("baselines"),
-    write: Annotated[bool, Option("--write", help="Write; without it only show what would change.")] = False,
-    loosen: Annotated[bool, Option("--loosen", help="Let tolerances grow or records be withdrawn.")] = False,
-    jobs: Annotated[int, Option(help="Repetitions at a time.")] = 2,
-) -> None:
-    """Show how the numbers of a run differ from the accepted ones; with --write they become the accepted ones.
-
-    Refused: numbers that are not finite, uncommitted changes, failing claims of closed forms or orders of convergence.
-    """
-    from reports.commands.baselines import accept_cases  # noqa: PLC0415
-
-    accept_cases(cases or [], run, baseline, reason=reason, loosen=loosen, write=write, jobs=jobs)
-
-
 @app.command(epilog=EXIT_CODES)
 def solve(
     scene: Annotated[Path, typer.Argument(help="Scene in TOML: tables layer, indenter, loading and effects.")],
@@ -362,6 +270,98 @@ def fit(
     asked: Any = {"fit": moduli, "also": also, "until": until, "uncertain": uncertain, "confidence": confidence}
     asked |= {"units": units, "spring_constant": spring_constant, "sensitivity": sensitivity}
     fit_file(curve, scene, number=None if curves else number, outputs=write or [], **asked)
+
+
+@app.command("run", epilog=EXIT_CODES)
+def run_suite(
+    cases: Cases = None,
+    *,
+    suite: Annotated[Suite | None, Option(help="Only cases of this suite.")] = None,
+    method: Methods = None,
+    against: Against = None,
+    setting: Annotated[
+        list[str] | None,
+        Option(
+            metavar="NAME=VALUE",
+            help="Setting of a method of an installed package: name=value, method.name=value, or a TOML file with a "
+            "table per method (a table in it, of the name of a scene, is for that scene). Repeatable.",
+        ),
+    ] = None,
+    jobs: Annotated[int, Option(help="Solutions at a time; timings always run alone.")] = 2,
+    out: Annotated[Path, Option(help="Folder of the run: answers, report.html, figures.")] = OUT,
+    resume: Annotated[bool, Option("--resume", help="Keep finished solutions of an earlier run in OUT.")] = False,
+    executor: Annotated[str, Option(help="processes, serial, or a Dask scheduler (tcp://host:port).")] = "processes",
+    time_limit: Annotated[
+        float | None, Option(min=0.0, help="Seconds per solution, 0: no limit; 300 for methods of installed packages.")
+    ] = None,
+    timing: Annotated[bool, Option(help="Measure what accuracy costs in time.")] = True,
+    only: Annotated[
+        Only | None, Option(help="cost: only timings, coarse to fine. stability: only stress tests.")
+    ] = None,
+    listed: Annotated[bool, Option("--list", help="List the cases and stop; show a single CASE in full.")] = False,
+    strict: Strict = False,
+    quiet: Quiet = False,
+) -> int:
+    """Solve the verification cases by every method, judge their claims, and write the report.
+
+    A method of an installed package, named alone, is compared with mdr. With --only stability, CASE names stress tests.
+
+    Ctrl-C leaves a valid partial report, and --resume goes on from there.
+    """
+    from cases.run.runner import RunOptions  # noqa: PLC0415
+    from reports.commands import runs  # noqa: PLC0415
+
+    if listed:
+        runs.list_cases(cases or [], suite or "")
+        return 0
+    options = RunOptions(out=out, suite=suite or "", jobs=jobs, resume=resume, time_limit=time_limit, timing=timing)
+    methods, settings = method or [], setting or []
+    if only is Only.STABILITY:
+        return runs.stress(cases or [], methods, options, quiet=quiet)
+    if only is Only.COST:
+        return runs.cost(cases or [], options, methods=methods, settings=settings, quiet=quiet)
+    asked = runs.Asked(names=cases or [], methods=methods, others=against or [], settings=settings)
+    return runs.run(asked, options, executor=executor, quiet=quiet, strict=strict)
+
+
+@app.command(epilog=EXIT_CODES)
+def gate(
+    run: Folder = OUT,
+    *,
+    baseline: Baselines = Path("baselines"),
+    method: Methods = None,
+    strict: Strict = False,
+    quiet: Quiet = False,
+) -> int:
+    """Compare a finished run with the accepted numbers, and judge its claims again.
+
+    Numbers that changed beyond their tolerance, are missing or are new fail.
+
+    The methods of the run are compared unless --method names some. contact-verify report then draws the pages.
+    """
+    from reports.commands.baselines import run_gate  # noqa: PLC0415
+
+    return run_gate(run, baseline, methods=method or (), strict=strict, quiet=quiet)
+
+
+@app.command(epilog=EXIT_CODES)
+def accept(
+    cases: Cases = None,
+    *,
+    reason: Annotated[str, Option(help="Why these numbers are right; it is kept beside them.")],
+    run: Annotated[Path, Option(help="Folder of the finished run they come from.")] = OUT,
+    baseline: Baselines = Path("baselines"),
+    write: Annotated[bool, Option("--write", help="Write; without it only show what would change.")] = False,
+    loosen: Annotated[bool, Option("--loosen", help="Let tolerances grow or records be withdrawn.")] = False,
+    jobs: Annotated[int, Option(help="Repetitions at a time.")] = 2,
+) -> None:
+    """Show how the numbers of a run differ from the accepted ones; with --write they become the accepted ones.
+
+    Refused: numbers that are not finite, uncommitted changes, failing claims of closed forms or orders of convergence.
+    """
+    from reports.commands.baselines import accept_cases  # noqa: PLC0415
+
+    accept_cases(cases or [], run, baseline, reason=reason, loosen=loosen, write=write, jobs=jobs)
 
 
 @app.command(epilog=EXIT_CODES)

@@ -45,32 +45,19 @@ def _seal(content: bytes) -> bytes:
 
 def _write(group: h5py.Group, tree: Tree) -> None:
     for name, value in tree.items():
-        if not isinstance(name, str) or name in ("", ".") or set(name) & set("/\0"):
-            raise InvalidInput(f"{group.name}: {shown(name)} cannot name an entry; give a text without a slash")
         if isinstance(value, Mapping):
             _write(group.create_group(name, track_order=True), value)
-        elif not _is_storable(value):
-            kind = f"{type(value).__name__} of {value.dtype}" if isinstance(value, np.ndarray) else type(value).__name__
-            raise InvalidInput(f"{group.name}/{name}: a {kind} cannot be stored; give an array or number")
-        else:
-            _write_leaf(group, name, value)
-
-
-def _is_storable(value: object) -> bool:
-    if isinstance(value, np.ndarray):
-        return value.dtype.kind in "biufc" and not isinstance(value, np.ma.MaskedArray)
-    return value is None or isinstance(value, bool | int | float | str | np.bool_ | np.number)
-
-
-def _write_leaf(group: h5py.Group, name: str, value: Any) -> None:
-    try:
-        if isinstance(value, np.ndarray):
-            group.create_dataset(name, data=value, track_times=False)
-        else:
-            group.attrs[name] = h5py.Empty("f8") if value is None else value  # HDF5 knows no None
-    except (ValueError, TypeError, OverflowError, KeyError) as error:
-        # HDF5 holds no integer beyond 64 bits and no text with a zero byte.
-        raise InvalidInput(f"{group.name}/{name} = {shown(value)}: cannot be stored ({error!s:.160})") from None
+            continue
+        if isinstance(value, list | tuple):
+            raise InvalidInput(f"{group.name}/{name} = {shown(value)}: cannot be stored; give an array or a number")
+        try:
+            if isinstance(value, np.ndarray):
+                group.create_dataset(name, data=value, track_times=False)
+            else:
+                group.attrs[name] = h5py.Empty("f8") if value is None else value  # HDF5 knows no None
+        except (ValueError, TypeError, OverflowError, KeyError) as error:
+            # HDF5 holds no integer beyond 64 bits, no text with a zero byte and no objects of Python.
+            raise InvalidInput(f"{group.name}/{name} = {shown(value)}: cannot be stored ({error!s:.160})") from None
 
 
 def read_tree(path: str | Path) -> dict[str, Any]:

@@ -62,7 +62,8 @@ class _RecordType(ABCMeta):
 
         def __init__(cls, *args: Any, **kwargs: Any) -> None:
             super().__init__(*args, **kwargs)
-            pydantic.dataclasses.dataclass(cls, **_OPTIONS)
+            if inspect.get_annotations(cls):  # classes without fields of their own are left as they are: that is faster
+                pydantic.dataclasses.dataclass(cls, **_OPTIONS)
 
         def __call__(cls, *args: Any, **kwargs: Any) -> Any:
             try:

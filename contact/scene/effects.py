@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Annotated, ClassVar
+from typing import Annotated
 
 import numpy as np
 from pydantic import model_validator
@@ -19,7 +19,7 @@ _LongTermModulus = Annotated[float, *in_range(0.0, math.inf, "give the long-term
 class Effect(Record):
     """Base of every effect."""
 
-    NAMED: ClassVar[bool] = True
+    NAMED = True
 
 
 @dataclass(frozen=True, kw_only=True)

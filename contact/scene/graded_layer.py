@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from functools import cached_property
-from typing import TYPE_CHECKING, Annotated, ClassVar, Self
+from typing import TYPE_CHECKING, Annotated, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -38,7 +38,7 @@ NO_ZERO = (
 class DepthFunction(Record):
     """Base of the functions of depth; z [m] lies in [0, thickness]."""
 
-    NAMED: ClassVar[bool] = True
+    NAMED = True
 
     def at(self, depth: ArrayLike, thickness: float) -> FloatArray:
         """Values at depths z [m] of any shape in a layer of this thickness [m]."""
@@ -188,7 +188,7 @@ class GradedLayer(ElasticLayer):
         support: "bonded" or "unbonded" to a rigid base, or an `ElasticBase`.
     """
 
-    NAMED: ClassVar[bool] = True
+    NAMED = True
 
     thickness: PositiveLength
     youngs_modulus: Annotated[DepthFunction, OneOf(*DEPTH_FUNCTIONS)]

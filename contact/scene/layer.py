@@ -213,7 +213,7 @@ class LayerStack(ElasticLayer):
         support: "bonded" or "unbonded" to a rigid base, or an `ElasticBase`.
     """
 
-    NAMED: ClassVar[bool] = True
+    NAMED = True
 
     sublayers: Annotated[tuple[Sublayer, ...], Field(max_length=MAX_SUBLAYERS, strict=False)]
     interfaces: Annotated[tuple[Interface, ...], Field(strict=False)] = ()

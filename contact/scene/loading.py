@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import field
-from typing import Annotated, ClassVar, Literal, TypeAlias
+from typing import Annotated, Literal, TypeAlias
 
 from pydantic import model_validator
 
@@ -20,7 +20,7 @@ Instants: TypeAlias = Annotated[Vector, *vector("give instants in seconds that i
 class Loading(Record):
     """Base of every loading."""
 
-    NAMED: ClassVar[bool] = True
+    NAMED = True
 
 
 class ContactRadii(Loading):

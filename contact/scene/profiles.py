@@ -42,7 +42,7 @@ _FEWEST_TO_SMOOTH = 8
 class Profile(Record, ABC):
     """Base of all indenters of revolution. Radii r [m] may be arrays of any shape."""
 
-    NAMED: ClassVar[bool] = True
+    NAMED = True
 
     @abstractmethod
     def height(self, radius: ArrayLike) -> FloatArray:

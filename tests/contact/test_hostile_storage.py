@@ -23,13 +23,10 @@ def test_one_flipped_bit_is_seen(tmp_path):
 @pytest.mark.parametrize(
     ("tree", "message"),
     [
-        ({"a": np.array([None])}, "a ndarray of object cannot be stored"),
-        ({"a": np.ma.array([1.0], mask=[True])}, "a MaskedArray of float64 cannot be stored"),
-        ({"a/b": 1.0}, "cannot name an entry"),
-        ({1: 1.0}, "1 cannot name an entry"),
+        ({"a": np.array([None])}, "group/a = .*: cannot be stored"),
         ({"a": 2**70}, r"/a = 1180591620717411303424: cannot be stored"),
         ({"a": "\0"}, r"cannot be stored"),
-        ({"a": {"b": [1.0]}}, "group/a/b: a list cannot be stored"),
+        ({"a": {"b": [1.0]}}, r"group/a/b = \[1\.0\]: cannot be stored"),
     ],
 )
 def test_what_cannot_be_stored_is_named_and_nothing_is_written(tmp_path, tree, message):

@@ -13,7 +13,6 @@ from cases.foreign import against, beside, with_registered
 from cases.runs import RUN, read_run
 from contact import InvalidInput
 from reports.command_line import run
-from tests.cases.fake_case import fake_case
 from tests.cases.fake_method import FakeHertz
 
 
@@ -31,6 +30,7 @@ def solved(*more):
     return code, read_run(Path("out"))
 
 
+@pytest.mark.usefixtures("library")
 def test_alone_it_is_compared_with_the_fast_method_where_it_models_the_scene(tmp_path):
     case = with_registered(load_cases()["thin_layer_limits"], ["mine"])
     found = beside(case, ["mine"], "mdr")
@@ -39,7 +39,7 @@ def test_alone_it_is_compared_with_the_fast_method_where_it_models_the_scene(tmp
     for scene in found.scenes:
         supported = bool(FakeHertz().supports(scene.scene))
         assert {use.label for use in scene.methods} == ({"mdr", "mine"} if supported else {"mine"})
-    _, result = solved("held_indentation", "--method", "mine")
+    _, result = solved("--method", "mine")
     assert result.judged.methods == ("mine",)
     assert "unchosen" not in (tmp_path / "out" / RUN).read_text(encoding="utf-8")
 
@@ -89,16 +89,3 @@ def test_a_comparison_with_nothing_is_refused(capsys):
         assert "name with --method what is compared with it" in capsys.readouterr().err
     assert run(["run", "--quiet", "--out", "out", "--method", "mine", "--against", "abaqus"]) == 4
     assert "no method 'abaqus'; there are" in capsys.readouterr().err
-
-
-def test_cost_times_only_the_methods_named(library, capsys, monkeypatch):
-    from reports.commands import runs
-
-    case = fake_case(work=True)
-    monkeypatch.setattr(runs, "load_cases", lambda: {case.name: case})
-    assert run(["run", "--only", "cost", "--suite", "ci", "--out", "out", "--quiet", "--method", "mine"]) == 0
-    (record,) = read_run(Path("out")).judged.costs
-    assert [(point.method, point.setting) for point in record.points] == [("mine", "as it comes")]
-    assert record.points[0].bound is not None
-    assert run(["run", "--only", "cost", "--suite", "ci", "--out", "out", "--quiet", "--method", "bem"]) == 4
-    assert "nothing times bem" in capsys.readouterr().err
