@@ -322,11 +322,10 @@ class Equal(PerScene):
         return worst, found.index(worst)
 
     def _by_inputs(self, others: list[Answer]) -> FloatArray:
-        """Standard uncertainty of every step by the inputs: the root of D R D^T."""
+        """Standard uncertainty of every step by the inputs."""
         moved = [np.array(other.quantities[self.quantity].values) for other in others]
         changes = np.array([(up - down) / 2 for up, down in zip(moved[::2], moved[1::2], strict=True)])
-        correlation = read_inputs(self.uncertain).correlation
-        return np.asarray(np.sqrt(np.einsum("is,ij,js->s", changes, correlation, changes)))
+        return read_inputs(self.uncertain).spread(changes)
 
     def expected(self, scene: CaseScene) -> float | None:
         """Return the single expected value."""

@@ -9,7 +9,7 @@ from cases.answers import Answer, Table
 from cases.case import Case, Task
 from cases.claims import Study
 from cases.declare.methods import MethodUse
-from cases.run.timing import summed_up
+from cases.run.timing import quartiles
 from cases.studies import CostOfAccuracy, Point
 from cases.verdicts import Status
 from contact import InvalidInput
@@ -63,7 +63,8 @@ class Cost(Study):
         exact = reference.quantities[self.quantity]
         u_ref = exact.error[-1] / abs(exact.values[-1])
         points = [self._point(*pair, exact.values[-1], u_ref) for pair in zip(self.ladder, timed, strict=True)]
-        noise = max((summed_up(answer.samples).spread for answer in timed if answer.samples), default=0.0)
+        times = [quartiles(answer.samples) for answer in timed if answer.samples]
+        noise = max(((upper - lower) / 2 / median for lower, median, upper in times), default=0.0)
         front = pareto_front(points, noise)
         yield CostOfAccuracy(
             case=case.name,
@@ -87,13 +88,13 @@ class Cost(Study):
         if answer.status is not Status.PASS or not answer.samples:
             return point
         error = abs(answer.quantities[self.quantity].values[-1] - exact) / abs(exact)
-        timing = summed_up(answer.samples)
+        lower, median, upper = quartiles(answer.samples)
         return replace(
             point,
             error=error,
             bound=error + u_ref,
-            seconds=timing.median,
-            quartiles=(timing.lower_quartile, timing.upper_quartile),
+            seconds=median,
+            quartiles=(lower, upper),
             cold_seconds=answer.cold_seconds,
             unknowns=answer.unknowns,
             memory=answer.memory,

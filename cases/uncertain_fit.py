@@ -66,7 +66,7 @@ def fit_uncertain(
     middle = at(np.zeros(len(inputs.inputs)))
     pairs = [(at(unit).values, at(-unit).values) for unit in np.eye(len(inputs.inputs))]
     changes = {name: np.array([(up[name] - down[name]) / 2 for up, down in pairs]) for name in middle.values}
-    spread = {name: float(np.sqrt(d @ inputs.correlation @ d)) for name, d in changes.items()}
+    spread = {name: float(inputs.spread(d[:, None])[0]) for name, d in changes.items()}
     names = [one.name for one in inputs.inputs]
     return UncertainFit(
         fit=replace(middle, input_error=spread),

@@ -68,15 +68,16 @@ def in_units(scene: Scene, units: Units) -> Scene:
 def with_numbers(scene: Scene, change: Callable[[Record, str, Any], Any]) -> Scene:
     """The scene with every number, or array of numbers, replaced by `change` of its record, field and value."""
     return Scene(
-        layer=_changed(scene.layer, change),
-        indenter=_changed(scene.indenter, change),
-        loading=_changed(scene.loading, change),
-        effects=tuple(_changed(effect, change) for effect in scene.effects),
+        layer=changed(scene.layer, change),
+        indenter=changed(scene.indenter, change),
+        loading=changed(scene.loading, change),
+        effects=tuple(changed(effect, change) for effect in scene.effects),
         beyond_small_strains=True,
     )
 
 
-def _changed(item: R, change: Callable[[Record, str, Any], Any]) -> R:
+def changed(item: R, change: Callable[[Record, str, Any], Any]) -> R:
+    """The record with every number, or array of numbers, replaced by `change` of its record, field and value."""
     values = {field.name: getattr(item, field.name) for field in dataclasses.fields(item)}
     numbers = {name: value for name, value in values.items() if value is not None and not isinstance(value, str | int)}
     return item.replace(**{name: _changed_value(item, name, value, change) for name, value in numbers.items()})
@@ -89,4 +90,4 @@ def _changed_value(item: Record, name: str, value: Any, change: Callable[[Record
     if isinstance(value, str):
         return value
     is_part = isinstance(value, Record) and not isinstance(value, DepthFunction)
-    return _changed(value, change) if is_part else change(item, name, value)
+    return changed(value, change) if is_part else change(item, name, value)

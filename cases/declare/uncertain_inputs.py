@@ -2,9 +2,8 @@
 
 import math
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, fields
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -42,17 +41,17 @@ class UncertainInput:
         """Whether all values between two are equally likely."""
         return self.low is not None
 
-    def moved(self, deviations: float, value: Any) -> Any:
-        """The value so many standard deviations from the middle."""
-        if self.low is None or self.high is None:
-            return value * (1 + deviations * self.deviation)
-        return (self.low + self.high) / 2 + deviations * self.deviation
+    def moved(self, number: float, value: Any, *, drawn: bool = False) -> Any:
+        """The value so many standard deviations from the middle.
 
-    def drawn(self, normal: float, value: Any) -> Any:
-        """The value for a standard normal number: in a range the place with the same share of values below it."""
+        Where it is drawn, the number is standard normal: in a range it stands for the place with the same share of
+        values below it.
+        """
         if self.low is None or self.high is None:
-            return self.moved(normal, value)
-        return self.low + (self.high - self.low) * (1 + math.erf(normal / math.sqrt(2))) / 2
+            return value * (1 + number * self.deviation)
+        if drawn:
+            return self.low + (self.high - self.low) * (1 + math.erf(number / math.sqrt(2))) / 2
+        return (self.low + self.high) / 2 + number * self.deviation
 
     def in_words(self) -> str:
         """As people read it: "3 %" or "0.48 to 0.5"."""
@@ -71,21 +70,24 @@ class UncertainInputs:
     inputs: tuple[UncertainInput, ...]
     correlation: FloatArray
 
-    def moved(self, scene: Scene, deviations: FloatArray) -> Scene:
-        """The scene with each input so many standard deviations from its middle, shape (n,).
+    def moved(self, scene: Scene, numbers: FloatArray, *, drawn: bool = False) -> Scene:
+        """The scene with each input so many standard deviations from its middle, or drawn by them, shape (n,).
 
         Raises:
             InvalidInput: if it has no such number, or not with that value.
         """
-        for one, number in zip(self.inputs, deviations, strict=True):
-            scene = _changed(scene, one, partial(one.moved, float(number)))
+        for one, number in zip(self.inputs, numbers, strict=True):
+            part, field = place_of(scene, one.name)
+            record = part_of(scene, part)
+            value = getattr(record, field)
+            if one.is_range and isinstance(value, np.ndarray):
+                raise InvalidInput(f"uncertain {one.name}: it is a list of numbers; give a percentage for all of them")
+            scene = with_part(scene, part, record.replace(**{field: one.moved(float(number), value, drawn=drawn)}))
         return scene
 
-    def drawn(self, scene: Scene, normal: FloatArray) -> Scene:
-        """The scene with inputs drawn by standard normal numbers, shape (n,); raises as `moved` does."""
-        for one, number in zip(self.inputs, normal, strict=True):
-            scene = _changed(scene, one, partial(one.drawn, float(number)))
-        return scene
+    def spread(self, changes: FloatArray) -> FloatArray:
+        """Standard uncertainty by changes per deviation of each input, shape (inputs, steps): the root of D R D^T."""
+        return np.asarray(np.sqrt(np.einsum("is,ij,js->s", changes, self.correlation, changes)))
 
 
 def read_inputs(text: str, scene: Scene | None = None, *, with_units: bool = False) -> UncertainInputs:
@@ -184,19 +186,6 @@ def with_part(scene: Scene, part: str, record: Any) -> Scene:
         return scene.replace(**{part: record})
     number = int(part.removeprefix("effects"))
     return scene.replace(effects=(*scene.effects[:number], record, *scene.effects[number + 1 :]))
-
-
-def _changed(scene: Scene, one: UncertainInput, change: Callable[[Any], Any]) -> Scene:
-    part, field = place_of(scene, one.name)
-    return with_part(scene, part, _with(part_of(scene, part), field, one, change))
-
-
-def _with(record: Any, field: str, one: UncertainInput, change: Callable[[Any], Any]) -> Any:
-    """The record with one field changed by `change`, for the uncertain input `one`."""
-    value = getattr(record, field)
-    if one.is_range and isinstance(value, np.ndarray):
-        raise InvalidInput(f"uncertain {one.name}: it is a list of numbers; give a percentage for all of them")
-    return record.replace(**{field: change(value)})
 
 
 def place_of(scene: Scene, name: str, purpose: str = "uncertain") -> tuple[str, str]:

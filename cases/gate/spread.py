@@ -11,6 +11,7 @@ from collections.abc import Iterator, Mapping
 from concurrent.futures import Executor, Future
 from contextlib import contextmanager, nullcontext
 from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -19,28 +20,12 @@ from cases.case import Case, Task
 from cases.rules import relative_spread
 from cases.run.executors import ahead, closing, completed, process_pool
 from cases.run.solve_task import job_of, solve
-from contact import (
-    ContactRadii,
-    DepthHistory,
-    ElasticLayer,
-    ForceHistory,
-    IndentationDepths,
-    InvalidInput,
-    Layer,
-    Loading,
-    NormalForces,
-    Scene,
-)
-from contact.records.validation import FloatArray
+from cases.units import changed
+from contact import DepthFunction, InvalidInput, Scene
+from contact.records.record import Record
 
-# What each loading prescribes.
-PRESCRIBED: Mapping[type[Loading], str] = {
-    ContactRadii: "values",
-    IndentationDepths: "values",
-    NormalForces: "values",
-    DepthHistory: "depth",
-    ForceHistory: "force",
-}
+# Fields of layers and loadings.
+NUDGED = ("youngs_modulus", "thickness", "values", "depth", "force")
 PLAIN_KERNEL = "Prescott"  # every x86-64 processor has it; a library other than OpenBLAS takes no notice
 
 # The keys are method, scene and quantity.
@@ -98,28 +83,20 @@ def nudged_scene(scene: Scene, towards: float) -> Scene:
 
     Where that is no scene (a radius beyond the end of a table) the loading stays as it is.
     """
-    nudged = scene.replace(layer=_nudged_layer(scene.layer, towards))
-    name = next((name for kind, name in PRESCRIBED.items() if isinstance(scene.loading, kind)), "")
-    if not name:
-        return nudged
-    values = getattr(scene.loading, name)
+    nudge = partial(_nudged, towards)
+    nudged = scene.replace(layer=changed(scene.layer, nudge))
     try:
-        return nudged.replace(loading=scene.loading.replace(**{name: _nudged(values, towards)}))
+        return nudged.replace(loading=changed(scene.loading, nudge))
     except InvalidInput:
         return nudged
 
 
-def _nudged(values: FloatArray, towards: float) -> FloatArray:
-    """Each number one unit in the last place away; a zero means that nothing is pressed, and stays."""
-    return np.where(values == 0.0, values, np.nextafter(values, towards))
-
-
-def _nudged_layer(layer: ElasticLayer, towards: float) -> ElasticLayer:
-    """Modulus and thickness one unit in the last place away; of stacks and graded layers all depths."""
-    if not isinstance(layer, Layer):
-        return layer.stretched(math.nextafter(1.0, towards))
-    layer = layer.replace(youngs_modulus=math.nextafter(layer.youngs_modulus, towards))
-    return layer if layer.is_half_space else layer.replace(thickness=math.nextafter(layer.thickness, towards))
+def _nudged(towards: float, record: Record, name: str, value: Any) -> Any:
+    """The number one unit in the last place away; a zero means that nothing is pressed, and stays."""
+    if name not in NUDGED or isinstance(value, DepthFunction):
+        return value
+    moved = np.where((value == 0.0) | np.isinf(value), value, np.nextafter(value, towards))
+    return moved if isinstance(value, np.ndarray) else float(moved)
 
 
 @contextmanager

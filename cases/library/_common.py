@@ -18,8 +18,9 @@ from cases.answers import Answer
 from cases.case import CaseScene, Sampling
 from cases.claims import Agree, Approach, Bound, Claim, Equal, Expected, Law, Norm, Numbers, Zero
 from cases.declare.methods import MethodUse
+from cases.units import Units, in_units
 from cases.verdicts import Origin, Why
-from contact import ContactRadii, ElasticLayer, InvalidInput, Layer, Loading, NormalForces, Profile, Scene
+from contact import ContactRadii, ElasticLayer, InvalidInput, Layer, Loading, Profile, Scene
 from contact.records.validation import FloatArray
 
 # A scene on any layer, under any loading.
@@ -226,17 +227,8 @@ def other_poissons_ratio(scene: AnyScene) -> AnyScene:
 
 
 def in_millimetres(scene: AnyScene) -> AnyScene:
-    """Return the same contact written in another consistent system: lengths in mm and stresses in MPa.
-
-    With the force in N, lengths are 1000 times and stresses 1e-6 times the SI numbers; forces keep their numbers.
-    """
-    lengths, names = ("radius", "flat_radius", "radius_of_curvature"), [f.name for f in fields(scene.indenter)]
-    own = {name: 1e3 * getattr(scene.indenter, name) for name in lengths if name in names}
-    layer, loading = scene.layer, scene.loading
-    thinner = layer.replace(thickness=1e3 * layer.thickness, youngs_modulus=1e-6 * layer.youngs_modulus)
-    if not isinstance(loading, NormalForces):
-        loading = type(loading)(values=1e3 * loading.values)
-    return scene.replace(layer=thinner, indenter=scene.indenter.replace(**own), loading=loading)
+    """Return the same contact with lengths in mm and stresses in MPa, so that forces keep their numbers."""
+    return in_units(scene, Units(length=1e3, stress=1e-6))
 
 
 # -- methods ----------------------------------------------------------------------------------------------------------

@@ -124,19 +124,29 @@ def stuck_on_half_space(scene: c.AnyScene) -> dict[str, float]:
 
 
 FORCE = "normal_force"
+RECIPROCITY = "the first order is that of reciprocity", FORCE
 FIRST_ORDER: c.Words = {"largest": SMALL[-1] ** 2, "parameter": coefficient, "formal_order": 2.0}
 LEAST: c.Words = {"multiple": lambda scene: statement(scene, "lower")[1], "tolerance": 1e-4, "nightly": True}
 MOST = LEAST | {"multiple": lambda scene: statement(scene, "upper")[1], "at_most": True}
-SPENCES = {"contact radius of partial slip": ("contact_radius", 1e-4), "force of partial slip": (FORCE, 1e-5)}
-SPENCES["heat of partial slip"] = ("dissipated_energy", 1e-2)
+# By name of the claim: quantity, scenes and tolerance.
+SPENCES = {
+    "self-similar stick radius": ("stick_radius", (*SELF_SIMILAR, ON_THICK), 1e-2),
+    "contact radius of partial slip": ("contact_radius", SELF_SIMILAR, 1e-4),
+    "force of partial slip": (FORCE, SELF_SIMILAR, 1e-5),
+    "heat of partial slip": ("dissipated_energy", SELF_SIMILAR, 1e-2),
+}
+LAWS = {
+    "base carries the force": ("base_force_defect", (*SMALL_ONES, *STUCK, CYCLE), 1e-10),
+    "no heat is given back": ("heat_given_back", (CYCLE,), 1e-12),
+    "work is stored or heat": ("energy_defect", (CYCLE,), 2e-3),
+}
 UNDER_STICK = {"radius under stick": "contact_radius", "force under stick": FORCE}
 CLOSED: c.Words = {"tolerance": 1e-8, "fem": 1e-5}
 # Unknowns of growth are these over 24 times the usual ones: 10 to 20 of 30.
 NODES, SIXTH = r.in_turn("nodes", (8, 12, 16)), "unknowns of growth, a sixth a step"
 STICK_NODES = r.refinement(SIXTH, "mdr", NODES, r.WHY["nodes"], least_digits=1.0, floor=1e-12)
 GRIDS = {FORCE: 2e-4, "contact_radius": 1e-3, "dissipated_energy": 2e-2}
-CARRYING = (*SMALL_ONES, *STUCK, CYCLE)
-BY_FEM: c.Words = {"methods": ("fem",)}
+TWO_GRIDS: c.Words = {"fast": "fem", "why": WHY["two grids"], "name": "{}: two grids", "nightly": True}
 TIMED = MethodUse(label="full stick", method="mdr")
 LADDER = (TIMED, *(MethodUse(label=f"growth {g:g}", method="fem", settings={"growth": g}) for g in (0.75, 0.5, 0.25)))
 PRICE: c.Words = {"scene": "nu=0.5 stick", "ladder": LADDER, "reference": TIMED, "cheap": (TIMED,)}
@@ -149,57 +159,19 @@ CASE = paper(
     methods=(c.MDR, CELLS),
     claims=(
         *c.agreements(STUCK, {"fem": 1e-3}, (FORCE, "contact_stiffness"), why=WHY["two methods"]),
-        c.approach(
-            "the first order is that of reciprocity",
-            FORCE,
-            SMALL_ONES,
-            to_first_order,
-            WHY["first order"],
-            **FIRST_ORDER,
-        ),
+        c.approach(*RECIPROCITY, SMALL_ONES, to_first_order, WHY["first order"], **FIRST_ORDER),
         c.bound("the bound holds from below", FORCE, SLIDING, frictionless, WHY["bound"], **LEAST),
         c.bound("the bound holds from above", FORCE, SLIDING, frictionless, WHY["bound"], **MOST),
-        c.equal(
-            "self-similar stick radius",
-            "stick_radius",
-            of_spence,
-            (*SELF_SIMILAR, ON_THICK),
-            WHY["self-similar"],
-            tolerance=1e-2,
-        ),
         *(
-            c.equal(name, quantity, of_spence, SELF_SIMILAR, WHY["self-similar"], tolerance=tolerance)
-            for name, (quantity, tolerance) in SPENCES.items()
+            c.equal(name, quantity, of_spence, on, WHY["self-similar"], tolerance=tolerance)
+            for name, (quantity, on, tolerance) in SPENCES.items()
         ),
         *c.equals(UNDER_STICK, stuck_on_half_space, HALF_SPACES, WHY["stick on the half-space"], **CLOSED),
         *r.studies(STUCK[:3], STICK_NODES, (FORCE,), against=r.FINEST_MDR),
-        *c.agreements(
-            REFINED,
-            {MORE_CELLS.label: GRIDS},
-            GRIDS,
-            fast="fem",
-            why=WHY["two grids"],
-            name="{}: two grids",
-            nightly=True,
-        ),
-        c.zero(
-            "base carries the force",
-            "base_force_defect",
-            CARRYING,
-            WHY["base carries the force"],
-            tolerance=1e-10,
-            **BY_FEM,
-        ),
-        c.zero(
-            "no heat is given back",
-            "heat_given_back",
-            (CYCLE,),
-            WHY["no heat is given back"],
-            tolerance=1e-12,
-            **BY_FEM,
-        ),
-        c.zero(
-            "work is stored or heat", "energy_defect", (CYCLE,), WHY["work is stored or heat"], tolerance=2e-3, **BY_FEM
+        *c.agreements(REFINED, {MORE_CELLS.label: GRIDS}, GRIDS, **TWO_GRIDS),
+        *(
+            c.zero(name, quantity, on, WHY[name], tolerance=tolerance, methods=("fem",))
+            for name, (quantity, on, tolerance) in LAWS.items()
         ),
         Cost(name="cost of full stick", quantity=FORCE, **PRICE),
     ),

@@ -9,7 +9,7 @@ named error. A number beyond its stated error, a warning or a crash is a failure
 
 from collections.abc import Callable
 from functools import partial
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -128,6 +128,16 @@ def layered(*layers: tuple[float, float], nu: float = 0.3, ratio: float = 1.0) -
     return _under_paraboloid(LayerStack(sublayers=parts, interfaces=(interface,) * (len(parts) - 1)), ratio)
 
 
+def under_thin_top(share: float) -> c.AnyScene:
+    """The same below a stiffer layer with this share of the thickness."""
+    return layered((share, 3.0), (1.0 - share, 1.0), ratio=0.3)
+
+
+def partly_incompressible(gap: float) -> c.AnyScene:
+    """The same on two layers, the upper one with nu = 1/2 - gap."""
+    return layered((0.5, 1.0), (0.5, 3.0), nu=0.5 - gap)
+
+
 def alternating(count: float) -> c.AnyScene:
     """The same on so many equally thick layers, every second one ten times as stiff."""
     return layered(*((1.0 / count, 10.0 ** (n % 2)) for n in range(round(count))), ratio=0.5)
@@ -137,13 +147,6 @@ def graded_in_depth(growth: float) -> c.AnyScene:
     """The same on a layer whose modulus is `growth` times as large at the base as at the surface."""
     modulus = ExponentialDepth(surface=1.0, base=growth)
     return _under_paraboloid(GradedLayer(thickness=1.0, youngs_modulus=modulus, poissons_ratio=0.3), 1.0)
-
-
-def ladder(
-    name: str, parameter: str, values: tuple[float, ...], scene: Callable[[float], c.AnyScene], /, **more: Any
-) -> Ladder:
-    """Return a test; ``more`` are further fields of `Ladder`."""
-    return Ladder(name=name, parameter=parameter, values=values, scene=scene, **{"methods": OWN, **more})
 
 
 def _decades(first: int, last: int, step: int = 1) -> tuple[float, ...]:
@@ -156,76 +159,59 @@ def _decades(first: int, last: int, step: int = 1) -> tuple[float, ...]:
 METHODS = (c.MDR, c.TABLE, c.EQUATION, c.BEM, MethodUse(label="fem", settings={"order": 3, "edge_cell": 1e-5}))
 # A method of another package that states no errors would fail every step: none takes part.
 OWN = tuple(use.label for use in METHODS)
-REBOUND: c.Words = {"quantity": "coefficient_of_restitution"}
-PULL_OFF: c.Words = {"quantity": "pull_off_force"}
-RADII = (*_decades(-3, 1), 30.0, 100.0, 150.0, 300.0, 1000.0)
 BODIES: dict[str, tuple[Support, float]] = {
     "bonded, nu = 0.3": ("bonded", 0.3),
     "bonded, nu = 0.5": ("bonded", 0.5),
     "unbonded": ("unbonded", 0.3),
 }
+RADII = (*_decades(-3, 1), 30.0, 100.0, 150.0, 300.0, 1000.0)
 FOLD = (0.3, 0.4, 0.44, 0.46, 0.4618, 0.462, 0.463, 0.48, 0.6, 1.0, 2.0)
 RATIOS_OF_POISSON = (0.38, 0.37, 0.369, 0.368, 0.367, 0.366, 0.365, 0.364, 0.363, 0.362, 0.361, 0.36, 0.35)
 DAMPING = (1e-3, 0.1, 0.9, 0.999, 0.999999, 1.0, 1.000001, 1.001, 1.1, 10.0, 100.0, 1000.0)
-REVERSING, SCALES = partial(detaching_punch, 8.0), "scale of lengths, inverse of stresses"
 TOP_SHARES, COUNTS = (0.9, 0.3, 0.1, 0.03, 0.01, 0.003, 0.001), (2.0, 3.0, 5.0, 10.0, 20.0, 50.0)
-LADDERS = (
-    # The last is nu = 1/2 exactly.
-    ladder("nearly incompressible", "1/2 - nu", (*_decades(-1, -12), 1e-17), nearly_incompressible),
-    *(
-        ladder(f"contact radius, {name}", "a/h", RADII, partial(contact_ratio, nu=nu, support=support))
-        for name, (support, nu) in BODIES.items()
-    ),
-    ladder("vanishing flat end", "b/a", _decades(-1, -8), truncated, quick=True),
-    ladder("nearly a flat punch", "1 - b/a", _decades(-1, -8), lambda gap: truncated(1.0 - gap)),
-    ladder(
-        "edge cell",
-        "cell over radius",
-        _decades(-2, -8),
-        lambda _: contact_ratio(1.0),
-        setting="edge_cell",
-        methods=("fem",),
-    ),
-    *(
-        ladder(
-            f"detachment across the fold, {control} control",
-            "a/h",
-            FOLD,
-            partial(detaching_punch, control=control),
-            **PULL_OFF,
-        )
+# The last of these are nu = 1/2 exactly.
+GAPS, UPPER_GAPS = (*_decades(-1, -12), 1e-17), (*_decades(-1, -11, 2), 1e-17)
+GROWTHS, SCALES = tuple(10.0**k for k in range(-3, 4) if k), "scale of lengths, inverse of stresses"
+Test: TypeAlias = tuple[str, tuple[float, ...], Callable[[float], c.AnyScene]]
+# By quantity and name: what is made harder, its values, and the scene of a value.
+HARD: dict[str, dict[str, Test]] = {
+    "normal_force": {
+        "nearly incompressible": ("1/2 - nu", GAPS, nearly_incompressible),
+        **{
+            f"contact radius, {name}": ("a/h", RADII, partial(contact_ratio, nu=nu, support=support))
+            for name, (support, nu) in BODIES.items()
+        },
+        "vanishing flat end": ("b/a", _decades(-1, -8), truncated),
+        "nearly a flat punch": ("1 - b/a", _decades(-1, -8), lambda gap: truncated(1.0 - gap)),
+        "units": (SCALES, _decades(-9, 9, 3), lambda s: in_units(truncated(0.5), Units(length=s, stress=1.0 / s))),
+        "noise in a measured profile": ("relative noise", _decades(-12, 0), noisy_table),
+        "contrast of two layers": ("E1/E2", _decades(-4, 4), lambda ratio: layered((0.5, ratio), (0.5, 1.0))),
+        "thinner and thinner top layer": ("h1/H", TOP_SHARES, under_thin_top),
+        "number of layers": ("n", COUNTS, alternating),
+        "steepness of grading": ("E(h)/E(0)", GROWTHS, graded_in_depth),
+        "one layer nearly incompressible": ("1/2 - nu1", UPPER_GAPS, partly_incompressible),
+    },
+    "pull_off_force": {
+        f"detachment across the fold, {control} control": ("a/h", FOLD, partial(detaching_punch, control=control))
         for control in ("displacement", "force")
-    ),
-    ladder(
-        "stability reverses",
-        "nu",
-        RATIOS_OF_POISSON,
-        lambda nu: REVERSING(nu=nu),
-        quantity="pull_off_depth",
-        quick=True,
-    ),
-    ladder(
-        "punch on a thinner and thinner layer", "h/a", _decades(3, -3), punch_on_layer, quantity="contact_stiffness"
-    ),
-    ladder("damping ratio", "D", DAMPING, damped_punch, **REBOUND, quick=True),
-    ladder("relaxation time", "tau/T", _decades(-6, 6), lambda time: struck(time=time), **REBOUND),
-    ladder("long-term modulus", "G_inf/G_1", _decades(6, -6), lambda ratio: struck(ratio / (1.0 + ratio)), **REBOUND),
-    ladder(
-        "impact speed", "v0 tau/h", _decades(-6, 3), lambda v0: struck(speed=v0, lighter=True), quantity="peak_force"
-    ),
-    ladder("units", SCALES, _decades(-9, 9, 3), lambda s: in_units(truncated(0.5), Units(length=s, stress=1.0 / s))),
-    ladder("noise in a measured profile", "relative noise", _decades(-12, 0), noisy_table),
-    ladder("contrast of two layers", "E1/E2", _decades(-4, 4), lambda contrast: layered((0.5, contrast), (0.5, 1.0))),
-    ladder(
-        "thinner and thinner top layer", "h1/H", TOP_SHARES, lambda h1: layered((h1, 3.0), (1.0 - h1, 1.0), ratio=0.3)
-    ),
-    ladder("number of layers", "n", COUNTS, alternating),
-    ladder("steepness of grading", "E(h)/E(0)", tuple(10.0**k for k in range(-3, 4) if k), graded_in_depth),
-    ladder(
-        "one layer nearly incompressible",
-        "1/2 - nu1",
-        (*_decades(-1, -11, 2), 1e-17),
-        lambda gap: layered((0.5, 1.0), (0.5, 3.0), nu=0.5 - gap),
+    },
+    "pull_off_depth": {"stability reverses": ("nu", RATIOS_OF_POISSON, lambda nu: detaching_punch(8.0, nu=nu))},
+    "contact_stiffness": {"punch on a thinner and thinner layer": ("h/a", _decades(3, -3), punch_on_layer)},
+    "coefficient_of_restitution": {
+        "damping ratio": ("D", DAMPING, damped_punch),
+        "relaxation time": ("tau/T", _decades(-6, 6), lambda time: struck(time=time)),
+        "long-term modulus": ("G_inf/G_1", _decades(6, -6), lambda ratio: struck(ratio / (1.0 + ratio))),
+    },
+    "peak_force": {"impact speed": ("v0 tau/h", _decades(-6, 3), lambda v0: struck(speed=v0, lighter=True))},
+}
+QUICK = ("vanishing flat end", "stability reverses", "damping ratio")
+EDGE: c.Words = {"scene": lambda _: contact_ratio(1.0), "setting": "edge_cell", "methods": ("fem",)}
+LADDERS = (
+    Ladder(name="edge cell", parameter="cell over radius", values=_decades(-2, -8), **EDGE),
+    *(
+        Ladder(name=name, parameter=symbol, values=values, scene=scene, quantity=q, quick=name in QUICK, methods=OWN)
+        for q, tests in HARD.items()
+        for name, (symbol, values, scene) in tests.items()
     ),
 )
 CASE = paper(

@@ -128,15 +128,6 @@ class DaskExecutor(Executor):
         self._client.close()
 
 
-def dask_cluster(address: str) -> ExecutorFactory:
-    """Return a factory of executors on the Dask scheduler at ``address`` (optional extra ``cluster``)."""
-
-    def factory(jobs: int) -> Executor:
-        return DaskExecutor(address)
-
-    return factory
-
-
 def ahead(executor: Executor, jobs: int) -> int:
     """How many calls may be under way: two for each job, so that none stands idle and little is lost with one.
 
@@ -168,7 +159,7 @@ def by_name(name: str) -> ExecutorFactory:
     if name == "serial":
         return serial
     if "://" in name:
-        return dask_cluster(name)
+        return lambda _: DaskExecutor(name)
     raise InvalidInput(f"executor {name!r} is neither processes, serial nor the address of a Dask scheduler")
 
 

@@ -101,10 +101,8 @@ def propagate(
     inputs = read_inputs(uncertain, scene) if isinstance(uncertain, str) else uncertain
     solver = method or _mdr()
 
-    place = inputs.drawn if samples else inputs.moved
-
     def solved(numbers: FloatArray) -> Named:
-        return _physical(solver.solve(place(scene, numbers)))
+        return _physical(solver.solve(inputs.moved(scene, numbers, drawn=bool(samples))))
 
     middle = inputs.moved(scene, np.zeros(len(inputs.inputs)))
     answer = solver.solve(middle)

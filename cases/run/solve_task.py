@@ -114,7 +114,7 @@ def _solved(job: Job) -> Answer:
     start = time.perf_counter()
     solutions = deque([_solution(task, method)], maxlen=1)
     cold = time.perf_counter() - start
-    samples = timed_warm(lambda: solutions.append(_solution(task, method))).samples if task.timed else ()
+    samples = timed_warm(lambda: solutions.append(_solution(task, method))) if task.timed else ()
     solution = solutions[0]
     if job.estimated:
         solution = with_estimated_errors(method, task.problem, solution)

@@ -4,7 +4,6 @@ import gc
 import sys
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -19,23 +18,8 @@ SHORTEST = 0.1
 LONG, FEW_SAMPLES = 2.0, 3
 
 
-@dataclass(frozen=True, kw_only=True)
-class Timing:
-    """Seconds per call: all samples, their median and quartiles."""
-
-    samples: tuple[float, ...]
-    median: float
-    lower_quartile: float
-    upper_quartile: float
-
-    @property
-    def spread(self) -> float:
-        """Half the interquartile range over the median."""
-        return (self.upper_quartile - self.lower_quartile) / 2 / self.median
-
-
-def summed_up(samples: Sequence[float]) -> Timing:
-    """Return median and quartiles.
+def quartiles(samples: Sequence[float]) -> tuple[float, float, float]:
+    """Return lower quartile, median and upper quartile of seconds.
 
     Raises:
         InvalidInput: unless there is at least one sample and all are positive and finite.
@@ -43,17 +27,12 @@ def summed_up(samples: Sequence[float]) -> Timing:
     values = np.asarray(samples, dtype=np.float64)
     if values.size == 0 or not np.all(np.isfinite(values) & (values > 0)):
         raise InvalidInput(f"times must be positive and finite, at least one, got {tuple(samples)}")
-    lower, median, upper = np.quantile(values, [0.25, 0.5, 0.75])
-    return Timing(
-        samples=tuple(values.tolist()),
-        median=float(median),
-        lower_quartile=float(lower),
-        upper_quartile=float(upper),
-    )
+    lower, median, upper = np.quantile(values, [0.25, 0.5, 0.75]).tolist()
+    return lower, median, upper
 
 
-def timed_warm(call: Callable[[], object], *, samples: int = SAMPLES, shortest: float = SHORTEST) -> Timing:
-    """Sample a call that has been warmed up.
+def timed_warm(call: Callable[[], object], *, samples: int = SAMPLES, shortest: float = SHORTEST) -> tuple[float, ...]:
+    """Return seconds of a call that has been warmed up, one per sample.
 
     A call faster than ``shortest`` seconds is looped within each sample, one slower than ``LONG`` seconds is sampled
     ``FEW_SAMPLES`` times only.
@@ -62,9 +41,9 @@ def timed_warm(call: Callable[[], object], *, samples: int = SAMPLES, shortest: 
     if first >= shortest:
         # Such a call is not repeated within a sample: it is a sample already.
         left = (FEW_SAMPLES if first > LONG else samples) - 1
-        return summed_up([first, *(_seconds(call, 1) for _ in range(left))])
+        return (first, *(_seconds(call, 1) for _ in range(left)))
     loops = int(np.ceil(shortest / max(first, 1e-9)))
-    return summed_up([_seconds(call, loops) for _ in range(samples)])
+    return tuple(_seconds(call, loops) for _ in range(samples))
 
 
 def _seconds(call: Callable[[], object], loops: int) -> float:

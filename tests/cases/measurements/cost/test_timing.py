@@ -3,14 +3,14 @@ import time
 
 import pytest
 
-from cases.run.timing import summed_up, timed_warm
+from cases.run.timing import quartiles, timed_warm
 from contact import InvalidInput
 
 
 @pytest.mark.parametrize("bad", [[], [0.0], [math.nan], [-1.0]])
 def test_impossible_times_are_refused(bad):
     with pytest.raises(InvalidInput, match="times"):
-        summed_up(bad)
+        quartiles(bad)
 
 
 def test_a_fast_call_is_looped_within_each_sample(monkeypatch):
@@ -23,6 +23,6 @@ def test_a_fast_call_is_looped_within_each_sample(monkeypatch):
         calls.append(None)
         clock[0] += 0.001
 
-    timing = timed_warm(call, samples=3, shortest=0.01)
-    assert timing.samples == pytest.approx((0.001, 0.001, 0.001), rel=1e-12, abs=0.0)
+    seconds = timed_warm(call, samples=3, shortest=0.01)
+    assert seconds == pytest.approx((0.001, 0.001, 0.001), rel=1e-12, abs=0.0)
     assert len(calls) == 1 + 3 * 10
