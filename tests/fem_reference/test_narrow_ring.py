@@ -45,7 +45,10 @@ def assert_covered(path):
         assert np.all(path.error_estimate[name] < 0.5), name
 
 
-@pytest.mark.parametrize(("indenter", "quantity"), [(PROFILES[0], NormalForces), (PROFILES[1], IndentationDepths)])
+@pytest.mark.parametrize(
+    ("indenter", "quantity"),
+    [(PROFILES[0], NormalForces), pytest.param(PROFILES[1], IndentationDepths, marks=pytest.mark.slow)],
+)
 @pytest.mark.parametrize(
     "load", [2e-8, *(pytest.param(2 * 10.0**-k, marks=pytest.mark.slow) for k in (10, 7, 6, 5, 4))]
 )
