@@ -35,13 +35,13 @@ from contact import (
     Scene,
     StageLog,
 )
-from contact.answer.one_circle import Circle, refuse_touching
+from contact.answer.one_circle import refuse_touching
 from contact.answer.solution import Setting
 from contact.records.validation import FloatArray
 from contact.scene.extent import first_radius
 from contact.scene.loading import Controlled
 from contact.stated import stated_error
-from fem_reference.equilibria import FemEquilibrium, held_equilibrium, targets_of
+from fem_reference.equilibria import FemEquilibrium, circle_of, held_equilibrium, targets_of
 from fem_reference.materials import contact_modulus
 from fem_reference.prescribed_contact import ContactSolver, PrescribedContact
 from fem_reference.profiles import height
@@ -414,7 +414,9 @@ def detachment_path(
         other = companion.branch.load(control, inside)
         along.append(stated_error(loads[-1], other, scale=np.abs(loads[-1]).max(), floor=FLOOR))
         if control == "displacement":
-            _refuse_touching_along(scene, branch, float(np.abs(loads[0] - other).max()))
+            tolerance = float(np.abs(loads[0] - other).max())
+            states = (adhesive_equilibrium(contact, branch.work) for contact in branch.contacts)
+            refuse_touching(scene, (circle_of(state, tolerance) for state in states))
     (depth, force), numbers, coarser = loads, found.numbers, companion.numbers
     floor = float(np.max(along)) if branch.is_rough else FLOOR
     own = {name: stated_error(v, coarser[name], scale=v, floor=floor) for name, v in numbers.items()}
@@ -433,15 +435,6 @@ def detachment_path(
         stable_force_control=branch.slope("force", radius) > 0,
         critical_points=tuple(replace(p, normal_force=modulus * p.normal_force) for p in found.critical_points),
         **{name: value * (modulus if "force" in name else 1.0) for name, value in numbers.items()},
-    )
-
-
-def _refuse_touching_along(scene: Scene, branch: Branch, tolerance: float) -> None:
-    """Refuse a branch whose indenter touches outside one of its contacts by more than a tolerance [m]."""
-    circles = ((contact, adhesive_equilibrium(contact, branch.work)) for contact in branch.contacts)
-    refuse_touching(
-        scene,
-        (Circle(c.contact_radius, c.contact_radius * s.depth, s.surface_displacement, tolerance) for c, s in circles),
     )
 
 

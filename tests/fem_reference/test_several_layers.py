@@ -121,7 +121,7 @@ def test_bonded_faces_share_displacements_and_sliding_ones_the_normal_one():
     answer = solve_prescribed_contact(problem, INDENTER, StageLog())
     corners = mesh.mesh.t
     space = problem.space
-    values = answer.solutions[:, 0][space.element_displacements].reshape(corners.shape[1], -1, 2)[:, :3]
+    values = answer.solutions[:, 0][space.element_unknowns[:, :6]].reshape(-1, 3, 2)
     jumps = []
     for face, depth in enumerate(parts.depths[1:-1]):
         sides = []
