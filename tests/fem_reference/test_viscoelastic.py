@@ -240,19 +240,6 @@ def test_depth_history_relaxes_to_the_long_term_modulus():
     assert history.contact_radius[at_hold] == pytest.approx(history.contact_radius[-1], rel=2e-2, abs=0.0)
 
 
-@pytest.mark.slow
-def test_force_history_reproduces_the_depth_history_it_came_from():
-    layer = Layer.incompressible(thickness=1e-3, shear_modulus=G1 + G_INF)
-    loading = DepthHistory(time=[0, 1e-3, 2e-3], depth=[0, 5e-5, 5e-5])
-    there = QUICK.solve(Scene(layer=layer, indenter=BALL, loading=loading, effects=(SOLID,)))
-    some = np.unique([*range(0, len(there), 2), len(there) - 1])
-    back_loading = ForceHistory(time=there.time[some], force=there.normal_force[some])
-    back = QUICK.solve(Scene(layer=layer, indenter=BALL, loading=back_loading, effects=(SOLID,)))
-    depth = np.interp(there.time, back.time, back.indentation_depth)
-    later = there.time > 2e-4  # the chords of the sampled force differ from its curve at first
-    assert depth[later] == pytest.approx(there.indentation_depth[later], abs=5e-3 * 5e-5)
-
-
 def test_a_kelvin_voigt_punch_under_given_depth_or_force():
     # F = k (delta + tau delta'), tau = eta / G; under the force f t: delta = f/k (t - tau (1 - exp(-t/tau)))
     a, tau, k_bar = 1e-3, 0.5, 3.61873584896
