@@ -16,12 +16,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cache, cached_property
+from functools import cache, cached_property, partial
 from itertools import pairwise
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
-from numpy.polynomial import Chebyshev
+from numpy.polynomial import chebyshev
 from scipy.optimize import brentq
 
 from contact import (
@@ -35,13 +35,13 @@ from contact import (
     Scene,
     StageLog,
 )
-from contact.answer.one_circle import Circle, refuse_touching
+from contact.answer.one_circle import refuse_touching
 from contact.answer.solution import Setting
 from contact.records.validation import FloatArray
 from contact.scene.extent import first_radius
 from contact.scene.loading import Controlled
 from contact.stated import stated_error
-from fem_reference.equilibria import FemEquilibrium, held_equilibrium, targets_of
+from fem_reference.equilibria import FemEquilibrium, circle_of, held_equilibrium, targets_of
 from fem_reference.materials import contact_modulus
 from fem_reference.prescribed_contact import ContactSolver, PrescribedContact
 from fem_reference.profiles import height
@@ -52,8 +52,6 @@ CAVITATION = (
     "the pressure under a flat punch of radius {radius:g} m has a second maximum in the centre: detachment may lose "
     "its axial symmetry (cavitation, fingering), and this branch may be unphysical there"
 )
-# Interpolated quantities of `PrescribedContact`, which has a = 1, with the power of a that turns them into powers of m.
-POWERS = {"stiffness": 1, "stiffness_slope": 0, "smooth_depth": 1, "profile_force": 2}
 # Chebyshev points of a piece at a growth of 1/2, and the power of the growth by which they become more.
 NODES, NODE_POWER = 12, 0.75
 # Largest ratio of the radii at the ends of a piece.
@@ -65,8 +63,6 @@ MOST_BREAKPOINTS = 3
 SPANS = (12.0, 100.0, 1e4)
 # Radii at which changes of sign are searched along a branch: a hundredth apart over its first span.
 SAMPLES = 241
-# A function of radii [m].
-Load = Callable[[FloatArray], FloatArray]
 
 
 @dataclass(frozen=True)
@@ -86,37 +82,31 @@ class BranchPiece:
     contacts: tuple[PrescribedContact, ...]
 
     @classmethod
-    def solved(cls, low: float, high: float, solve: ContactSolver, nodes: int, *, graded: bool = False) -> BranchPiece:
+    def solved(cls, low: float, high: float, solve: ContactSolver, nodes: int, *, graded: bool = False) -> Self:
         """The piece between two radii [m], interpolated from ``nodes`` contacts."""
-        s = chebyshev_points(nodes)
+        s = (1 + chebyshev.chebpts2(nodes)) / 2
         radii = low + (high - low) * s**2 if graded else low * (high / low) ** s
         radii[0], radii[-1] = low, high
         return cls(low, high, graded, tuple(solve(float(a)) for a in radii))
 
     @cached_property
-    def _interpolants(self) -> dict[str, Chebyshev]:
-        s, found = chebyshev_points(len(self.contacts)), {}
-        radii = np.array([contact.contact_radius for contact in self.contacts])
-        for name, power in POWERS.items():
-            values = np.array([getattr(contact, name) for contact in self.contacts])
-            # log(k_N / (E* a)) and log(k_N' / E*), constant on a half-space; delta_0 in m, F_2 / E* in m^2.
-            values = np.log(values) if name.startswith("stiffness") else values * radii**power
-            found[name] = Chebyshev.fit(s, values, len(s) - 1, domain=[0, 1])
-        return found
+    def _series(self) -> FloatArray:
+        """Chebyshev coefficients of log(k_N / (E* a)), log(k_N' / E*), delta_0 and F_2 / E*, shape (node, 4)."""
+        rows = [
+            (np.log(c.stiffness), np.log(c.stiffness_slope), a * c.smooth_depth, a**2 * c.profile_force)
+            for c in self.contacts
+            for a in (c.contact_radius,)
+        ]
+        return chebyshev.chebfit(chebyshev.chebpts2(len(rows)), np.array(rows), len(rows) - 1)
 
-    def evaluate(self, name: str, radius: FloatArray) -> FloatArray:
-        """A quantity of `POWERS`, over E* and in powers of m, at radii [m] within the piece."""
+    def evaluate(self, radius: FloatArray) -> FloatArray:
+        """k_N / E* [m], k_N' / E*, delta_0 [m] and F_2 / E* [m^2] at radii [m] within the piece, shape (4, n)."""
         if self.graded:
             s = np.sqrt((radius - self.low) / (self.high - self.low))
         else:
             s = np.log(radius / self.low) / np.log(self.high / self.low)
-        value = self._interpolants[name](s)
-        return np.asarray(np.exp(value) * radius ** POWERS[name] if name.startswith("stiffness") else value)
-
-
-def chebyshev_points(count: int) -> FloatArray:
-    """Chebyshev points of the second kind on [0, 1], increasing."""
-    return np.asarray((1 - np.cos(np.pi * np.arange(count) / (count - 1))) / 2)
+        stiffness, slope, smooth, profile = chebyshev.chebval(2 * s - 1, self._series)
+        return np.array([radius * np.exp(stiffness), np.exp(slope), smooth, profile])
 
 
 @dataclass(frozen=True)
@@ -132,15 +122,6 @@ class Branch:
     pieces: Sequence[BranchPiece]
     work: float
     machine: float = 0.0
-
-    @property
-    def loads(self) -> dict[Controlled, Load]:
-        """The load that each control prescribes, over radii [m]: delta, F / E*, and delta + F/K of the machine."""
-        return {
-            "displacement": self.depth,
-            "force": self.force,
-            "machine": lambda radius: self.depth(radius) + self.machine * self.force(radius),
-        }
 
     @property
     def contacts(self) -> list[PrescribedContact]:
@@ -162,42 +143,41 @@ class Branch:
         ends = [self.pieces[0].low, *(piece.high for piece in self.pieces)]
         return np.unique(np.concatenate([np.geomspace(ends[0], ends[-1], SAMPLES), ends]))
 
-    def _evaluate(self, name: str, radius: FloatArray) -> FloatArray:
-        values = np.full_like(radius, np.nan)  # beyond the ends
+    def load(self, control: Controlled, radius: FloatArray) -> FloatArray:
+        """The controlled load at radii [m]: delta by Eq. (40), F / E*, or delta + F/K of the machine."""
+        values = np.full((4, len(radius)), np.nan)  # beyond the ends
         for piece in self.pieces:
             inside = (radius >= piece.low * (1 - 1e-14)) & (radius <= piece.high * (1 + 1e-14))
-            values[inside] = piece.evaluate(name, np.clip(radius[inside], piece.low, piece.high))
-        return values
+            values[:, inside] = piece.evaluate(np.clip(radius[inside], piece.low, piece.high))
+        stiffness, slope, smooth, profile = values
+        depth = smooth - np.sqrt(4 * np.pi * radius * self.work / slope)
+        force = stiffness * depth + profile
+        return np.asarray({"displacement": depth, "force": force, "machine": depth + self.machine * force}[control])
 
-    def depth(self, radius: FloatArray) -> FloatArray:
-        """Depth delta = delta_0 - sqrt(4 pi a dgamma / k_N') [m], Eq. (40)."""
-        elongation = np.sqrt(4 * np.pi * radius * self.work / self._evaluate("stiffness_slope", radius))
-        return np.asarray(self._evaluate("smooth_depth", radius) - elongation)
-
-    def force(self, radius: FloatArray) -> FloatArray:
-        """Force F / E* = k_N delta + F_2 [m^2]."""
-        return self._evaluate("stiffness", radius) * self.depth(radius) + self._evaluate("profile_force", radius)
-
-    def slope(self, load: Load, radius: FloatArray) -> FloatArray:
+    def slope(self, control: Controlled, radius: FloatArray) -> FloatArray:
         """d load / d a by central differences inside the piece of each radius (the interpolants are smooth)."""
         slopes = np.empty_like(radius)
         for piece in self.pieces:
             inside = (radius >= piece.low) & (radius <= piece.high)
             step = 1e-5 * (piece.high - piece.low)
             up, down = np.minimum(radius[inside] + step, piece.high), np.maximum(radius[inside] - step, piece.low)
-            slopes[inside] = (load(up) - load(down)) / (up - down)
+            slopes[inside] = (self.load(control, up) - self.load(control, down)) / (up - down)
         return slopes
 
-    def slope_root(self, load: Load, low: float, high: float) -> float:
+    def slope_root(self, control: Controlled, low: float, high: float) -> float:
         """Radius [m] between two at which the slope of a load changes its sign, or where it jumps across zero (kink).
 
         The outer radius where both slopes have one sign, or one of them is zero.
         """
-        same_sign = np.prod(self.slope(load, np.array([low, high]))) >= 0
-        return high if same_sign else root(lambda radius: self.slope(load, radius), low, high)
+        same_sign = np.prod(self.slope(control, np.array([low, high]))) >= 0
+        return high if same_sign else root(partial(self.slope, control), low, high)
+
+    def radius_at(self, control: Controlled, target: float, low: float, high: float) -> float:
+        """Radius [m] between two at which a load has a value."""
+        return root(lambda radius: self.load(control, radius) - target, low, high)
 
 
-def root(function: Load, low: float, high: float) -> float:
+def root(function: Callable[[FloatArray], FloatArray], low: float, high: float) -> float:
     """Radius [m] between two at which a function of radii vanishes."""
     return float(brentq(lambda a: function(np.array([a]))[0], low, high, xtol=1e-13 * high))
 
@@ -230,6 +210,7 @@ def adhesive_equilibria(scene: Scene, solve: ContactSolver, growth: float) -> li
         return [adhesive_equilibrium(solve(float(a)), work) for a in scene.loading.values]
     targets, by_depth = targets_of(scene)
     largest, profile, is_punch = float(targets.max()), scene.indenter, isinstance(scene.indenter, FlatPunch)
+    control: Controlled = "displacement" if by_depth else "force"
 
     def reached(r: float) -> bool:
         """Whether the load exceeds the target, by delta_0 >= f and F >= E* a f (convex profiles), f less twice dl."""
@@ -237,35 +218,34 @@ def adhesive_equilibria(scene: Scene, solve: ContactSolver, growth: float) -> li
         return bool(alone >= (1.5 * largest if by_depth else largest / r))
 
     branch = branch_of(scene, None if is_punch else first_radius(profile, reached), solve, growth)
-    load, end, states = branch.depth if by_depth else branch.force, branch.pieces[-1].high, []
+    end, states = branch.pieces[-1].high, []
     for target in map(float, targets):
-        if is_punch and target >= load(np.array([end]))[0]:
+        if is_punch and target >= branch.load(control, np.array([end]))[0]:
             contact = branch.contacts[-1]
             depth = target / end if by_depth else target / end**2 / contact.stiffness
             states.append(held_equilibrium(contact, depth))
         else:
-            states.append(adhesive_equilibrium(solve(stable_radius(branch, load, target)), work))
+            states.append(adhesive_equilibrium(solve(stable_radius(branch, control, target)), work))
     return states
 
 
-def stable_radius(branch: Branch, load: Load, target: float) -> float:
+def stable_radius(branch: Branch, control: Controlled, target: float) -> float:
     """The largest radius at which a load (that grows with the radius there) has the target value.
 
     Raises:
         InvalidInput: the load is beyond the last stable one.
     """
     radii = branch.samples[::-1]
-    values = load(radii)
+    values = branch.load(control, radii)
     # From large radii to small ones a stable load falls.
-    turns = np.flatnonzero(np.diff(values) > 0)
-    last = int(turns[0]) if len(turns) else len(radii) - 1
+    last = int(np.argmax(np.append(np.diff(values) > 0, True)))
     below = np.flatnonzero(values[: last + 1] <= target)
     if not len(below) or values[0] < target:
         raise InvalidInput(
             f"no stable adhesive state at this load ({target:g} in units of E*); pull-off is at {values[last]:g}"
         )
     i = int(below[0])
-    return float(radii[i]) if values[i] == target else root(lambda a: load(a) - target, radii[i], radii[i - 1])
+    return float(radii[i]) if values[i] == target else branch.radius_at(control, target, radii[i], radii[i - 1])
 
 
 def branch_of(scene: Scene, start: float | None, solve: ContactSolver, growth: float, span: float = SPANS[0]) -> Branch:
@@ -305,15 +285,15 @@ class Separation:
     solve: ContactSolver
 
     @classmethod
-    def of(cls, scene: Scene, solve: ContactSolver, growth: float) -> Separation:
+    def of(cls, scene: Scene, solve: ContactSolver, growth: float) -> Self:
         """Solve the shortest branch of `SPANS` that becomes unstable, or the longest."""
         loading: Any = scene.loading
         solve = cache(solve)
         for span in SPANS:
             branch = branch_of(scene, loading.initial_contact_radius, solve, growth, span)
             # Under a machine that gives way, contact is lost before it would be at a prescribed depth.
-            load = branch.force if loading.control == "force" else branch.depth
-            if np.any(branch.slope(load, branch.samples) <= 0):
+            unstable = branch.slope("force" if loading.control == "force" else "displacement", branch.samples) <= 0
+            if np.any(unstable):
                 break
         compliance = contact_modulus(scene.layer) / loading.machine_stiffness if loading.machine_stiffness else 0.0
         return cls(scene, replace(branch, machine=compliance), solve)
@@ -322,11 +302,6 @@ class Separation:
     def control(self) -> Controlled:
         """The quantity that the withdrawal prescribes: depth, force, or displacement of a machine."""
         return self.scene.loading.controlled  # type: ignore[attr-defined, no-any-return]
-
-    @property
-    def controls(self) -> tuple[Controlled, ...]:
-        """All controls for which stability is stated."""
-        return ("displacement", "force", "machine") if self.control == "machine" else ("displacement", "force")
 
     @property
     def radius(self) -> FloatArray:
@@ -345,33 +320,36 @@ class Separation:
             normal_force=a**2 * state.force,
         )
 
+    @cached_property
     def critical_points(self) -> list[CriticalPoint]:
         """Critical points of every control.
 
         "start" of a flat punch's detachment; "pull-off" and "snap-in", where the load's slope over a changes its sign;
         and "snap-in" of an approaching indenter at first touch.
         """
-        is_punch, flat = isinstance(self.scene.indenter, FlatPunch), self.scene.indenter.flat_radius
+        is_punch, flat, radius = (
+            isinstance(self.scene.indenter, FlatPunch),
+            self.scene.indenter.flat_radius,
+            self.radius,
+        )
+        controls: list[Controlled] = ["displacement", "force"]
+        if self.control == "machine":
+            controls.append("machine")
         # A flat punch holds its radius until detachment begins at its edge.
-        points = [self.point(flat, control, "start") for control in self.controls if is_punch]
-        landings, radius = [], self.radius
-        for control in self.controls:
-            load = self.branch.loads[control]
-            slope, values = self.branch.slope(load, radius), load(radius)
+        points, landings = [self.point(flat, control, "start") for control in controls if is_punch], []
+        for control in controls:
+            slope, values = self.branch.slope(control, radius), self.branch.load(control, radius)
             for i in np.flatnonzero(np.sign(slope[1:]) != np.sign(slope[:-1])):
                 kind = "pull-off" if slope[i] > 0 else "snap-in"
-                points.append(self.point(self.branch.slope_root(load, radius[i + 1], radius[i]), control, kind))
+                points.append(self.point(self.branch.slope_root(control, radius[i + 1], radius[i]), control, kind))
             # First touch lands on the smallest stable contact at zero depth, force or displacement of the machine.
-            lands = np.flatnonzero((values[:-1] > 0.0) & (values[1:] <= 0.0))[-1:]
-            landings += [self.point(root(load, radius[i + 1], radius[i]), control, "snap-in") for i in lands]
+            for i in np.flatnonzero((values[:-1] > 0.0) & (values[1:] <= 0.0))[-1:]:
+                landing = self.branch.radius_at(control, 0.0, radius[i + 1], radius[i])
+                landings.append(self.point(landing, control, "snap-in"))
         return points if is_punch else points + landings
 
-    def _load(self, point: CriticalPoint) -> float:
-        """The controlled load of a point."""
-        depth, force = point.indentation_depth, point.normal_force
-        return {"displacement": depth, "force": force, "machine": depth + self.branch.machine * force}[self.control]
-
-    def pull_off(self, critical: list[CriticalPoint]) -> CriticalPoint:
+    @cached_property
+    def pull_off(self) -> CriticalPoint:
         """The state from which contact is lost for good.
 
         Of all pull-off points, and of the first state if that is unstable, it is the one with the lowest load. A
@@ -381,8 +359,8 @@ class Separation:
             NotConvergedError: the branch ends before it becomes unstable.
         """
         radius, control = self.radius, self.control
-        lost = [p for p in critical if p.control == control and p.kind == "pull-off"]
-        if self.branch.slope(self.branch.loads[control], radius[:1])[0] <= 0:
+        lost = [p for p in self.critical_points if p.control == control and p.kind == "pull-off"]
+        if self.branch.slope(control, radius[:1])[0] <= 0:
             lost.insert(0, self.point(float(radius[0]), control, "pull-off"))
         if not lost:
             raise NotConvergedError(
@@ -390,14 +368,23 @@ class Separation:
                 "and no smaller radii were solved; prescribe a smaller initial_contact_radius",
                 {"radius_over_first": radius[-1] / radius[0]},
             )
-        return min(lost, key=self._load)
+        depths, forces = (np.array([getattr(p, n) for p in lost]) for n in ("indentation_depth", "normal_force"))
+        loads = {"displacement": depths, "force": forces, "machine": depths + self.branch.machine * forces}
+        return lost[int(np.argmin(loads[control]))]
 
-    def strongest_pull(self, critical: list[CriticalPoint], pull_off: CriticalPoint) -> CriticalPoint:
-        """The state of least force until pull-off: a sample, a critical point or pull-off itself."""
-        passed = self.radius[self.radius >= pull_off.contact_radius]
-        sampled = self.point(float(passed[np.argmin(self.branch.force(passed))]), self.control, "strongest")
-        turned = (point for point in critical if point.contact_radius >= pull_off.contact_radius)
-        return min(sampled, pull_off, *turned, key=lambda point: point.normal_force)
+    @property
+    def numbers(self) -> dict[str, float]:
+        """Depth [m], forces / E* [m^2] and radius [m] of pull-off; the pull-off force is the least until pull-off."""
+        last = self.pull_off
+        passed = self.radius[self.radius >= last.contact_radius]
+        sampled = self.point(float(passed[np.argmin(self.branch.load("force", passed))]), self.control, "strongest")
+        turned = [point for point in self.critical_points if point.contact_radius >= last.contact_radius]
+        return {
+            "pull_off_depth": last.indentation_depth,
+            "pull_off_force": min(point.normal_force for point in (sampled, last, *turned)),
+            "pull_off_contact_radius": last.contact_radius,
+            "force_at_loss": last.normal_force,
+        }
 
 
 def detachment_path(
@@ -421,58 +408,34 @@ def detachment_path(
     """
     companion, found = (Separation.of(scene, solver(each), each.growth) for each in (settings.coarser(), settings))
     branch, radius, modulus = found.branch, found.radius, contact_modulus(scene.layer)
-    circles = ((contact, adhesive_equilibrium(contact, branch.work)) for contact in branch.contacts)
-    tolerance = float(np.abs(branch.depth(radius) - companion.branch.depth(radius)).max())
-    refuse_touching(
-        scene,
-        (Circle(c.contact_radius, c.contact_radius * s.depth, s.surface_displacement, tolerance) for c, s in circles),
-    )
-    depth, force = branch.depth(radius), branch.force(radius)
-    inside = np.clip(radius, companion.branch.pieces[0].low, None)
-    others = companion.branch.depth(inside), companion.branch.force(inside)
-    along = [
-        stated_error(values, other, scale=np.abs(values).max(), floor=FLOOR)
-        for values, other in zip((depth, force), others, strict=True)
-    ]
-    critical, floor = found.critical_points(), float(np.max(along)) if branch.is_rough else FLOOR
-    numbers, coarser = (
-        _numbers(each, points) for each, points in ((found, critical), (companion, companion.critical_points()))
-    )
+    inside, loads, along = np.clip(radius, companion.branch.pieces[0].low, None), [], []
+    for control in ("displacement", "force"):
+        loads.append(branch.load(control, radius))
+        other = companion.branch.load(control, inside)
+        along.append(stated_error(loads[-1], other, scale=np.abs(loads[-1]).max(), floor=FLOOR))
+        if control == "displacement":
+            tolerance = float(np.abs(loads[0] - other).max())
+            states = (adhesive_equilibrium(contact, branch.work) for contact in branch.contacts)
+            refuse_touching(scene, (circle_of(state, tolerance) for state in states))
+    (depth, force), numbers, coarser = loads, found.numbers, companion.numbers
+    floor = float(np.max(along)) if branch.is_rough else FLOOR
+    own = {name: stated_error(v, coarser[name], scale=v, floor=floor) for name, v in numbers.items()}
     return DetachmentPath(
         scene=scene,
         method="fem",
         settings=written,
-        error_estimate={
-            "contact_radius": np.zeros_like(radius),
-            "indentation_depth": along[0],
-            "normal_force": along[1],
-            **{name: stated_error(v, coarser[name], scale=v, floor=floor) for name, v in numbers.items()},
-        },
+        error_estimate={"contact_radius": 0.0 * radius, "indentation_depth": along[0], "normal_force": along[1], **own},
         cost=log.cost(unknowns=max(c.unknowns for c in branch.contacts)),
         stages=log.records,
         notes=_notes(branch.contacts),
         contact_radius=radius,
         indentation_depth=depth,
         normal_force=modulus * force,
-        stable_displacement_control=branch.slope(branch.depth, radius) > 0,
-        stable_force_control=branch.slope(branch.force, radius) > 0,
-        pull_off_force=modulus * numbers["pull_off_force"],
-        pull_off_depth=numbers["pull_off_depth"],
-        pull_off_contact_radius=numbers["pull_off_contact_radius"],
-        force_at_loss=modulus * numbers["force_at_loss"],
-        critical_points=tuple(replace(point, normal_force=modulus * point.normal_force) for point in critical),
+        stable_displacement_control=branch.slope("displacement", radius) > 0,
+        stable_force_control=branch.slope("force", radius) > 0,
+        critical_points=tuple(replace(p, normal_force=modulus * p.normal_force) for p in found.critical_points),
+        **{name: value * (modulus if "force" in name else 1.0) for name, value in numbers.items()},
     )
-
-
-def _numbers(separation: Separation, critical: list[CriticalPoint]) -> dict[str, float]:
-    """Depth [m], forces / E* [m^2] and radius [m] of pull-off."""
-    pull_off = separation.pull_off(critical)
-    return {
-        "pull_off_depth": pull_off.indentation_depth,
-        "pull_off_force": separation.strongest_pull(critical, pull_off).normal_force,
-        "pull_off_contact_radius": pull_off.contact_radius,
-        "force_at_loss": pull_off.normal_force,
-    }
 
 
 def _notes(contacts: list[PrescribedContact]) -> tuple[str, ...]:

@@ -165,22 +165,13 @@ class Space:
         return owner
 
     @cached_property
-    def element_displacements(self) -> IntArray:
-        """Displacement unknowns of each triangle, shape (triangle, 2 x basis), u_r and u_z alternating."""
-        scalar = self.displacement_dofs.element_dofs.T.astype(np.int64)
-        return np.asarray(self.owner[np.stack([2 * scalar, 2 * scalar + 1], axis=-1).reshape(len(scalar), -1)])
-
-    @cached_property
-    def element_pressures(self) -> IntArray:
-        """Pressure unknowns of each triangle, shape (triangle, basis)."""
-        return np.asarray(self.pressure_dofs.element_dofs.T.astype(np.int64) + self.displacement_count)
-
-    @cached_property
     def element_unknowns(self) -> IntArray:
-        """All unknowns of each triangle, displacements first."""
+        """All unknowns of each triangle, shape (triangle, n): u_r and u_z of each node in turn, then the pressures."""
+        scalar = self.displacement_dofs.element_dofs.T.astype(np.int64)
+        unknowns = np.asarray(self.owner[np.stack([2 * scalar, 2 * scalar + 1], axis=-1).reshape(len(scalar), -1)])
         if not self.pair.is_mixed:
-            return self.element_displacements
-        return np.hstack([self.element_displacements, self.element_pressures])
+            return unknowns
+        return np.hstack([unknowns, self.pressure_dofs.element_dofs.T.astype(np.int64) + self.displacement_count])
 
 
 def barycentric(points: FloatArray) -> FloatArray:

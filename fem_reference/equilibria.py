@@ -145,15 +145,11 @@ def elastic_equilibria(
         return [smooth_equilibrium(solve(float(a))) for a in scene.loading.values]
     if isinstance(scene.indenter, FlatPunch):
         return flat_punch_equilibria(scene, solve)
-    targets, by_depth = targets_of(scene)
-    narrowest = narrowest_radius(scene.layer, scene.indenter, coarsening)
-    # A companion may leave any defect to the correction: its error then adds to the stated error of the answer.
-    most_left = MOST_LEFT if coarsening == 1.0 else np.inf
     states = []
-    for target in map(float, targets):
+    for target in map(float, targets_of(scene)[0]):
         start = search(target)
         try:
-            states.append(state_at_load(scene, target, start, narrowest, solve, by_depth=by_depth, most_left=most_left))
+            states.append(state_at_load(scene, target, start, solve, coarsening))
         except NotConvergedError:
             # With tension inside the contact the load need not grow with the radius: then that is the reason to state.
             state = smooth_equilibrium(quick_solution(scene, start, StageLog()))
@@ -163,30 +159,24 @@ def elastic_equilibria(
 
 
 def state_at_load(
-    scene: Scene,
-    target: float,
-    start: float,
-    narrowest: float,
-    solve: ContactSolver,
-    *,
-    by_depth: bool,
-    most_left: float = MOST_LEFT,
+    scene: Scene, target: float, start: float, solve: ContactSolver, coarsening: float = 1.0
 ) -> FemEquilibrium:
     """The state at a prescribed load, from full solutions at corrected radii.
 
     Args:
-        scene: the scene.
+        scene: the scene, with depths or forces.
         target: a depth [m] or a force / E* [m^2].
         start: first radius [m], close to that of the load.
-        narrowest: smallest radius [m] that is meshed.
         solve: contact of a given radius [m].
-        by_depth: whether the target is a depth.
-        most_left: relative defect of the load that the last solution may leave to the correction.
+        coarsening: growth of cells over that of the answer. A companion may leave any defect of the load to the
+            correction, whose error then adds to the stated error of the answer.
 
     Raises:
-        NotConvergedError: the defect is above ``most_left`` after `ATTEMPTS` solutions.
+        NotConvergedError: the defect is above `MOST_LEFT` after `ATTEMPTS` solutions.
     """
-    radius, flat = start, scene.indenter.flat_radius
+    radius, flat, by_depth = start, scene.indenter.flat_radius, targets_of(scene)[1]
+    narrowest = narrowest_radius(scene.layer, scene.indenter, coarsening)
+    most_left = MOST_LEFT if coarsening == 1.0 else np.inf
     for attempt in range(ATTEMPTS):
         contact = solve(max(radius, narrowest))
         scaled = target / contact.contact_radius ** (1 if by_depth else 2)
@@ -197,8 +187,7 @@ def state_at_load(
         exponent = grows_like(contact, flat / contact.contact_radius, by_depth=by_depth)
         corrected = flat + (contact.radius * contact.contact_radius - flat) * defect ** (-1 / exponent)
         if abs(defect - 1) <= (LEFT_OVER if attempt < ATTEMPTS - 1 else most_left):
-            correction = 0.0 if by_depth else (scaled - contact.smooth_force) / contact.stiffness
-            depth = scaled if by_depth else contact.smooth_depth + correction
+            depth = scaled if by_depth else contact.smooth_depth + (scaled - contact.smooth_force) / contact.stiffness
             return FemEquilibrium(contact=contact, depth=depth, radius_factor=corrected / contact.contact_radius)
         radius = min(corrected, scene.indenter.max_radius)
     raise NotConvergedError("the contact radius does not settle", {"load_defect": abs(defect - 1)})
@@ -293,7 +282,7 @@ def refuse_other_contacts(scene: Scene, states: Sequence[FemEquilibrium], coarse
     if not scene.effects:
         for pair in pairs:
             _refuse_pulled(scene, *pair)
-    refuse_touching(scene, (_circle(state, change_beside(state, other)) for state, other in pairs))
+    refuse_touching(scene, (circle_of(state, change_beside(state, other)) for state, other in pairs))
 
 
 def _refuse_pulled(scene: Scene, state: FemEquilibrium, other: FemEquilibrium) -> None:
@@ -336,7 +325,7 @@ def change_beside(state: FemEquilibrium, other: FemEquilibrium) -> float:
     return float(np.abs(state.surface_displacement(radii) - other.surface_displacement(radii)).max())
 
 
-def _circle(state: FemEquilibrium, error: float) -> Circle:
+def circle_of(state: FemEquilibrium, error: float) -> Circle:
     """The contact as a circle in SI units, with the error of its surface.
 
     The last correction may press it deeper than smooth contact. Its edge then overlaps by as much, which is no touch.
@@ -354,7 +343,7 @@ def refuse_touching_at(scene: Scene, radius: float, log: StageLog) -> None:
     if scene.indenter.is_convex or radius <= scene.indenter.flat_radius:
         return
     state = smooth_equilibrium(quick_solution(scene, radius, log))
-    refuse_touching(scene, [_circle(state, QUICK_ERROR * state.depth * radius)])
+    refuse_touching(scene, [circle_of(state, QUICK_ERROR * state.depth * radius)])
 
 
 def contact_path(

@@ -247,19 +247,17 @@ class FemInterior:
         found = InsideFields(**dict(zip(NAMES, values.T, strict=True)), error_estimate={})
         points = np.einsum("cvt,vn->tnc", section.corners, places).reshape(-1, 2) * units[0]
         flat = np.zeros(len(points))
+        vectors = {
+            "displacement": np.array([found.radial_displacement, found.axial_displacement, flat]),
+            "pressure_gradient": np.array([found.pressure_gradient_radial, found.pressure_gradient_axial, flat]),
+            "principal_stresses": found.principal_stresses,
+        }
+        scalars = (*NAMES[2:7], "von_mises", "largest_shear")
+        data = {name: parts.T for name, parts in vectors.items()}
         exported = meshio.Mesh(
             np.column_stack([points, flat]),
             [("triangle6", np.arange(len(points)).reshape(-1, 6))],
-            point_data={
-                "displacement": np.column_stack([found.radial_displacement, found.axial_displacement, flat]),
-                **{name: getattr(found, name) for name in NAMES[2:7]},
-                "pressure_gradient": np.column_stack(
-                    [found.pressure_gradient_radial, found.pressure_gradient_axial, flat]
-                ),
-                "von_mises": found.von_mises,
-                "largest_shear": found.largest_shear,
-                "principal_stresses": found.principal_stresses.T,
-            },
+            point_data=data | {name: getattr(found, name) for name in scalars},
         )
         exported.write(file, **({"data_format": "XML"} if file.suffix == ".xdmf" else {}))
 

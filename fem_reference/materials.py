@@ -206,21 +206,15 @@ def _stack_parts(layer: LayerStack, a: float, unit: float) -> list[Part]:
 
 
 def _graded_parts(layer: GradedLayer, a: float, unit: float) -> list[Part]:
-    def at(function: object, depth: FloatArray) -> FloatArray:
-        return at_depths(function, np.minimum(depth * a, layer.thickness), layer.thickness)
+    def of_depth(function: object, unit: float) -> OfDepth:
+        return lambda z: at_depths(function, np.minimum(z * a, layer.thickness), layer.thickness) / unit
 
-    def modulus(depth: FloatArray) -> FloatArray:
-        """E / E* at depths / a."""
-        return at(layer.youngs_modulus, depth) / unit
-
-    def ratio(depth: FloatArray) -> FloatArray:
-        """nu at depths / a."""
-        return np.clip(at(layer.poissons_ratio, depth), 0.0, 0.5)
-
+    modulus, ratio = of_depth(layer.youngs_modulus, unit), of_depth(layer.poissons_ratio, 1.0)
     slips = isinstance(layer.support, ElasticBase) and layer.support.interface == "unbonded"
     lines = graded_lines(layer) / a
     return [
-        Part(float(top), float(end - top), modulus, ratio, slips and end == lines[-1]) for top, end in pairwise(lines)
+        Part(float(top), float(end - top), modulus, lambda z: np.clip(ratio(z), 0.0, 0.5), slips and end == lines[-1])
+        for top, end in pairwise(lines)
     ]
 
 

@@ -154,17 +154,15 @@ class Top:
 
         The integrals over the branches are exact.
         """
-        rate, duration = change / self._duration, self._duration
-        lost = self.viscosity * duration * float(rate @ (self._shear * rate))
-        for s, modulus, time, alpha in zip(self._branches, self._moduli, self._times, self._alpha, strict=True):
-            # s(t) = steady + transient exp(-t / tau) solves s' = G x' - s / tau, from s_0 at t = 0.
-            steady = modulus * time * rate
-            transient = s - steady
-            integral = duration * steady + 2 * time * (1 - alpha) * transient
-            squares = float(steady @ (self._shear * integral))
-            squares += time / 2 * (1 - alpha**2) * float(transient @ (self._shear * transient))
-            lost += squares / (modulus * time)
-        return lost
+        rate, duration, alpha = change / self._duration, self._duration, self._alpha[:, None]
+        moduli, times = self._moduli[:, None], self._times[:, None]
+        # s(t) = steady + transient exp(-t / tau) solves s' = G x' - s / tau, from s_0 at t = 0.
+        steady = moduli * times * rate
+        transient = self._branches - steady
+        integral = duration * steady + 2 * times * (1 - alpha) * transient
+        squares = steady * integral + times / 2 * (1 - alpha**2) * transient**2
+        lost = self.viscosity * duration * rate**2 + np.sum(squares / (moduli * times), axis=0)
+        return float(lost @ self._shear)
 
 
 def proportional_modes(compliance: FloatArray, resultants: FloatArray, radii: FloatArray, unknowns: int) -> Modes:

@@ -27,8 +27,9 @@ from contact import (
 )
 from contact.answer.accuracy import shortfalls
 from contact.records.validation import FloatArray
-from contact.stated import SAFETY
+from contact.stated import SAFETY, stated_error
 from fem_reference.equilibria import FemEquilibrium, change_beside
+from fem_reference.prescribed_contact import PrescribedContact
 from fem_reference.settings import Discretisation
 
 S = TypeVar("S", bound=Solution)
@@ -85,33 +86,21 @@ def path_with_errors(
         states: equilibria of the answer.
         coarser: equilibria of the companion.
     """
-    changes = {name: _with_neighbours(relative_change(answer, companion, name)) for name in answer.ARRAYS}
-    exact = set() if answer.scene.effect(Adhesion) is not None else exact_names(answer.scene)
-    least = LEAST_SHARE * np.max([changes[name] for name in answer.ARRAYS if name != "contact_radius"], axis=0)
-    # The stiffness of a load errs with its radius, too.
-    changes["contact_stiffness"] = np.maximum(changes["contact_stiffness"], LEAST_SHARE * changes["contact_radius"])
     errors = {
-        name: np.zeros(len(answer)) if name in exact else SAFETY * np.maximum(change, least) + FLOOR
-        for name, change in changes.items()
+        name: stated_error(getattr(answer, name), getattr(companion, name), scale=answer.scale(name), floor=FLOOR)
+        for name in answer.ARRAYS
     }
+    least = LEAST_SHARE * np.max([errors[name] for name in errors if name != "contact_radius"], axis=0)
+    # The stiffness of a load errs with its radius, too.
+    by_radius = LEAST_SHARE * errors["contact_radius"]
+    errors["contact_stiffness"] = np.maximum(errors["contact_stiffness"], by_radius)
+    exact = set() if answer.scene.effect(Adhesion) is not None else exact_names(answer.scene)
+    errors = {name: 0.0 * error if name in exact else np.maximum(error, least) for name, error in errors.items()}
     pairs = list(zip(states, coarser, strict=True))
-    pressures = np.array([pressure_change(*pair) for pair in pairs])
-    displacements = np.array([change_beside(*pair) for pair in pairs]) / answer.scale("indentation_depth")
-    errors["pressure"] = SAFETY * pressures + FLOOR
-    errors["surface_displacement"] = np.maximum(SAFETY * displacements + FLOOR, errors["indentation_depth"])
+    displacements = SAFETY * np.array([change_beside(*pair) for pair in pairs]) / answer.scale("indentation_depth")
+    errors["pressure"] = SAFETY * np.array([pressure_change(*pair) for pair in pairs]) + FLOOR
+    errors["surface_displacement"] = np.maximum(displacements + FLOOR, errors["indentation_depth"])
     return replace(answer, error_estimate={**answer.error_estimate, **errors})
-
-
-def _with_neighbours(change: FloatArray) -> FloatArray:
-    """The largest change of a state and its neighbours along a path, in which one may vanish by accident."""
-    return np.asarray(np.max([change, np.append(change[1:], 0.0), np.append(0.0, change[:-1])], axis=0))
-
-
-def relative_change(answer: Solution, companion: Solution, name: str) -> FloatArray:
-    """|answer - companion| of one quantity over its scale, zero where that is zero."""
-    change = np.abs(np.atleast_1d(getattr(answer, name)) - np.atleast_1d(getattr(companion, name)))
-    scale = np.broadcast_to(answer.scale(name), change.shape)
-    return np.asarray(np.divide(change, scale, out=np.zeros_like(change), where=scale > 0))
 
 
 def pressure_change(state: FemEquilibrium, other: FemEquilibrium) -> float:
@@ -120,12 +109,22 @@ def pressure_change(state: FemEquilibrium, other: FemEquilibrium) -> float:
     Under flat punches and with adhesion p grows like ``(a - r)^(-1/2)`` at the edge, and p^2 is not integrable. There
     the weight is ``2 pi r (1 - r^2 / a^2)``.
     """
-    contact, a, b = state.contact, state.contact_radius, other.contact_radius
-    radius, weight = (values.ravel() for values in contact.contact_trace.gauss(contact.layer.pair.degree + 2))
-    fine, coarse = state.pressure(radius * a), other.pressure(radius * b)
-    if abs(state.depth - contact.smooth_depth) > 1e-2 * abs(state.depth):
-        weight = weight * np.maximum(1.0 - radius**2, 0.0)
-    return float(np.sqrt(weight @ (fine - coarse) ** 2 / (weight @ fine**2)))
+    radius, weight = contact_rule(state.contact)
+    if abs(state.depth - state.contact.smooth_depth) > 1e-2 * abs(state.depth):
+        weight = weight * (1.0 - radius**2)
+    fine, coarse = (each.pressure(radius * each.contact_radius) for each in (state, other))
+    return l2_change(weight, fine, coarse, fine)
+
+
+def contact_rule(contact: PrescribedContact) -> tuple[FloatArray, FloatArray]:
+    """Radii r / a and weights ``2 pi r dr`` of a quadrature rule over the contact, shape (n,) each."""
+    radius, weight = contact.contact_trace.gauss(contact.layer.pair.degree + 2)
+    return np.minimum(radius.ravel(), 1.0), weight.ravel()
+
+
+def l2_change(weight: FloatArray, fine: FloatArray, coarse: FloatArray, size: FloatArray) -> float:
+    """L2 distance of two fields over the norm of a third one, given at the points of a quadrature rule."""
+    return float(np.sqrt(weight @ (fine - coarse) ** 2 / (weight @ size**2)))
 
 
 def settings_for(accuracy: float) -> Discretisation:
@@ -167,19 +166,18 @@ def solve_to_accuracy(
             in_vain += 1
             if not left or in_vain == IN_VAIN:
                 raise
-            settings = _finer(settings, 1e3, 0.0)
+            settings = _finer(settings, 1e3, 0.0, moves=False)
             continue
         over = shortfalls(answer, accuracy, pressure_accuracy)
         if not over:
             return answer
         excess = {n: e / (accuracy if n != "pressure" else pressure_accuracy or accuracy) for n, e in over.items()}
         worst = max(excess, key=lambda name: excess[name])
-        in_vain = in_vain + 1 if excess[worst] > LEFT * before else 0
+        in_vain, before = in_vain + 1 if excess[worst] > LEFT * before else 0, excess[worst]
         if in_vain == IN_VAIN:
             break
-        before, pressure = excess[worst], excess.pop("pressure", 0.0)
-        numbers = max(excess.values(), default=0.0)
-        settings = replace(settings, growth=settings.growth / 2) if moves else _finer(settings, numbers, pressure)
+        pressure = excess.pop("pressure", 0.0)
+        settings = _finer(settings, max(excess.values(), default=0.0), pressure, moves=moves)
     why = "; finer meshes do not lessen its error" if in_vain == IN_VAIN else ""
     wanted = pressure_accuracy if worst == "pressure" else accuracy
     raise NotConvergedError(
@@ -187,14 +185,17 @@ def solve_to_accuracy(
     )
 
 
-def _finer(settings: Discretisation, numbers: float, pressure: float) -> Discretisation:
+def _finer(settings: Discretisation, numbers: float, pressure: float, *, moves: bool) -> Discretisation:
     """Settings for the next attempt.
 
     Args:
         settings: of the last attempt.
         numbers: largest stated error of a number over the accuracy; zero if all are below.
         pressure: the same of the pressure.
+        moves: whether the scene is a motion, whose cells and steps are halved.
     """
+    if moves:
+        return replace(settings, growth=settings.growth / 2)
     # Near the edge the error of the pressure falls like the root of the edge cell.
     factor = min(max(numbers, 1.0) ** (-1 / ERROR_ORDER), max(pressure, 1.0) ** (-1 / PRESSURE_ORDER))
     edge = min(0.25, max(pressure, 1.0) ** -2)

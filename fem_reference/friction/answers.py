@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from math import sqrt
 from typing import Any
 
 import numpy as np
@@ -31,6 +30,7 @@ from fem_reference.friction.growth import GrowthRecord, StripMaker
 from fem_reference.friction.step import RubbedContact, RubbedState, followed, stick_radius
 from fem_reference.materials import contact_modulus
 from fem_reference.settings import Discretisation
+from fem_reference.stated import contact_rule, l2_change
 
 # Names of the numbers of a state in an answer, and the powers of E* in their units.
 QUANTITIES = {
@@ -149,15 +149,11 @@ def rubbed_path(
 def _traction_errors(fine: Rubbed, coarse: Rubbed) -> dict[str, float]:
     """Errors of p and q by half the cells: root mean square with weight 2 pi r, relative to that of p."""
     radius, weight = (values.ravel() for values in fine.contact.surface.tractions.gauss(2))
-    p, q = (
-        [each.contact.surface.tractions.evaluate(values, radius) for each, values in pair]
-        for pair in (
-            ((fine, fine.state.pressure), (coarse, coarse.state.pressure)),
-            ((fine, fine.state.shear), (coarse, coarse.state.shear)),
-        )
+    (p, q), others = (
+        [each.contact.surface.tractions.evaluate(values, radius) for values in (each.state.pressure, each.state.shear)]
+        for each in (fine, coarse)
     )
-    size = float(weight @ p[0] ** 2)
-    changes = [SAFETY * sqrt(weight @ (first - second) ** 2 / size) for first, second in (p, q)]
+    changes = [SAFETY * l2_change(weight, *pair, p) for pair in zip((p, q), others, strict=True)]
     return dict(zip(("pressure", "tangential_traction"), changes, strict=True))
 
 
@@ -258,11 +254,10 @@ def with_shear_error(
     The size of q itself would not do: on an incompressible half-space q vanishes.
     """
     contact = states[0].contact
-    radius, weight = (values.ravel() for values in contact.contact_trace.gauss(contact.layer.pair.degree + 2))
-    weight = weight * (1 - radius**2)
+    radius, weight = contact_rule(contact)
     fine, coarse = (
         each[0].contact.contact_trace.evaluate(each[0].contact.shear_traction, radius) for each in (states, coarser)
     )
-    change = np.sqrt(weight @ (fine - coarse) ** 2 / (weight @ contact.pressure(radius, 1.0) ** 2))
-    error = np.full(len(path), SAFETY * float(change))
+    change = l2_change(weight * (1 - radius**2), fine, coarse, contact.pressure(radius, 1.0))
+    error = np.full(len(path), SAFETY * change)
     return replace(path, error_estimate={**path.error_estimate, "tangential_traction": error})

@@ -48,8 +48,8 @@ class CohesivePunch:
     def state(self, depth: float, strength: float) -> tuple[Complementary, float]:
         """Shifted pressures q at depth / a, and the opening at the rim."""
         tension = strength * np.ones(len(self.strip.radii))
-        free = self.strip.pressed @ tension
-        state = solve_complementarity(self.strip.pressed, depth * self.strip.resultants + free)
+        free = self.strip.compliance @ tension
+        state = solve_complementarity(self.strip.compliance, depth * self.strip.resultants + free)
         surface = self.strip.top_displacements @ (state.pressure - tension)
         return state, float(self.strip.top.evaluate(surface, np.ones(1))[0] - depth)
 

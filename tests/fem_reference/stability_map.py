@@ -60,14 +60,14 @@ def reversals(layer: Layer, solve: Callable[[float], PrescribedContact]) -> tupl
     solve, ends = cache(solve), [ratio * h for ratio in RATIOS]
     branch = Branch([BranchPiece.solved(*pair, solve, NODES) for pair in pairwise(ends)], h / (2 * np.pi))
     radius = branch.samples
-    slope = -branch.slope(branch.depth, radius)
+    slope = -branch.slope("displacement", radius)
     turns = np.flatnonzero(np.sign(slope[1:]) != np.sign(slope[:-1]))
-    places = [branch.slope_root(branch.depth, radius[i], radius[i + 1]) for i in turns]
+    places = [branch.slope_root("displacement", radius[i], radius[i + 1]) for i in turns]
     return tuple(
         Reversal(
             kind="maximum" if slope[i] > 0 else "minimum",
             ratio=a / h,
-            elongation=-float(branch.depth(np.array([a]))[0] / h),
+            elongation=-float(branch.load("displacement", np.array([a]))[0] / h),
         )
         for a, i in zip(places, turns, strict=True)
     )

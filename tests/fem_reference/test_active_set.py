@@ -35,14 +35,14 @@ def test_random_problems_from_any_start(seed):
 def test_a_cycle_ends_in_principal_pivoting(monkeypatch):
     compliance, approach = random_problem(3)
     expected = solve_complementarity(compliance, approach).pressure
-    equality = contact_set._pressure
+    equality = contact_set.pressure_on
     flips = iter([True] * 4 + [False] * 1000)
 
     def flipping(compliance, approach, active):
         pressure = equality(compliance, approach, active)
         return -pressure if next(flips) else pressure
 
-    monkeypatch.setattr(contact_set, "_pressure", flipping)
+    monkeypatch.setattr(contact_set, "pressure_on", flipping)
     solution = solve_complementarity(compliance, approach)
     assert solution.pressure == pytest.approx(expected, abs=1e-8)
 
@@ -54,11 +54,11 @@ def test_no_overlap_gives_no_pressure():
 
 def test_violated_conditions_are_refused(monkeypatch):
     compliance, approach = random_problem(1)
-    right = contact_set._pressure
+    right = contact_set.pressure_on
 
     def wrong(compliance, approach, active):
         return 1.01 * right(compliance, approach, active)
 
-    monkeypatch.setattr(contact_set, "_pressure", wrong)
+    monkeypatch.setattr(contact_set, "pressure_on", wrong)
     with pytest.raises(NotConvergedError, match="gap_under_pressure"):
         solve_complementarity(compliance, approach)

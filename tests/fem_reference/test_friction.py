@@ -56,7 +56,7 @@ def agree(path, exact):
     [
         (0.0, "bonded", 1.0, PARABOLOID),
         pytest.param(0.3, "unbonded", 0.3, Sphere(radius=20.0), marks=pytest.mark.slow),
-        (0.5, "bonded", 2.0, PARABOLOID),
+        pytest.param(0.5, "bonded", 2.0, PARABOLOID, marks=pytest.mark.slow),
         pytest.param(0.5, "unbonded", 5.0, PARABOLOID, marks=pytest.mark.slow),
     ],
 )
@@ -107,7 +107,7 @@ def slope_on_strips(nu, support, depth):
     ("nu", "support", "depth"),
     [
         (0.5, "bonded", 0.12),
-        (0.3, "bonded", 0.02),
+        pytest.param(0.3, "bonded", 0.02, marks=pytest.mark.slow),
         pytest.param(0.3, "unbonded", 0.3, marks=pytest.mark.slow),
         pytest.param(0.0, "bonded", 0.05, marks=pytest.mark.slow),
     ],
@@ -247,6 +247,7 @@ def test_work_is_stored_or_dissipated_with_second_order_in_the_cells():
     assert defects[1] < 0.5 * defects[0]
 
 
+@pytest.mark.slow
 def test_forces_converge_with_second_order_in_the_cells():
     scene = rubbed(0.3, layer(0.5), ContactRadii([2.0]))
     maker = growth.StripMaker(scene, Fem().discretisation, growth.StageLog())
@@ -309,6 +310,7 @@ def test_what_is_not_modelled_is_refused_by_name(scene, named):
         Fem().solve(scene)
 
 
+@pytest.mark.slow
 def test_a_contact_beyond_the_profile_is_refused():
     with pytest.raises(InvalidInput, match="end of the profile at 1 m"):
         COARSE.solve(rubbed(0.2, layer(0.3), IndentationDepths([5.0]), Sphere(radius=1.0)))

@@ -54,7 +54,10 @@ def damped(indenter: Profile, viscosity: float) -> Scene:
     return Scene(layer=layer, indenter=indenter, loading=Impact(mass=1e-3, velocity=0.1), effects=effects)
 
 
-@pytest.mark.parametrize(("indenter", "viscosity"), [(PUNCH, 1e4), (PUNCH, 1e6), (ROUND, 1e4), (ROUND, 1e6)])
+@pytest.mark.parametrize(
+    ("indenter", "viscosity"),
+    [(PUNCH, 1e4), (PUNCH, 1e6), (ROUND, 1e4), pytest.param(ROUND, 1e6, marks=pytest.mark.slow)],
+)
 def test_a_body_that_a_dashpot_stops(indenter: Profile, viscosity: float) -> None:
     """Such contacts once took ten steps: restitutions were off by 4.5e4 times their value, peak forces by half."""
     scene = damped(indenter, viscosity)
@@ -65,7 +68,7 @@ def test_a_body_that_a_dashpot_stops(indenter: Profile, viscosity: float) -> Non
         assert error < stated, (name, error, stated)
 
 
-@pytest.mark.parametrize("indenter", [PUNCH, ROUND])
+@pytest.mark.parametrize("indenter", [PUNCH, pytest.param(ROUND, marks=pytest.mark.slow)])
 def test_a_stop_far_shorter_than_its_contact_is_refused(indenter: Profile) -> None:
     """Once a restitution 3e7 times too large was stated to be known to nine times its value."""
     with pytest.raises(NotConvergedError, match="a strong dashpot"):

@@ -38,7 +38,7 @@ def exact(ratio, kind):
     return profile, contact.depth * scale, contact.force * scale * LAYER.contact_modulus * 1e-3
 
 
-@pytest.mark.parametrize(("ratio", "kind"), [pytest.param(1.0, "paraboloid", marks=pytest.mark.slow), (0.5, "cone")])
+@pytest.mark.parametrize(("ratio", "kind"), [(1.0, "paraboloid"), pytest.param(0.5, "cone", marks=pytest.mark.slow)])
 def test_depth_and_force_control_find_the_same_state(ratio, kind):
     """The truncated cone, which is harder; the paraboloid is slow."""
     profile, depth, force = exact(ratio, kind)

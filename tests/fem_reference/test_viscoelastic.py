@@ -44,7 +44,7 @@ def impact_scene(thickness, nu=0.5, indenter=BALL, effects=(SOLID,)):
 # restitution of the standard solid sphere impact, from the reduction to springs (an independent method)
 @pytest.mark.parametrize(
     ("thickness", "restitution"),
-    [(1e-3, 0.64341), pytest.param(2e-3, 0.55924, marks=pytest.mark.slow), (3e-3, 0.52344)],
+    [(1e-3, 0.64341), *(pytest.param(*each, marks=pytest.mark.slow) for each in ((2e-3, 0.55924), (3e-3, 0.52344)))],
 )
 def test_restitution_of_a_sphere_on_an_incompressible_standard_solid(thickness, restitution):
     history = Fem().solve(impact_scene(thickness))
@@ -115,7 +115,7 @@ def single_spring(relaxation, steps):
     ids=["KelvinVoigt", "Prony"],
 )
 def test_time_stepping_is_of_second_order(effect):
-    restitution = [single_spring(own(effect), n)[0] for n in (50, 100, 200, 1600)]
+    restitution = [single_spring(own(effect), n)[0] for n in (50, 100, 200, 800)]
     errors = np.abs(np.array(restitution[:3]) - restitution[3])
     order = np.log2(errors[:-1] / errors[1:])
     assert np.all(order > 1.8)
@@ -127,7 +127,7 @@ def test_contact_time_errs_by_the_square_of_the_step_wherever_contact_is_lost_wi
     damping = 0.33
     relaxation = own(KelvinVoigt(shear_modulus=1.0, viscosity=2 * damping))
     exact = 2 * acos(damping) / sqrt(1 - damping**2)  # closed form, Eq. (48)
-    steps = np.linspace(300, 302, 17)
+    steps = np.linspace(300, 302, 9)
     times = np.array([single_spring(relaxation, np.pi / exact * n)[1].time[-1] for n in steps])
     factors = (times / exact - 1) * steps**2
     assert np.ptp(factors) < 0.01 * abs(factors.mean())
@@ -183,7 +183,7 @@ def test_peak_force_of_a_kelvin_voigt_impact_is_within_its_error_bar(damping):
 @pytest.mark.parametrize(
     ("velocity", "tau", "growth", "name", "expected"),
     [
-        (1e-4, 1.0, 0.5, "peak_force", 2.08980381127e-06),
+        pytest.param(1e-4, 1.0, 0.5, "peak_force", 2.08980381127e-06, marks=pytest.mark.slow),
         (0.1, 0.01232846739, 1.0, "peak_contact_radius", 0.327763089776),
     ],
 )
@@ -240,18 +240,6 @@ def test_depth_history_relaxes_to_the_long_term_modulus():
     assert history.contact_radius[at_hold] == pytest.approx(history.contact_radius[-1], rel=2e-2, abs=0.0)
 
 
-def test_force_history_reproduces_the_depth_history_it_came_from():
-    layer = Layer.incompressible(thickness=1e-3, shear_modulus=G1 + G_INF)
-    loading = DepthHistory(time=[0, 1e-3, 2e-3], depth=[0, 5e-5, 5e-5])
-    there = QUICK.solve(Scene(layer=layer, indenter=BALL, loading=loading, effects=(SOLID,)))
-    some = np.unique([*range(0, len(there), 2), len(there) - 1])
-    back_loading = ForceHistory(time=there.time[some], force=there.normal_force[some])
-    back = QUICK.solve(Scene(layer=layer, indenter=BALL, loading=back_loading, effects=(SOLID,)))
-    depth = np.interp(there.time, back.time, back.indentation_depth)
-    later = there.time > 2e-4  # the chords of the sampled force differ from its curve at first
-    assert depth[later] == pytest.approx(there.indentation_depth[later], abs=5e-3 * 5e-5)
-
-
 def test_a_kelvin_voigt_punch_under_given_depth_or_force():
     # F = k (delta + tau delta'), tau = eta / G; under the force f t: delta = f/k (t - tau (1 - exp(-t/tau)))
     a, tau, k_bar = 1e-3, 0.5, 3.61873584896
@@ -305,7 +293,7 @@ def test_peak_depth_is_of_the_energys_order_in_the_cells(effects):
 def test_a_force_that_goes_back_to_zero_is_zero_in_the_end():
     """Roundings of the ramp left 3e-17 of it; "no depth carries the prescribed force"."""
     layer = Layer.incompressible(thickness=1e-3, shear_modulus=G1 + G_INF)
-    for peak_force in np.linspace(1.0, 2.0, 6):
+    for peak_force in np.linspace(1.0, 2.0, 3):
         loading = ForceHistory(time=[0.0, 1e-3, 2e-3], force=[0.0, peak_force, 0.0])
         answer = QUICK.solve(Scene(layer=layer, indenter=BALL, loading=loading, effects=(SOLID,)))
         assert answer.normal_force[-1] == answer.contact_radius[-1] == 0.0

@@ -79,6 +79,7 @@ def test_a_depth_that_a_dashpot_would_answer_with_an_infinite_force_is_refused()
         Fem().solve(scene(DAMPED, BALL, DepthHistory(time=[0, 10], depth=[4e-5, 4e-5])))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("ramp", "tau"), [(0.1, 1.0)])
 def test_a_ramp_on_a_kelvin_voigt_half_space_follows_its_closed_form(ramp, tau):
     """F = (16/3) sqrt(R) G d^1.5 + 8 eta a d', a = sqrt(R d)."""
