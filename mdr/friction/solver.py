@@ -6,7 +6,6 @@ Errors: what a coarser discretisation changes (`contact.stated`), and rounding t
 from __future__ import annotations
 
 import math
-from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -45,7 +44,6 @@ _FURTHER = 1.3
 _OF_GROWTH, _OF_PUNCH, _PER_CONDITION = 50.0, 20.0, 10.0
 # Largest relative error of depth and force that is answered; beyond, the growth is refused.
 _LARGEST_ERROR = 1e-3
-_PRESCRIBED = {ContactRadii: "radius", IndentationDepths: "depth", NormalForces: "force"}
 
 
 def solve_stick(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[str, Setting]) -> ContactPath:
@@ -56,11 +54,10 @@ def solve_stick(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[str
         InvalidInput: If a prescribed value is out of the indenter's reach.
         NotConvergedError: If the growth is not resolved.
     """
-    log = StageLog()
-    extra = flat_punch.sizes.extra
-    kind = _Punch if isinstance(scene.indenter, FlatPunch) else _Grown
+    log, extra = StageLog(), flat_punch.sizes.extra
+    solve = _pressed if isinstance(scene.indenter, FlatPunch) else _grown
     with log.stage("stick"):
-        own, coarser = kind.of(scene, extra + _MORE), kind.of(scene, extra)
+        own, coarser = solve(scene, extra + _MORE), solve(scene, extra)
     return ContactPath(
         scene=scene,
         method="mdr",
@@ -76,21 +73,18 @@ def solve_stick(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[str
     )
 
 
-def _errors(scene: Scene, own: _Punch | _Grown, coarser: _Punch | _Grown) -> dict[str, FloatArray]:
+def _errors(scene: Scene, own: Stuck, coarser: Stuck) -> dict[str, FloatArray]:
     """Of what was not prescribed."""
-    radius, depth, force, stiffness = (
-        stated_error(one, other, scale=one, floor=own.floor)
-        for one, other in zip(own.state, coarser.state, strict=True)
-    )
+    pairs = zip(own.state, coarser.state, strict=True)
+    radius, depth, force, stiffness = (stated_error(one, other, scale=one, floor=own.floor) for one, other in pairs)
     if not max(depth.max(), force.max()) <= _LARGEST_ERROR:
         raise NotConvergedError(f"growth under full stick is resolved to {max(depth.max(), force.max()):.1g} only")
-    zero, loading = np.zeros_like(depth), scene.loading
-    is_given = isinstance(loading, ContactRadii) or isinstance(scene.indenter, FlatPunch)
-    by_depth, by_radius = isinstance(loading, IndentationDepths), isinstance(loading, ContactRadii)
+    by_depth, by_force = (isinstance(scene.loading, kind) for kind in (IndentationDepths, NormalForces))
+    is_given = isinstance(scene.loading, ContactRadii) or isinstance(scene.indenter, FlatPunch)
     return {
-        "contact_radius": zero if is_given else radius,
-        "indentation_depth": zero if by_depth else depth,
-        "normal_force": force if by_depth or by_radius else zero,
+        "contact_radius": 0 * radius if is_given else radius,
+        "indentation_depth": 0 * depth if by_depth else depth,
+        "normal_force": 0 * force if by_force else force,
         "contact_stiffness": stiffness,
     }
 
@@ -102,16 +96,26 @@ def _values(scene: Scene) -> FloatArray:
 
 
 @dataclass(frozen=True)
-class _Stuck(ABC):
+class Stuck:
     """States of a stuck contact, and its surface fields at every step.
 
     Attributes:
         state: Equilibria.
         modulus: E* [Pa].
+        unit: Length of the kernel [m].
+        contact: A flat punch under a depth of one, or a growth, lengths in units of the kernel.
+        tip: The profile.
+        floor: Relative rounding error.
+        unknowns: Of all systems.
     """
 
     state: State
     modulus: float
+    unit: float
+    contact: Adhered | Growth
+    tip: Tip
+    floor: float
+    unknowns: int
 
     def pressure(self, radius: FloatArray, step: int) -> FloatArray:
         """p(r) [Pa], zero outside."""
@@ -121,133 +125,79 @@ class _Stuck(ABC):
         """q(r) [Pa], positive where the layer is pushed outward, zero outside."""
         return np.asarray(self._tractions(radius, step)[1])
 
-    @abstractmethod
     def _tractions(self, radius: FloatArray, step: int) -> FloatArray:
         """p and q [Pa], shape (2, n)."""
-
-
-@dataclass(frozen=True)
-class _Punch(_Stuck):
-    """An adhered flat punch.
-
-    Attributes:
-        punch: Under a depth of one, lengths in units of the kernel.
-    """
-
-    punch: Adhered
-
-    @classmethod
-    def of(cls, scene: Scene, extra: int) -> _Punch:
-        """Of a scene."""
-        layer, a, modulus = scene.layer, scene.indenter.flat_radius, contact_modulus(scene.layer)
-        unit = a if layer.is_half_space else layer.surface.thickness
-        punch = Adhered(stack_kernel(layer), a / unit, extra)
-        stiffness, values = 2 * modulus * unit * punch.stiffness, _values(scene)
-        by_depth, same = isinstance(scene.loading, IndentationDepths), np.ones_like(values)
-        depth = values if by_depth else values / stiffness
-        force = stiffness * values if by_depth else values
-        return cls(State(a * same, depth, force, stiffness * same), modulus, punch)
-
-    @property
-    def floor(self) -> float:
-        """Relative rounding error."""
-        return EPS * (_OF_PUNCH + _PER_CONDITION * self.punch.condition)
-
-    @property
-    def unknowns(self) -> int:
-        """Of the system."""
-        return self.punch.count
-
-    def _tractions(self, radius: FloatArray, step: int) -> FloatArray:
-        a, found = self.state.radius[step], np.zeros((2, radius.size))
-        s, size = radius / a, self.modulus * self.state.depth[step] * self.punch.a / a
-        found[:, s < 1] = size * self.punch.tractions(s[s < 1])
-        return found
-
-    def surface_displacement(self, radius: FloatArray, step: int) -> FloatArray:
-        """w(r) [m]."""
-        found, s = np.ones_like(radius), radius / self.state.radius[step]
-        if (s > 1).any():
-            found[s > 1] = self.punch.displacement(s[s > 1])
-        return np.asarray(self.state.depth[step] * found)
-
-
-@dataclass(frozen=True)
-class _Grown(_Stuck):
-    """Contact that has grown under full stick.
-
-    Attributes:
-        growth: Lengths in units of the kernel.
-    """
-
-    growth: Growth
-
-    @classmethod
-    def of(cls, scene: Scene, extra: int) -> _Grown:
-        """Of a scene."""
-        nu, flat = scene.layer.surface.poissons_ratio, scene.indenter.flat_radius
-        if flat and nu < 0.5:
-            raise UnsupportedSceneError(
-                f"a flat end of radius {flat:g} m that grows under full stick on a layer with poissons_ratio = {nu:g}: "
-                "its edge field oscillates, and growth from it has no stable answer; give Poisson's ratio 0.5, or a "
-                "rounded edge"
-            )
-        growth, radii = _covering(scene, extra)
-        modulus, unit, values = contact_modulus(scene.layer), growth.unit, _values(scene)
-        depth, force, stiffness = growth.states(radii)
-        state = State(radii * unit, depth * unit, force * modulus * unit**2, stiffness * modulus * unit)
-        state = state._replace(**{_PRESCRIBED[type(scene.loading)]: values})
-        return cls(state, modulus, growth)
-
-    @property
-    def floor(self) -> float:
-        """Relative rounding error."""
-        return EPS * (_OF_GROWTH + _PER_CONDITION * self.growth.punches.largest.condition)
-
-    @property
-    def unknowns(self) -> int:
-        """Of all stretches."""
-        return sum(c.size for _, c in self.growth.parts)
-
-    def _radius(self, step: int) -> float:
-        return float(self.state.radius[step]) / self.growth.unit
-
-    def _tractions(self, radius: FloatArray, step: int) -> FloatArray:
-        r, a, found = radius / self.growth.unit, self._radius(step), np.zeros((2, radius.size))
-        found[:, r < a] = self.modulus * self.growth.tractions(r[r < a], a)
+        a, depth = self.state.radius[step], self.state.depth[step] / self.unit
+        found, inside = np.zeros((2, radius.size)), radius < a
+        if isinstance(self.contact, Adhered):
+            found[:, inside] = self.modulus * depth * self.contact.tractions(radius[inside] / a)
+        else:
+            found[:, inside] = self.modulus * self.contact.tractions(radius[inside] / self.unit, a / self.unit)
         return found
 
     def surface_displacement(self, radius: FloatArray, step: int) -> FloatArray:
         """w(r) [m]: the indenter's shape inside, Eq. (1)."""
-        r, a = radius / self.growth.unit, self._radius(step)
-        inside = r <= a
-        found = self.state.depth[step] - self.growth.tip.height(np.where(inside, radius, 0.0))
-        if not inside.all():
-            found[~inside] = self.growth.unit * self.growth.displacement(r[~inside], a)
-        return np.asarray(found)
+        a, depth = self.state.radius[step], self.state.depth[step]
+        inside = radius <= a
+        found, r = np.asarray(depth - self.tip.height(np.where(inside, radius, 0.0))), radius[~inside]
+        if not r.size:
+            return found
+        if isinstance(self.contact, Adhered):
+            found[~inside] = depth * self.contact.displacement(r / a)
+        else:
+            found[~inside] = self.unit * self.contact.displacement(r / self.unit, float(a) / self.unit)
+        return found
 
 
-def _covering(scene: Scene, extra: int) -> tuple[Growth, FloatArray]:
-    """The growth up to the largest radius of the loading, and all its radii in units."""
-    layer, values, tip, kernel = scene.layer, _values(scene), tip_of(scene.indenter), stack_kernel(scene.layer)
+def _pressed(scene: Scene, extra: int) -> Stuck:
+    """A flat punch."""
+    layer, tip, values = scene.layer, tip_of(scene.indenter), _values(scene)
+    modulus, unit = contact_modulus(layer), tip.flat if layer.is_half_space else layer.surface.thickness
+    punch = Adhered(stack_kernel(layer), tip.flat / unit, extra)
+    stiffness, same = 2 * modulus * unit * punch.stiffness, np.ones_like(values)
+    by_depth = isinstance(scene.loading, IndentationDepths)
+    loads = (values, stiffness * values) if by_depth else (values / stiffness, values)
+    state, floor = (
+        State(tip.flat * same, *loads, stiffness * same),
+        EPS * (_OF_PUNCH + _PER_CONDITION * punch.condition),
+    )
+    return Stuck(state, modulus, unit, punch, tip, floor, punch.count)
+
+
+def _grown(scene: Scene, extra: int) -> Stuck:
+    """A tip, followed up to the largest radius of the loading.
+
+    Raises:
+        UnsupportedSceneError: A flat end that grows, on a compressible layer.
+        InvalidInput: If a prescribed value is out of the indenter's reach.
+    """
+    layer, tip, values, modulus = scene.layer, tip_of(scene.indenter), _values(scene), contact_modulus(scene.layer)
+    nu, flat, kernel = layer.surface.poissons_ratio, tip.flat, stack_kernel(layer)
+    if flat and nu < 0.5:
+        raise UnsupportedSceneError(
+            f"a flat end of radius {flat:g} m that grows under full stick on a layer with poissons_ratio = {nu:g}: "
+            "its edge field oscillates, and growth from it has no stable answer; give Poisson's ratio 0.5, or a "
+            "rounded edge"
+        )
+    prescribed = (ContactRadii, IndentationDepths, NormalForces).index(type(scene.loading))
     reach = _first_reach(scene, tip)
-    unit = reach if layer.is_half_space else layer.surface.thickness
-    if isinstance(scene.loading, ContactRadii):
-        return Growth(kernel, tip, unit, reach / unit, extra), values / unit
-    which = 0 if isinstance(scene.loading, IndentationDepths) else 1
-    wanted = values / unit if which == 0 else values / (contact_modulus(layer) * unit**2)
     while True:
-        growth = Growth(kernel, tip, unit, reach / unit, extra)
-        if growth.states(np.array([growth.end]))[which][0] >= wanted.max():
-            return growth, _radii(growth, which, wanted)
+        unit = reach if layer.is_half_space else layer.surface.thickness
+        scales = (unit, unit, modulus * unit**2, modulus * unit)
+        growth, wanted = Growth(kernel, tip, unit, reach / unit, extra), values / scales[prescribed]
+        if not prescribed or growth.states(np.array([growth.end]))[prescribed - 1][0] >= wanted.max():
+            break
         if reach >= tip.end:
             raise InvalidInput(
                 f"loading.values = {values.max():g}: the indenter ends at a radius of {tip.end:g} m, before it is "
                 "reached; ask for less or describe the indenter further out"
             )
         reach = min(_FURTHER * reach, tip.end)
-        unit = reach if layer.is_half_space else unit
-        wanted = values / unit if which == 0 else values / (contact_modulus(layer) * unit**2)
+    radii = _radii(growth, prescribed - 1, wanted) if prescribed else wanted
+    found = [one * scale for one, scale in zip((radii, *growth.states(radii)), scales, strict=True)]
+    found[prescribed] = values
+    floor = EPS * (_OF_GROWTH + _PER_CONDITION * growth.punches.largest.condition)
+    return Stuck(State(*found), modulus, unit, growth, tip, floor, sum(c.size for _, c in growth.parts))
 
 
 def _radii(growth: Growth, which: int, wanted: FloatArray) -> FloatArray:
@@ -256,10 +206,8 @@ def _radii(growth: Growth, which: int, wanted: FloatArray) -> FloatArray:
     def missing(a: float, value: float) -> float:
         return float(growth.states(np.array([a]))[which][0]) - value
 
-    start = growth.parts[0][0].start
-    return np.array(
-        [brentq(missing, start, growth.end, (value,), xtol=1e-300, rtol=4 * EPS) for value in wanted.tolist()]
-    )
+    ends = growth.parts[0][0].start, growth.end
+    return np.array([brentq(missing, *ends, (value,), xtol=1e-300, rtol=4 * EPS) for value in wanted.tolist()])
 
 
 def _first_reach(scene: Scene, tip: Tip) -> float:

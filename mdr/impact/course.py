@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.polynomial import legendre
 
+from bem.numerics import gauss
 from contact.records.validation import BoolArray, FloatArray
-from mdr.impact.motion import Bodies, Growth, Phase, Shrinkage, State
-from mdr.impact.rules import rule, slopes
+from mdr.impact.motion import Bodies, Growth, Phase, Shrinkage, State, times
+from mdr.impact.rules import resampling, rule, slopes, vander
 
 # Samples of a phase from which the search for the largest force starts. With a third of them narrow peaks are missed.
 _PLACES = 129
@@ -107,7 +107,8 @@ def _growths(bodies: Bodies, nodes: int, state: State, guess: FloatArray) -> lis
         Divided: As `course` does.
     """
     r, (duration, rate), found = rule(nodes, bodies.power, ending=False), guess, list[Growth]()
-    speed = bodies.velocity[:, None] * (1 - r.share[:-1]) * np.exp(-(rate * duration)[:, None] * r.share[:-1])
+    share = r.share[:-1]
+    speed = bodies.velocity[:, None] * np.cos(np.pi / 2 * share) * np.exp(-(rate * duration)[:, None] * share)
     while True:
         growth = Growth(bodies, len(found), r, state, duration, speed)
         growth.solve(None)
@@ -135,7 +136,7 @@ def _alike(bodies: Bodies, nodes: int, state: State, like: Course) -> list[Growt
     for old in like.growths:
         state = found[-1].finish() if found else state
         r = rule(nodes, old.rule.power, ending=False)
-        growth = Growth(bodies, old.piece, r, state, old.duration, old.speeds(r.share[None, :-1]))
+        growth = Growth(bodies, old.piece, r, state, old.duration, old.resampled(nodes))
         growth.solve(None if old.turned else bodies.until(old.piece))
         found.append(growth)
     return found
@@ -149,7 +150,7 @@ def _mirrored(growth: Growth, start: State, like: Shrinkage | None) -> Shrinkage
         duration, speed = growth.duration.copy(), -growth.speed[:, ::-1]
         share = np.broadcast_to(1 - r.share[:-1], speed.shape)
     else:
-        duration, speed = like.duration, like.speeds(r.share[None, :-1])
+        duration, speed = like.duration, like.resampled(r.nodes.size)
         share = np.array([np.interp(r.share[:-1], like.rule.share[:-1], one) for one in like.share])
     found = Shrinkage(growth.bodies, growth.piece, r, start, duration, speed)
     found.solve(growth, share, searched=like is not None)
@@ -161,13 +162,14 @@ def _largest(growth: Growth) -> FloatArray:
 
     A viscous layer relaxes at the turn, so that the force is smaller after it.
     """
-    r, places = growth.rule, np.linspace(0, 1, _PLACES)
-    fit = (r.analysis @ growth.force[..., None])[..., 0]
-    values = r.at(growth.force, places[None])
-    s = places[np.minimum(np.maximum(values.argmax(axis=1), 1), _PLACES - 2)]
+    r = growth.rule
+    count = r.nodes.size
+    values = times(resampling(count, _PLACES), growth.force)
+    places, _ = gauss(_PLACES)
+    s, fit = places[values.argmax(axis=1)], times(r.analysis, growth.force)
     for _ in range(_PEAK_STEPS):
-        basis = legendre.legvander(2 * s - 1, r.nodes.size - 1)
-        rise, curved = ((basis[:, None] @ rows @ fit[..., None])[:, 0, 0] for rows in slopes(r.nodes.size))
-        step = np.where(curved < 0, rise / np.where(curved < 0, curved, 1.0), 0.0)
-        s = np.minimum(np.maximum(s - step, 0.0), 1.0)
-    return np.asarray(np.maximum(r.at(growth.force, s[:, None])[:, 0], values.max(axis=1)))
+        basis = vander(s, count)
+        rise, curved = ((basis[:, None] @ times(rows, fit)[..., None])[:, 0, 0] for rows in slopes(count))
+        s = np.clip(s - np.where(curved < 0, rise / np.where(curved < 0, curved, 1.0), 0.0), 0.0, 1.0)
+    last = (vander(s, count)[:, None] @ fit[..., None])[:, 0, 0]
+    return np.asarray(np.maximum(last, np.maximum(values.max(axis=1), growth.force[:, -1])))

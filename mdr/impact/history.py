@@ -21,8 +21,8 @@ from contact.records.validation import FloatArray
 from contact.stated import stated_error
 from mdr.impact.blows import OUTCOMES, Attempt, Blow, Outcome
 from mdr.impact.course import Course
-from mdr.impact.motion import Growth, Shrinkage
-from mdr.impact.rules import interpolated, rule
+from mdr.impact.motion import Growth, Shrinkage, times
+from mdr.impact.rules import interpolated, resampling, rule
 
 
 def history(blow: Blow, outcome: Outcome, log: StageLog, settings: Mapping[str, Setting]) -> ImpactHistory:
@@ -60,7 +60,9 @@ def _series_errors(attempt: Attempt, count: int) -> dict[str, FloatArray]:
     """Errors of all samples, relative to the largest of each series: the largest change to the companion at a node."""
     pairs = list(zip(attempt.course.phases, attempt.finer.phases, strict=True))
     series = np.hstack([own.series()[:, 0] for own, _ in pairs])
-    other = np.hstack([fine.rule.at(fine.series()[:, 0], own.rule.nodes[None]) for own, fine in pairs])
+    other = np.hstack(
+        [times(resampling(fine.speed.shape[1], own.speed.shape[1]), fine.series()[:, 0]) for own, fine in pairs]
+    )
     base = attempt.error[2:].max()
     names = ("indentation_depth", "velocity", "normal_force", "contact_radius")
     errors = {

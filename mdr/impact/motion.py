@@ -28,7 +28,7 @@ from typing import NamedTuple
 import numpy as np
 
 from contact.records.validation import BoolArray, FloatArray
-from mdr.impact.rules import Rule, interpolated
+from mdr.impact.rules import Rule, interpolated, resampling
 from mdr.impact.track import Track
 
 # Sweeps of Newton's method; five are usual.
@@ -129,7 +129,7 @@ class Phase:
     @property
     def depth(self) -> FloatArray:
         """At nodes and end."""
-        rise = _times(self.rule.integrals, self.speed)
+        rise = times(self.rule.integrals, self.speed)
         return np.asarray(self.start.depth[:, None] + self.duration[:, None] * rise)
 
     def series(self) -> FloatArray:
@@ -140,6 +140,10 @@ class Phase:
     def speeds(self, share: FloatArray) -> FloatArray:
         """Speeds at shares of the duration, shape (n, k)."""
         return self.rule.at(self.speed, self.rule.place(share))
+
+    def resampled(self, nodes: int) -> FloatArray:
+        """Speeds at so many nodes, shape (n, nodes)."""
+        return times(resampling(self.speed.shape[1], nodes), self.speed)
 
     def lengthen(self) -> None:
         """Operators that depend on the duration."""
@@ -157,10 +161,10 @@ class Phase:
         """Solution of u' = w source - r u at nodes and end, and its change with T; shapes (n, m, k + 1)."""
         b, T = self.bodies, self.duration[:, None, None]
         driven = b.weights[..., None] * source[:, None]
-        grown = _times(self._memory, driven)
+        grown = times(self._memory, driven)
         faded = start[..., None] * self._fade
         rates = b.rates[..., None]
-        change = _times(self._memory, driven - rates * grown[..., :-1]) / T - rates * self.rule.share * faded
+        change = times(self._memory, driven - rates * grown[..., :-1]) / T - rates * self.rule.share * faded
         return grown + faded, change
 
     def cut(self, ended: BoolArray) -> bool:
@@ -188,10 +192,10 @@ class Phase:
         n, k = self.speed.shape
         T, pull = self.duration[:, None], self.bodies.pull[:, None]
         integrals = self.rule.integrals
-        lost = pull * T * _times(integrals, force)
+        lost = pull * T * times(integrals, force)
         system = np.empty((n, k + 1, k + 1))
         system[:, :, :k] = (pull * T)[..., None] * (integrals @ by_speed)
-        system[:, :, k] = lost + pull * T**2 * _times(integrals, by_time)
+        system[:, :, k] = lost + pull * T**2 * times(integrals, by_time)
         system[:, np.arange(k), np.arange(k)] += 1
         missed = np.concatenate([self.speed, np.zeros((n, 1))], axis=1) - self.start.speed[:, None] + lost
         self.force, self.end_speed = force, -missed[:, -1]
@@ -250,7 +254,7 @@ class Growth(Phase):
         self.load, change = self.remembered(K * v, self.start.load)
         force = self.load[..., :-1].sum(axis=1) + b.viscosity[:, None] * K * v
         by_speed = self._answer * K[:, None] + (self._answer * (v * rise * T)[:, None]) @ inner
-        by_time = change[..., :-1].sum(axis=1) + _times(self._answer, rise * v * _times(inner, v))
+        by_time = change[..., :-1].sum(axis=1) + times(self._answer, rise * v * times(inner, v))
         missed, system = self.newton(force, by_speed, by_time)
         if until is not None:
             missed[:, -1] = depth[:, -1] - until
@@ -369,6 +373,6 @@ def _solved(matrix: FloatArray, right: FloatArray) -> FloatArray:
         return np.concatenate([_solved(matrix[[i]], right[[i]]) for i in range(len(matrix))])
 
 
-def _times(matrix: FloatArray, vector: FloatArray) -> FloatArray:
+def times(matrix: FloatArray, vector: FloatArray) -> FloatArray:
     """Products of matrices and vectors, each by itself, so that they do not depend on the number of them."""
     return np.asarray((matrix @ vector[..., None])[..., 0])

@@ -35,6 +35,7 @@ class Rule:
         power: p.
         ending: Whether s crowds at the end.
         share: t/T at the nodes and the end, shape (n + 1,).
+        lags: (t_m - t_k)/T of nodes and end, infinite before, shape (n + 1, n + 1).
         gaps: (t_m - t)/T at the nodes t of the panels before t_m, shape (n + 1, q).
         weights: Of these nodes, shape (n + 1, q).
         rows: Values of the n basis polynomials there, shape (n + 1, q, n).
@@ -47,6 +48,7 @@ class Rule:
     power: float
     ending: bool
     share: FloatArray
+    lags: FloatArray
     gaps: FloatArray
     weights: FloatArray
     rows: FloatArray
@@ -64,13 +66,11 @@ class Rule:
         n = self.nodes.size
         local[..., np.arange(n), np.arange(n)] += missed[..., :n]
         local[..., n, :] += missed[..., n:] * self.at_end
-        fading = np.exp(-z * np.maximum(self.share[:, None] - self.share, 0.0)) * np.tri(n + 1)
-        return np.asarray(fading @ local)
+        return np.asarray(np.exp(-z * self.lags) @ local)
 
     def at(self, values: FloatArray, s: FloatArray) -> FloatArray:
         """Polynomials through values at the nodes, shape (lanes, n), at s, shape (lanes, k)."""
-        # Contiguous, since products of other arrays round otherwise for many lanes than for one.
-        basis = np.ascontiguousarray(legendre.legvander(2 * s - 1, self.nodes.size - 1)) @ self.analysis
+        basis = vander(s, self.nodes.size) @ self.analysis
         return np.asarray((basis @ values[..., None])[..., 0])
 
     def place(self, share: FloatArray) -> FloatArray:
@@ -78,12 +78,17 @@ class Rule:
         return 1 - (1 - share) ** (1 / self.power) if self.ending else share ** (1 / self.power)
 
 
+def vander(s: FloatArray, count: int) -> FloatArray:
+    """P_0(2 s - 1), .. at s, the last axis the degree; contiguous, since others round with the number of lanes."""
+    return np.ascontiguousarray(legendre.legvander(2 * s - 1, count - 1))
+
+
 @lru_cache(maxsize=64)
 def rule(count: int, power: float, *, ending: bool) -> Rule:
     """The rule with so many nodes."""
     nodes, w = gauss(count)
     k = np.arange(count)
-    analysis = (legendre.legvander(2 * nodes - 1, count - 1) * w[:, None] * (2 * k + 1)).T
+    analysis = (vander(nodes, count) * w[:, None] * (2 * k + 1)).T
     ends = np.append(nodes, 1.0)
     y, v = gauss(_NODES)
     far = 0.5 ** np.arange(_PANELS)
@@ -97,10 +102,17 @@ def rule(count: int, power: float, *, ending: bool) -> Rule:
     else:
         share, place, speed = ends**power, s**power, power * s ** (power - 1)
     weights = step * weight * speed
-    rows = legendre.legvander(2 * s - 1, count - 1) @ analysis
+    rows = vander(s, count) @ analysis
     integrals = np.cumsum((weights[:, None, :] @ rows)[:, 0], axis=0)
     at_end = analysis.sum(axis=0)
-    return Rule(nodes, power, ending, share, share[:, None] - place, weights, rows, integrals, analysis, at_end)
+    lags = np.where(np.tri(count + 1, dtype=bool), share[:, None] - share, np.inf)
+    return Rule(nodes, power, ending, share, lags, share[:, None] - place, weights, rows, integrals, analysis, at_end)
+
+
+@lru_cache(maxsize=64)
+def resampling(count: int, other: int) -> FloatArray:
+    """Matrix from values at so many Gauss nodes to those of another number, shape (other, count)."""
+    return np.asarray(vander(gauss(other)[0], count) @ rule(count, 1, ending=False).analysis)
 
 
 @lru_cache(maxsize=64)
