@@ -34,7 +34,9 @@ BEYOND: Final = 1.1
 
 @dataclass(frozen=True, eq=False)
 class SampledPunches:
-    """ln(kappa) and the coefficients of Q by polynomials of u = ln(1 + a/h), from the axis, where both are one.
+    """ln(kappa) and the coefficients of Q by polynomials of sqrt(u), u = ln(1 + a/h), from the axis, where both are one.
+
+    On graded layers they start like a ln(a), which polynomials of the root follow.
 
     Attributes:
         thickness: h [m].
@@ -55,7 +57,7 @@ class SampledPunches:
         if pressing.layer.is_half_space:
             return cls(1.0, 1.0, np.zeros(2), np.ones((1, 1)))
         end = log1p(radius / h)
-        radii = h * np.expm1(0.5 * end * (1.0 + x[1:]))
+        radii = h * np.expm1(end * (0.5 + 0.5 * x[1:]) ** 2)
         radii[-1] = radius
         flat = [pressing.punch(a) for a in radii.tolist()]
         growth = np.asarray(series.chebfit(x, np.log([1.0, *(one.growth for one in flat)]), nodes - 1), np.float64)
@@ -70,7 +72,7 @@ class SampledPunches:
     def at(self, radius: float) -> Punches:
         """About one radius [m]."""
         u = log1p(radius / self.thickness)
-        x, steepness = 2.0 * u / self.end - 1.0, 2.0 / self.end * radius / (self.thickness + radius)
+        x, steepness = 2.0 * sqrt(u / self.end) - 1.0, radius / (self.thickness + radius) / sqrt(u * self.end)
         growth = exp(float(series.chebval(x, self.growth)))
         slope = growth * steepness * float(series.chebval(x, series.chebder(self.growth)))
         Q, change = (np.atleast_1d(series.chebval(x, c)) for c in (self.series, series.chebder(self.series)))
