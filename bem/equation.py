@@ -279,7 +279,7 @@ class FlatPunches:
 
     def __init__(self, kernel: ContactKernel, sizes: Sizes = USUAL, *, kinked: bool = False) -> None:
         self.kernel, self.sizes, self.kinked = kernel, sizes, kinked
-        self._solved: dict[tuple[float, int], FloatArray] = {}
+        self._one = lru_cache(maxsize=_REMEMBERED)(self._solved)
         self._rows = Octaves(self._solve, self._lowest(), sizes.radii)
         self._factored = lru_cache(maxsize=8)(lambda a, octave: Radius(kernel, a, sizes, octave, kinked=kinked))
 
@@ -321,15 +321,10 @@ class FlatPunches:
     def _solve(self, radii: FloatArray, octave: int) -> FloatArray:
         return np.array([self._one(a, octave) for a in radii.tolist()])
 
-    def _one(self, a: float, octave: int) -> FloatArray:
+    def _solved(self, a: float, octave: int) -> FloatArray:
         """Punch, resolvent and noise of one radius."""
-        key = (a, octave)
-        if key not in self._solved:
-            one = self._factored(a, octave)
-            if len(self._solved) >= _REMEMBERED:
-                self._solved.clear()
-            self._solved[key] = np.concatenate([one.punch, one.resolvent, one.noise])
-        return self._solved[key]
+        one = self._factored(a, octave)
+        return np.concatenate([one.punch, one.resolvent, one.noise])
 
 
 @lru_cache(maxsize=128)

@@ -34,7 +34,7 @@ BEYOND: Final = 1.1
 
 @dataclass(frozen=True, eq=False)
 class SampledPunches:
-    """ln(kappa) and the coefficients of Q by polynomials of sqrt(u), u = ln(1 + a/h), from the axis, where both are one.
+    """ln(kappa) and the coefficients of Q by polynomials of sqrt(u), u = ln(1 + a/h), both one at the axis.
 
     On graded layers they start like a ln(a), which polynomials of the root follow.
 

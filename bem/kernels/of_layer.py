@@ -10,11 +10,11 @@ import dataclasses
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from math import inf
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
 import numpy as np
 
-from bem.kernels.stack import Sheet, StackKernel, SurfaceKernel
+from bem.kernels.stack import Sheet, StackKernel
 from bem.numerics import Octaves
 from contact.records.errors import UnsupportedSceneError
 from contact.records.record import Record
@@ -24,6 +24,8 @@ from contact.scene.layer import ElasticBase, ElasticLayer, Layer, LayerStack
 
 if TYPE_CHECKING:
     from bem.kernels.graded import GradedKernel
+
+    SurfaceKernel: TypeAlias = StackKernel | GradedKernel
 
 _R = TypeVar("_R", bound=Record)
 # A kernel that was made for a layer serves the same layer in other units, whose numbers are a rounding or two off: so
