@@ -46,7 +46,7 @@ _ROOT_FROM = 8.0
 _TURNING = 24 * np.pi
 # Radius over a up to which tables of displacements outside are kept, and orders times largest wave number from which
 # on they are made anew: at 2e5 (a/h = 100) they take 10 MB.
-_FAR, _LARGEST_TABLE = 4.0, 2e5
+FAR, _LARGEST_TABLE = 4.0, 2e5
 # Radii that are remembered per layer: a search asks for the same ones again. Half as many make searches slower.
 _REMEMBERED = 400
 
@@ -182,7 +182,7 @@ class Radius:
             reach: Larger than one where 1 - chi falls like a power.
         """
         waves = self._waves._replace(farthest=farthest, top=reach * self._waves.top)
-        is_kept = farthest <= _FAR and waves.orders * waves.top < _LARGEST_TABLE
+        is_kept = farthest <= FAR and waves.orders * waves.top < _LARGEST_TABLE
         kappa, w, table = (_transforms if is_kept else _transforms.__wrapped__)(waves)
         use = int(np.searchsorted(kappa, reach * self.sizes.reach * self.a)) + self.sizes.nodes
         return kappa[:use], w[:use], table[:, :use]

@@ -7,10 +7,7 @@ from tests.combinations import BY_NAME, PAGE, compared, covering, others, outcom
 
 # Silent differences that wait for their cure, by their draw on the page.
 KNOWN = {
-    "26.5": "boundary elements on a graded layer state a third of the error of the force at the loss of contact",
     "40.5": "boundary elements on a graded layer, worn paraboloid, state a fifth of the error of a pull-off depth",
-    "71.5": "boundary elements on a graded layer state 0.9 of the error of a pull-off depth",
-    "73.5": "boundary elements on a graded layer state half of the error of a pull-off depth",
 }
 
 

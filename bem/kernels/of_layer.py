@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 import numpy as np
 
 from bem.kernels.stack import Sheet, StackKernel
-from bem.numerics import Octaves
+from bem.numerics import WAVES, Octaves
 from contact.records.errors import UnsupportedSceneError
 from contact.records.record import Record
 from contact.records.validation import FloatArray
@@ -33,8 +33,6 @@ _R = TypeVar("_R", bound=Record)
 _DIGITS = 13
 # Units per thickness of a graded layer. With 4 wide contacts need more wave numbers, with 16 narrow ones do.
 _GRADED_UNITS = 8.0
-# Nodes per octave of the table of a graded kernel: 18 leave 1e-13, 9 leave 1e-7.
-_NODES = 18
 
 
 def surface_kernel(layer: ElasticLayer) -> SurfaceKernel:
@@ -177,7 +175,7 @@ class ContactKernel:
         surface = self.surface
         assert surface is not None
         lowest = -2 - int(np.ceil(np.log2(surface.longest)))
-        return Octaves(lambda k, _: (surface.chi(k) / k**self._power)[:, None], lowest, _NODES)
+        return Octaves(lambda k, _: (surface.chi(k) / k**self._power)[:, None], lowest, WAVES)
 
     def __getstate__(self) -> dict[str, Any]:
         """Without tables, which are made again where they are needed."""
