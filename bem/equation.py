@@ -46,7 +46,7 @@ _ROOT_FROM = 8.0
 _TURNING = 24 * np.pi
 # Radius over a up to which tables of displacements outside are kept, and orders times largest wave number from which
 # on they are made anew: at 2e5 (a/h = 100) they take 10 MB.
-_FAR, _LARGEST_TABLE = 4.0, 2e5
+FAR, _LARGEST_TABLE = 4.0, 2e5
 # Radii that are remembered per layer: a search asks for the same ones again. Half as many make searches slower.
 _REMEMBERED = 400
 
@@ -182,7 +182,7 @@ class Radius:
             reach: Larger than one where 1 - chi falls like a power.
         """
         waves = self._waves._replace(farthest=farthest, top=reach * self._waves.top)
-        is_kept = farthest <= _FAR and waves.orders * waves.top < _LARGEST_TABLE
+        is_kept = farthest <= FAR and waves.orders * waves.top < _LARGEST_TABLE
         kappa, w, table = (_transforms if is_kept else _transforms.__wrapped__)(waves)
         use = int(np.searchsorted(kappa, reach * self.sizes.reach * self.a)) + self.sizes.nodes
         return kappa[:use], w[:use], table[:, :use]
@@ -279,7 +279,7 @@ class FlatPunches:
 
     def __init__(self, kernel: ContactKernel, sizes: Sizes = USUAL, *, kinked: bool = False) -> None:
         self.kernel, self.sizes, self.kinked = kernel, sizes, kinked
-        self._solved: dict[tuple[float, int], FloatArray] = {}
+        self._one = lru_cache(maxsize=_REMEMBERED)(self._solved)
         self._rows = Octaves(self._solve, self._lowest(), sizes.radii)
         self._factored = lru_cache(maxsize=8)(lambda a, octave: Radius(kernel, a, sizes, octave, kinked=kinked))
 
@@ -321,15 +321,10 @@ class FlatPunches:
     def _solve(self, radii: FloatArray, octave: int) -> FloatArray:
         return np.array([self._one(a, octave) for a in radii.tolist()])
 
-    def _one(self, a: float, octave: int) -> FloatArray:
+    def _solved(self, a: float, octave: int) -> FloatArray:
         """Punch, resolvent and noise of one radius."""
-        key = (a, octave)
-        if key not in self._solved:
-            one = self._factored(a, octave)
-            if len(self._solved) >= _REMEMBERED:
-                self._solved.clear()
-            self._solved[key] = np.concatenate([one.punch, one.resolvent, one.noise])
-        return self._solved[key]
+        one = self._factored(a, octave)
+        return np.concatenate([one.punch, one.resolvent, one.noise])
 
 
 @lru_cache(maxsize=128)

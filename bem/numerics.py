@@ -16,6 +16,8 @@ from contact.records.validation import FloatArray
 EPS = float(np.finfo(np.float64).eps)
 # Smallest argument of the Bessel tables; x below it is rounded up to it, which changes no value.
 _LEAST = 1e-290
+# Nodes per octave of wave numbers of tables of graded layers: 18 leave 1e-13, 9 leave 1e-7.
+WAVES = 18
 
 
 def special() -> Any:

@@ -35,6 +35,7 @@ from contact.stated import stated_error
 from mdr.admissible import is_touched_nowhere, refuse_touching_outside
 from mdr.contact_surface import Surface, surface_of
 from mdr.equilibria import (
+    CHECKED,
     PathFields,
     StatedError,
     compared_displacement,
@@ -57,8 +58,6 @@ _LONGER = 1.03
 FIRST_WAY = 2.0
 # First trial a/h where `balance_radius`, which is of a half-space, is too large for the layer.
 _THIN = 10.0
-# Largest number of contacts of a path that are checked for touching outside.
-_CHECKED = 12
 
 
 def work_of_adhesion(scene: Scene) -> float:
@@ -158,7 +157,7 @@ def refuse_touching(contacts: Adhesive, radius: FloatArray, depth: FloatArray) -
         refuse_touching_outside(scene, surface_of(springs, widest, float(springs.at([widest]).g[0])))
     except UnsupportedSceneError:
         order = np.argsort(radius)[::-1]
-        for i in order[:: -(-order.size // _CHECKED)].tolist():
+        for i in order[:: -(-order.size // CHECKED)].tolist():
             refuse_touching_outside(scene, surface_of(springs, float(radius[i]), float(depth[i]), is_singular=True))
 
 

@@ -38,8 +38,6 @@ Progress: TypeAlias = Callable[[int, int], None]
 _PRESCRIBED = (ContactRadii, IndentationDepths, NormalForces)
 # Scenes between two reports of progress.
 _CHUNK = 512
-# Number of scenes with one indenter from which on they are solved together.
-_SEVERAL = 4
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -200,7 +198,7 @@ def _together(scenes: list[Scene], flat_punch: FlatPunchSource) -> FloatArray:
 def _on_layers(scenes: list[Scene], flat_punch: FlatPunchSource) -> FloatArray:
     """The same of one indenter that is no power law, scenes that must be solved by themselves one by one."""
     found = np.full((4, len(scenes)), np.nan)
-    if isinstance(flat_punch, IntegralEquation) and takes_part(scenes[0]) and len(scenes) >= _SEVERAL:
+    if isinstance(flat_punch, IntegralEquation) and takes_part(scenes[0]):
         found = equilibria_on_layers(scenes, flat_punch.sizes)
     for number in np.flatnonzero(np.isnan(found).any(axis=0)):
         path = solve_elastic(scenes[number], flat_punch, {})

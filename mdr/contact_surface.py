@@ -16,7 +16,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.polynomial import legendre
 
-from bem.equation import Radius
+from bem.equation import FAR, Radius
 from bem.numerics import even_bessel, even_legendre, gauss, graded, special
 from contact import InvalidInput
 from contact.records.validation import FloatArray
@@ -27,8 +27,6 @@ from mdr.spring_bed import Springs
 _WIDE, _MORE = 3.0, 2.0
 # Share of the contact radius within which kinks count as the axis.
 _CENTRE = 1e-3
-# Radius over a up to which all displacements outside share one table of wave numbers.
-_NEAR = 4.0
 # Wave numbers that are summed at a time.
 _CHUNK = 20_000
 # A graded layer's 1 - chi falls like 1/k: the displacement outside takes so many times more wave numbers, up to k a of
@@ -222,7 +220,7 @@ class Surface:
         """int_0^inf (1 - chi) phi^(k) J_0(kr) dk [m]."""
         if self.kernel.is_uniform:
             return 0.0
-        kappa, weighted = self._weighted_spectrum(2.0 ** np.ceil(np.log2(max(float(far.max()) / self.a, _NEAR))))
+        kappa, weighted = self._weighted_spectrum(2.0 ** np.ceil(np.log2(max(float(far.max()) / self.a, FAR))))
         total, j0 = np.zeros(far.shape[0]), special().j0
         for part in range(0, kappa.size, _CHUNK):
             total = total + j0(far / self.a * kappa[part : part + _CHUNK]) @ weighted[part : part + _CHUNK]

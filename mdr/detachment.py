@@ -28,10 +28,8 @@ _PINNED = POINTS // 5
 # A punch's tension may be largest in its centre from this Poisson's ratio on; beyond this a/h it keeps its shape.
 _CONFINED, _THINNEST, _INSIDE = 0.45, 50.0, 0.1
 # Change between resolutions where contact is lost, over that of other states: it is the place of a minimum, which moves
-# by the slope of the branch's error. With 1 two of fifty graded layers are not covered.
+# by the slope of the branch's error, and is rounded. With 1 two of fifty graded layers are not covered.
 _PLACE = 2.0
-# Rounding errors where contact is lost, over those of other states: the place itself is rounded there.
-_LOST = 2.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,7 +141,7 @@ def _detachment_errors(own: Withdrawal, other: Withdrawal, control: int) -> dict
         found[name] = stated_error(values[row], share * direct[row], scale=size, floor=rounding[row] / size)
     first, second = (one.branch.pull_off(control, one.start) for one in (own, other))
     lost = np.array([first["pull_off_contact_radius"]])
-    floors = _LOST * own.contacts.rounding(lost)[:, 0] if lost[0] else np.zeros(2)
+    floors = own.contacts.rounding(lost)[:, 0] if lost[0] else np.zeros(2)
     floor = {"pull_off_depth": floors[DEPTH], "pull_off_contact_radius": 1e-13 * lost[0]}
     for name, value in first.items():
         size = abs(value) or 1.0

@@ -43,7 +43,7 @@ from mdr.spring_bed import Springs, SpringValues, State
 # A stated error, or the function that computes it.
 StatedError: TypeAlias = FloatArray | Callable[[], FloatArray]
 # States of a path at which errors are computed and contacts are checked; the largest change counts for all of them.
-_COMPARED, _CHECKED = 8, 12
+_COMPARED, CHECKED = 8, 12
 # Radii inside, and radii outside over the contact radius, at which fields are compared.
 _INSIDE, _OUTSIDE = 8, np.array([1.001, 1.02, 2.0, 4.0])
 # Relative rounding error of pressure and displacement by their quadratures.
@@ -176,7 +176,7 @@ def refuse_inadmissible(scene: Scene, springs: Springs, state: State) -> None:
     """
     if is_simple(scene):
         return
-    some = _spread(state.radius, _CHECKED).tolist()
+    some = _spread(state.radius, CHECKED).tolist()
     for i in reversed(some):
         a, widest = float(state.radius[i]), i == some[-1]
         if scene.layer.is_uniform and not widest:

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from bem.kernels.of_layer import ContactKernel, surface_kernel
-from bem.kernels.stack import SurfaceKernel
+from bem.kernels.stack import StackKernel
 from contact import CoatedPair, InvalidInput, UnsupportedSceneError
 from contact.records.validation import FloatArray
 from mdr.spring_bed import Springs
@@ -35,7 +35,7 @@ class PairKernel:
         ratio: Thickness of the thicker coating over that of the thinner one.
     """
 
-    thinner: SurfaceKernel
+    thinner: StackKernel
     ratio: float
 
     tail: ClassVar[tuple[float, ...]] = ()

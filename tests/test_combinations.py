@@ -5,14 +5,6 @@ import pytest
 from contact import scene_to_mapping
 from tests.combinations import BY_NAME, PAGE, compared, covering, others, outcome, required, rows, scene_of, written
 
-# Silent differences that wait for their cure, by their draw on the page.
-KNOWN = {
-    "26.5": "boundary elements on a graded layer state a third of the error of the force at the loss of contact",
-    "40.5": "boundary elements on a graded layer, worn paraboloid, state a fifth of the error of a pull-off depth",
-    "71.5": "boundary elements on a graded layer state 0.9 of the error of a pull-off depth",
-    "73.5": "boundary elements on a graded layer state half of the error of a pull-off depth",
-}
-
 
 def _id(seed):
     return f"{seed[0]}.{seed[1]}"
@@ -20,11 +12,7 @@ def _id(seed):
 
 def _cases():
     """Rows of the page that the fast tests answer again."""
-    return [pytest.param(*row, id=_id(row[1]), marks=_marks(_id(row[1]))) for row in _cheap()]
-
-
-def _marks(draw):
-    return [pytest.mark.xfail(reason=KNOWN[draw], strict=True)] if draw in KNOWN else []
+    return [pytest.param(*row, id=_id(row[1])) for row in _cheap()]
 
 
 def _cheap():
@@ -58,4 +46,4 @@ def test_all_combinations_agree_or_are_refused():
     outcomes = [outcome(n, kinds, others(n)) for n, kinds in enumerate(covering())]
     PAGE.write_text(written(outcomes))
     wrong = {_id(one.seed): one for one in outcomes if not one.agrees}
-    assert wrong.keys() == KNOWN.keys(), [f"{draw}: {one}" for draw, one in wrong.items() if draw not in KNOWN]
+    assert not wrong, [f"{draw}: {one}" for draw, one in wrong.items()]

@@ -34,17 +34,21 @@ BEYOND: Final = 1.1
 
 @dataclass(frozen=True, eq=False)
 class SampledPunches:
-    """ln(kappa) and the coefficients of Q by polynomials of u = ln(1 + a/h), from the axis, where both are one.
+    """ln(kappa) and the coefficients of Q by polynomials of u^(1/m), u = ln(1 + a/h), both one at the axis.
+
+    m = 2 on graded layers, where they start like a ln(a), and one on others.
 
     Attributes:
         thickness: h [m].
         end: u at the largest radius.
+        power: m.
         growth: Chebyshev coefficients of ln(kappa), shape (n,).
         series: Of the coefficients of Q, shape (n, m).
     """
 
     thickness: float
     end: float
+    power: int
     growth: FloatArray
     series: FloatArray
 
@@ -53,13 +57,13 @@ class SampledPunches:
         """From discs at Chebyshev points."""
         h, x = pressing.layer.surface.thickness, series.chebpts2(nodes)
         if pressing.layer.is_half_space:
-            return cls(1.0, 1.0, np.zeros(2), np.ones((1, 1)))
-        end = log1p(radius / h)
-        radii = h * np.expm1(0.5 * end * (1.0 + x[1:]))
+            return cls(1.0, 1.0, 1, np.zeros(2), np.ones((1, 1)))
+        end, power = log1p(radius / h), 1 if pressing.layer.is_piecewise_uniform else 2
+        radii = h * np.expm1(end * (0.5 + 0.5 * x[1:]) ** power)
         radii[-1] = radius
         flat = [pressing.punch(a) for a in radii.tolist()]
         growth = np.asarray(series.chebfit(x, np.log([1.0, *(one.growth for one in flat)]), nodes - 1), np.float64)
-        found = cls(h, end, growth, np.ones((1, 1)))
+        found = cls(h, end, power, growth, np.ones((1, 1)))
         degree = flat[-1].degree - pressing.fewer
         rows = [np.eye(degree + 1)[0]]
         for a, one in zip(radii.tolist(), flat, strict=True):
@@ -70,7 +74,8 @@ class SampledPunches:
     def at(self, radius: float) -> Punches:
         """About one radius [m]."""
         u = log1p(radius / self.thickness)
-        x, steepness = 2.0 * u / self.end - 1.0, 2.0 / self.end * radius / (self.thickness + radius)
+        share = (u / self.end) ** (1.0 / self.power)
+        x, steepness = 2.0 * share - 1.0, 2.0 * share / (self.power * u) * radius / (self.thickness + radius)
         growth = exp(float(series.chebval(x, self.growth)))
         slope = growth * steepness * float(series.chebval(x, series.chebder(self.growth)))
         Q, change = (np.atleast_1d(series.chebval(x, c)) for c in (self.series, series.chebder(self.series)))

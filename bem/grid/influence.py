@@ -15,7 +15,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 from math import ceil, log, pi
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from scipy.fft import fht, fhtoffset
@@ -24,9 +24,11 @@ from scipy.special import itj0y0
 
 from bem.grid.transforms import cosine_plan
 from bem.kernels.of_layer import surface_kernel
-from bem.kernels.stack import SurfaceKernel
 from contact import ElasticLayer
 from contact.records.validation import FloatArray
+
+if TYPE_CHECKING:
+    from bem.kernels.of_layer import SurfaceKernel
 
 # Wavenumbers q of FFTLog. Half as many samples leave 7e-9 of V, twice as many 1e-9 as these do.
 SAMPLES: Final = 1024

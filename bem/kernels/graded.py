@@ -29,7 +29,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bem.kernels.stack import Material, Transfer, half_space
-from bem.numerics import Octaves, barycentric
+from bem.numerics import WAVES, Octaves, barycentric
 from contact.records.errors import NotConvergedError
 from contact.records.validation import FloatArray
 from contact.scene.graded_layer import GradedLayer
@@ -44,8 +44,6 @@ _FADED = 43.0
 TOLERANCE, ABSOLUTE = 1e-13, 1e-15
 # Chebyshev nodes over the depth between two breakpoints: exp(-61 z) is resolved by 64 to 1e-14, by 32 to 1e-5.
 _NODES = 64
-# Nodes per octave of wave numbers: the error is 1e-13 with 18 and 1e-7 with 9.
-_WAVES = 18
 # Wave number from which the tail's coefficients are fitted. Half has ten times the error, twice more rounding.
 _FAR = 80.0
 _SHARES = (1 - np.cos(np.pi * np.arange(1, 2 * _NODES, 2) / (2 * _NODES))) / 2
@@ -172,7 +170,7 @@ class GradedKernel:
     def transfers(self) -> Octaves:
         """U, W, Q, P times exp(kz) at nodes of the depth, over octaves of k: shape (n, fields x stretches x nodes)."""
         lowest = -2 - int(np.ceil(np.log2(self.longest)))
-        return Octaves(lambda k, _: self._followed(k), lowest, _WAVES)
+        return Octaves(lambda k, _: self._followed(k), lowest, WAVES)
 
     def _followed(self, k: FloatArray) -> FloatArray:
         """`transfers` at some wave numbers; zero on stretches below the reach of the waves."""

@@ -10,12 +10,12 @@ import dataclasses
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from math import inf
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
 import numpy as np
 
-from bem.kernels.stack import Sheet, StackKernel, SurfaceKernel
-from bem.numerics import Octaves
+from bem.kernels.stack import Sheet, StackKernel
+from bem.numerics import WAVES, Octaves
 from contact.records.errors import UnsupportedSceneError
 from contact.records.record import Record
 from contact.records.validation import FloatArray
@@ -25,14 +25,14 @@ from contact.scene.layer import ElasticBase, ElasticLayer, Layer, LayerStack
 if TYPE_CHECKING:
     from bem.kernels.graded import GradedKernel
 
+    SurfaceKernel: TypeAlias = StackKernel | GradedKernel
+
 _R = TypeVar("_R", bound=Record)
 # A kernel that was made for a layer serves the same layer in other units, whose numbers are a rounding or two off: so
 # many decimal digits are kept. What the others would change is a twentieth of the kernel's own tolerance.
 _DIGITS = 13
 # Units per thickness of a graded layer. With 4 wide contacts need more wave numbers, with 16 narrow ones do.
 _GRADED_UNITS = 8.0
-# Nodes per octave of the table of a graded kernel: 18 leave 1e-13, 9 leave 1e-7.
-_NODES = 18
 
 
 def surface_kernel(layer: ElasticLayer) -> SurfaceKernel:
@@ -175,7 +175,7 @@ class ContactKernel:
         surface = self.surface
         assert surface is not None
         lowest = -2 - int(np.ceil(np.log2(surface.longest)))
-        return Octaves(lambda k, _: (surface.chi(k) / k**self._power)[:, None], lowest, _NODES)
+        return Octaves(lambda k, _: (surface.chi(k) / k**self._power)[:, None], lowest, WAVES)
 
     def __getstate__(self) -> dict[str, Any]:
         """Without tables, which are made again where they are needed."""

@@ -8,16 +8,15 @@ that lies below a plane is a compliance C: 2 G k (U, W) = C (Q, P), symmetric an
 adds itself to what lies below by C_top = N + A M A^T, M = (C^-1 + K)^-1 (Redheffer's star product, as for waves in
 stratified media). Downwards b = A^T t_top, v_bottom = M b, t_bottom = b - K v_bottom. All are sums of positive terms
 that fade: nothing grows, nothing cancels. The surface answers with chi = C_WW/(2 (1 - nu)), of which Eqs. (29) and (31)
-are the cases of one layer. Matrices have the shape (2, 2, n), rows and columns in the order U, W. `SurfaceKernel` is
-what the equations ask of any kind of layer.
+are the cases of one layer. Matrices have the shape (2, 2, n), rows and columns in the order U, W. Kernels
+of all kinds of layers have `longest`, `tail`, `chi`, `one_minus_chi` and `descent`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Hashable
 from dataclasses import dataclass
 from math import factorial, inf
-from typing import Any, ClassVar, Literal, NamedTuple, Protocol, TypeAlias
+from typing import Any, ClassVar, Literal, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.polynomial.polynomial import polyval
@@ -52,40 +51,6 @@ class Material(NamedTuple):
     stiffens: FloatArray | float
     turns: FloatArray | float
     is_top: bool
-
-
-class Descent(Protocol):
-    """The inside of a layer under a unit pressure of wave numbers k, shape (n,), on the surface; depths over h."""
-
-    def places(self, z: FloatArray) -> NDArray[Any]:
-        """Number of the part that holds each depth, shape (m,): depths of one part are asked together."""
-
-    def material(self, place: int, z: FloatArray) -> Material:
-        """The material at depths of one part."""
-
-    def at(self, place: int, z: FloatArray) -> Transfer:
-        """Displacements and tractions at depths of one part, shape (m, 1): arrays of shape (m, n)."""
-
-
-class SurfaceKernel(Hashable, Protocol):
-    """Compliance of a layer's surface relative to the half-space of its surface material."""
-
-    @property
-    def longest(self) -> float:
-        """Length over h beyond which chi has its limit for small k: chi is smooth on the scale of 1/longest."""
-
-    @property
-    def tail(self) -> tuple[float, ...]:
-        """c_1, c_2, .. of 1 - chi ~ sum c_j/k^j for large k on a graded surface; none where it falls exponentially."""
-
-    def chi(self, wavenumber: NDArray[Any]) -> NDArray[Any]:
-        """chi at wave numbers k > 0, or complex ones with 0 <= arg k < pi/2, any shape."""
-
-    def one_minus_chi(self, wavenumber: NDArray[Any]) -> NDArray[Any]:
-        """1 - chi, also where it is exponentially small."""
-
-    def descent(self, k: FloatArray) -> Descent:
-        """The inside at wave numbers k > 0, shape (n,)."""
 
 
 def symmetric(uu: Any, uw: Any, ww: Any) -> Matrix:
@@ -216,6 +181,7 @@ class StackKernel:
         """One layer, "bonded" or "unbonded" to a rigid base."""
         return cls((Sheet(1.0, 1.0, nu, support == "unbonded"),), None)
 
+    # c_1, c_2, .. of 1 - chi ~ sum c_j/k^j for large k: none, 1 - chi falls exponentially.
     tail: ClassVar[tuple[float, ...]] = ()
 
     @property
@@ -230,7 +196,7 @@ class StackKernel:
 
     @property
     def longest(self) -> float:
-        """Total thickness, or what stretches farther: a stiff film spreads a load over (E1/E2) h."""
+        """Length over h beyond which chi has its limit for small k: the total thickness; of stiff films (E1/E2) h."""
         stiffness = [sheet.shear_modulus for sheet in (*self.sheets, *([self.base] if self.base else []))]
         total = sum(sheet.thickness for sheet in self.sheets)
         return total * max(stiffness) / min(stiffness) if self.sheets else 1.0
@@ -278,7 +244,7 @@ class StackKernel:
 class StackDescent:
     """The inside of a stack under a unit pressure of wave numbers k > 0, shape (n,), on the surface.
 
-    Depths count in thicknesses of the first layer.
+    Depths count in thicknesses of the first layer. `places` numbers the parts: depths of one part are asked together.
     """
 
     def __init__(self, kernel: StackKernel, k: FloatArray) -> None:
