@@ -19,7 +19,7 @@ from numpy.polynomial import Chebyshev
 
 from bem.equation import USUAL
 from bem.kernels.of_layer import stack_kernel
-from bem.numerics import graded
+from bem.numerics import gauss, graded
 from contact import ContactPath, FlatPunch, InvalidInput, Scene
 from contact.records.validation import FloatArray
 from contact.scene.layer import ElasticLayer
@@ -105,11 +105,23 @@ def _slip(layer: ElasticLayer, a: float) -> tuple[Chebyshev, float, bool]:
 
 
 def _mean(scene: Scene, springs: Springs, a: float, depth: float, slip: Chebyshev) -> float:
-    """int p_0 u_1 dA/F_0 over r = a sin(angle), cut where the profile is not analytic."""
+    """int p_0 u_1 dA/F_0 = int_0^a phi V dt/int_0^a phi dt at t = a sin(tau), phi being the Abel density of p_0.
+
+    Between two breaks of the profile phi is analytic in the square root of the distance from the inner one.
+    """
     surface = surface_of(springs, a, depth, is_singular=is_singular(scene, a))
     ends = np.arcsin(np.array([0.0, *(b for b in springs.tip.breaks if b < a), a]) / a)
-    v, w = graded(12, 8)
-    angle = (ends[:-1, None] + np.diff(ends)[:, None] * v).ravel()
-    r = a * np.minimum(np.sin(angle), 1 - 1e-14)
-    load = (np.diff(ends)[:, None] * w).ravel() * r * np.cos(angle) * surface.pressure(r)
-    return float(load @ slip(angle) / load.sum())
+    (v, w), (v_last, w_last), span = gauss(16), graded(12), np.diff(ends)
+    tau = np.append((ends[:-2, None] + span[:-1, None] * v * v).ravel(), ends[-2] + span[-1] * v_last)
+    weight = np.append((span[:-1, None] * 2 * v * w).ravel(), span[-1] * w_last)
+    load = weight * np.cos(tau) * surface.density(a * np.minimum(np.sin(tau), 1.0))
+    return float(load @ _slip_density(slip, tau) / load.sum())
+
+
+def _slip_density(slip: Chebyshev, tau: FloatArray) -> FloatArray:
+    """V = d/dt int_0^t u_1 r dr/sqrt(t^2 - r^2) = int_0^(pi/2) (u_1 + r du_1/dr) sin(b) db, r = a sin(tau) sin(b)."""
+    v, w = graded(12)  # at tau = pi/2 the integral has a logarithm
+    b = np.pi / 2 * v
+    sine, cosine = np.sin(tau)[:, None] * np.sin(b), np.hypot(np.cos(tau)[:, None], np.sin(tau)[:, None] * np.cos(b))
+    angle = np.arctan2(sine, cosine)  # arcsin(r/a)
+    return np.asarray((slip(angle) + sine / cosine * slip.deriv()(angle)) @ (np.pi / 2 * w * np.sin(b)))
