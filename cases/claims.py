@@ -193,16 +193,13 @@ class Claim(Study, ABC):
             scene=scene.name,
             methods=self.labels(use),
             quantity=self.quantity,
-            status=judged.status,
-            error=judged.error,
             expected=self.expected(scene),
             tolerance=self.tolerance_of(use.label),
-            fraction=judged.fraction,
             uncertainty=self.stated(scene, [answer, *others]) if compared else {},
             why=why,
             shared=both,
-            message=judged.message,
             identity=self.identity(scene, self.labels(use)) if compared else "",
+            **vars(judged),
         )
 
 

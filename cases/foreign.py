@@ -13,6 +13,7 @@ import math
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import replace
 from numbers import Real
+from operator import attrgetter
 from typing import Any, Final
 
 from cases.case import Case, CaseScene
@@ -172,13 +173,9 @@ def _deciding(claims: list[Agree], first: str, second: str) -> Agree:
     about = {label: [claim for claim in claims if label in _pair(claim)] for label in (first, second)}
     pair = [claim for claim in about[first] if claim in about[second]]
     if pair:
-        return min(pair, key=_tolerance)
-    known = [min(found, key=_tolerance) for found in about.values() if found]
-    return max(known, key=_tolerance) if known else min(claims, key=_tolerance)
-
-
-def _tolerance(claim: Agree) -> float:
-    return claim.tolerance
+        return min(pair, key=attrgetter("tolerance"))
+    known = [min(found, key=attrgetter("tolerance")) for found in about.values() if found]
+    return max(known, key=attrgetter("tolerance")) if known else min(claims, key=attrgetter("tolerance"))
 
 
 def with_restated(case: Case, names: Iterable[str]) -> Case:

@@ -88,38 +88,31 @@ class Change:
     new: Values | None
 
     @property
-    def comparable(self) -> bool:
-        """Whether both exist with equal unit and number of steps."""
+    def largest(self) -> tuple[int, float] | None:
+        """The step that changed most, and new minus old there; None where nothing can be subtracted."""
         old, new = self.old, self.new
-        return old is not None and new is not None and old.unit == new.unit and len(old.values) == len(new.values)
-
-    @property
-    def step(self) -> int:
-        """The step that changed most, 0 where nothing can be subtracted."""
-        if self.old is None or self.new is None or not self.comparable:
-            return 0
-        changes = [abs(x - b) for x, b in zip(self.new.values, self.old.values, strict=True)]
-        return changes.index(max(changes)) if changes else 0
+        if old is None or new is None or old.unit != new.unit or not 0 < len(old.values) == len(new.values):
+            return None
+        changes = [x - b for x, b in zip(new.values, old.values, strict=True)]
+        step = max(range(len(changes)), key=lambda step: abs(changes[step]))
+        return step, changes[step]
 
     @property
     def values(self) -> tuple[float | None, float | None]:
         """Old and new value at that step."""
-        return tuple(q.values[self.step] if q is not None and q.values else None for q in (self.old, self.new))  # type: ignore[return-value]  # two
+        step = self.largest[0] if self.largest else 0
+        return tuple(q.values[step] if q is not None and q.values else None for q in (self.old, self.new))  # type: ignore[return-value]  # two
 
     @property
     def in_tolerances(self) -> float | None:
         """New minus old over the permitted change; None where nothing can be subtracted."""
-        old, new = self.values
-        if self.old is None or old is None or new is None or not self.comparable:
-            return None
-        return (new - old) / permitted_change(self.old, self.step)
+        return self.largest[1] / permitted_change(self.old, self.largest[0]) if self.old and self.largest else None
 
     @property
     def in_stated_errors(self) -> float | None:
         """New minus old over the error stated now; None where the method states none, or zero."""
-        old, new = self.values
-        stated = self.new.error[self.step] if self.new and self.new.error else 0.0
-        return (new - old) / stated if stated and self.comparable and old is not None and new is not None else None
+        stated = self.new.error[self.largest[0]] if self.new and self.new.error and self.largest else 0.0
+        return self.largest[1] / stated if stated and self.largest else None
 
     @property
     def loosens(self) -> bool:

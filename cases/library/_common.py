@@ -235,6 +235,7 @@ def in_millimetres(scene: AnyScene) -> AnyScene:
 # A method that does not model a scene answers with its reason.
 MDR = MethodUse(label="mdr")
 FEM = MethodUse(label="fem", settings={"order": 4, "growth": 0.33, "edge_cell": 1e-7, "truncation": 1e-10})
+PLAIN_FEM = MethodUse(label="fem")
 QUICK_FEM = MethodUse(label="fem", settings={"accuracy": 1e-4})
 DETACHING_FEM = MethodUse(label="fem", settings={"accuracy": 3e-5})
 PEELING_FEM = MethodUse(label="fem", settings={"accuracy": 5e-5})

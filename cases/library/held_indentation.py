@@ -147,7 +147,7 @@ CASE = paper(
     question="Do MDR and finite elements follow a prescribed history, and with which orders?",
     equations=("Eq. (51)", "Eq. (52)"),
     scenes=(*RELAXING_HALF_SPACES, *RELAXING_LAYERS, ELASTIC, *CREEPING_HALF_SPACES, *LAYERS, *EASED),
-    methods=(c.MDR, impact.FEM),
+    methods=(c.MDR, c.PLAIN_FEM),
     claims=(
         c.equal("force on the half-space", *BY_DEPTH, lee_and_radok, RELAXING_HALF_SPACES, LEE_AND_RADOK, **CLOSED),
         c.equal("depth on the half-space", *BY_FORCE, creep, CREEPING_HALF_SPACES, WHY["creep"], **CLOSED),

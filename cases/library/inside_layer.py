@@ -100,7 +100,7 @@ LAWS = {
     "the base holds": ("base_inside", 1e-4),
     "the pressure comes back below the surface": ("surface_inside", 1e-3),
 }
-FILM: c.Words = {"largest": 0.15, "methods": ("mdr",)}
+FILM_LIMIT = "thin limit of the pressure inside", "axial_stress_inside"
 CASE = paper(
     __name__,
     __doc__,
@@ -119,9 +119,7 @@ CASE = paper(
             for name, (quantity, of_mesh) in LAWS.items()
         ),
         *r.studies(REFINED, CELLS, ORDERS, against="mdr", nightly=True),
-        c.approach(
-            "thin limit of the pressure inside", "axial_stress_inside", THIN, film_pressure, WHY["film"], **FILM
-        ),
+        c.approach(*FILM_LIMIT, THIN, film_pressure, WHY["film"], largest=0.15, methods=("mdr",)),
         *inside_costs(REFINED[0].name),
     ),
 )

@@ -10,7 +10,6 @@ and v0 enter only as a product. Kinetic, stored and dissipated energy must add u
 from cases.case import CaseScene, paper
 from cases.claims import Law
 from cases.cost import impact_costs
-from cases.declare.methods import MethodUse
 from cases.effects import Ablation
 from cases.library import _common as c
 from cases.library import _refinements as r
@@ -32,7 +31,6 @@ RADIUS_OF_CURVATURE = 1e-2  # m
 VELOCITY = 1.27479e-3 / RADIUS_OF_CURVATURE
 # chi_HS of these data, Eq. (53).
 IMPACT_NUMBER = 2.65
-FEM = MethodUse(label="fem")
 
 
 def impact(thickness: float) -> CaseScene:
@@ -81,7 +79,7 @@ CASE = paper(
     question="Does MDR hold in the rebound from a layer, where it was never proven?",
     equations=("Eq. (51)", "Eq. (52)", "Eq. (53)", "Fig. 12"),
     scenes=EVERY_IMPACT,
-    methods=(c.MDR, FEM, c.BEM, c.EQUATION, c.TABLE),
+    methods=(c.MDR, c.PLAIN_FEM, c.BEM, c.EQUATION, c.TABLE),
     claims=(
         c.equal("restitution on layers", RESTITUTION, KNOWN, ON_LAYERS, WHY["reference"], **ON_LAYER),
         c.equal("restitution on the half-space", RESTITUTION, KNOWN, (HALF_SPACE,), WHY["reference"], tolerance=1e-7),

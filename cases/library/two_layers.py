@@ -56,10 +56,10 @@ SCENES = tuple(
     for ratio in (0.1, 1.0, 5.0)
     if indenter == "paraboloid" or label not in PULLING
 )
-SAME = s.stack((0.3, 1.0, 0.4), (0.7, 1.0, 0.4))
-EQUAL = tuple(s.pressed("two equal layers", SAME, 1.0, indenter) for indenter in s.INDENTERS)
-FLOWING = LAYERS["both incompressible"]
-THIN = tuple(s.pressed("thin incompressible", FLOWING, ratio, "flat punch", sampled=False) for ratio in (40.0, 80.0))
+SAME = "two equal layers", s.stack((0.3, 1.0, 0.4), (0.7, 1.0, 0.4)), 1.0
+EQUAL = tuple(s.pressed(*SAME, indenter) for indenter in s.INDENTERS)
+FLOWING = "thin incompressible", LAYERS["both incompressible"]
+THIN = tuple(s.pressed(*FLOWING, ratio, "flat punch", sampled=False) for ratio in (40.0, 80.0))
 # Legendre-Galerkin in Fourier space, E* of the upper layer, lengths in H, and R = H; here R = 10 H: stiffness, depth
 # and force.
 PUBLISHED = {

@@ -15,7 +15,7 @@ from functools import cache
 from itertools import pairwise
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import ClassVar, Self
+from typing import ClassVar, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -63,21 +63,6 @@ class Section:
     radius: FloatArray
     depth: FloatArray
     number: NDArray[np.int64]
-
-    @property
-    def surface(self) -> NDArray[np.int64]:
-        """Numbers of the nodes at the surface."""
-        return np.asarray(self.number[:, -1])
-
-    @property
-    def base(self) -> NDArray[np.int64]:
-        """Numbers of the nodes at the base."""
-        return np.asarray(self.number[:, 0])
-
-    @property
-    def axis(self) -> NDArray[np.int64]:
-        """Numbers of the nodes at the axis."""
-        return np.asarray(self.number[0])
 
     def nodes(self) -> Iterator[tuple[int, float, float]]:
         """Number, radius and height of every node."""
@@ -153,8 +138,7 @@ STEP = 1e-2
 AWAY = (0.08, 0.04, 0.02, 0.01, 0.005)
 
 
-@dataclass(frozen=True, kw_only=True)
-class Mesh:
+class Mesh(NamedTuple):
     """Values of one mesh at one contact radius: a [m], depth [m], force [N] and stiffness [N/m]."""
 
     radius: float
@@ -163,16 +147,14 @@ class Mesh:
     stiffness: float
 
 
-@dataclass(frozen=True, kw_only=True)
-class Exponents:
+class Exponents(NamedTuple):
     """Depth and stiffness grow like these powers of the contact radius; a depth that is free has an infinite one."""
 
     depth: float
     stiffness: float
 
 
-@dataclass(frozen=True, kw_only=True)
-class Converged:
+class Converged(NamedTuple):
     """The four quantities of one state, their errors, and the observed order of the stiffness."""
 
     values: tuple[float, ...]
@@ -254,11 +236,8 @@ class CalculiX:
 
 
 def _loadings(scene: Scene) -> tuple[type, ...]:
-    return (
-        (IndentationDepths, NormalForces)
-        if isinstance(scene.indenter, FlatPunch)
-        else (ContactRadii, IndentationDepths)
-    )
+    punch = isinstance(scene.indenter, FlatPunch)
+    return (IndentationDepths, NormalForces if punch else ContactRadii)
 
 
 def _place(scene: Scene, value: float, cells: int) -> tuple[float, Exponents]:
@@ -331,23 +310,17 @@ def _converged(meshes: list[Mesh], scene: Scene, exponents: Exponents) -> Conver
     k_N times that of the depth, and the stiffness by its exponent times the radius's.
     """
     middle, fine = meshes[1:]
-    given = {ContactRadii: "radius", IndentationDepths: "depth", NormalForces: "force"}[type(scene.loading)]
-    fixed = {given, "radius"} if isinstance(scene.indenter, FlatPunch) else {given}
+    punch, loading = isinstance(scene.indenter, FlatPunch), scene.loading
     radius, radius_error = last_change(middle.radius, fine.radius)
     depth, depth_error = last_change(middle.depth, fine.depth)
     force, force_error = extrapolated(*(mesh.force for mesh in meshes))
     stiffness, stiffness_error = extrapolated(*(mesh.stiffness for mesh in meshes))
-    if isinstance(scene.indenter, FlatPunch):
-        depth_error = 0.0 if given == "depth" else depth_error
-    errors = {
-        "radius": 0.0 if "radius" in fixed else radius_error,
-        "depth": depth_error,
-        "force": 0.0 if given == "force" else force_error + stiffness * depth_error,
-        "stiffness": stiffness_error
-        + (0.0 if "radius" in fixed else exponents.stiffness * stiffness * radius_error / radius),
-    }
-    order = observed_order(*(mesh.stiffness for mesh in meshes))
-    return Converged(values=(radius, depth, force, stiffness), errors=tuple(errors.values()), order=order)
+    radius_error = 0.0 if punch or isinstance(loading, ContactRadii) else radius_error
+    depth_error = 0.0 if punch and isinstance(loading, IndentationDepths) else depth_error
+    force_error = 0.0 if isinstance(loading, NormalForces) else force_error + stiffness * depth_error
+    stiffness_error += exponents.stiffness * stiffness * radius_error / radius
+    values, errors = (radius, depth, force, stiffness), (radius_error, depth_error, force_error, stiffness_error)
+    return Converged(values=values, errors=errors, order=observed_order(*(mesh.stiffness for mesh in meshes)))
 
 
 # Safety factor of three grids whose observed order is none that the mesh could have (VERIFICATION, Roache).
@@ -439,15 +412,8 @@ def reactions(text: str) -> Reactions:
     """
     with TemporaryDirectory(prefix="calculix-") as folder:
         Path(folder, "layer.inp").write_text(text, encoding="ascii")
-        threads = {"OMP_NUM_THREADS": os.environ.get("OMP_NUM_THREADS", "1")}
-        done = subprocess.run(
-            [program(), "-i", "layer"],
-            cwd=folder,
-            capture_output=True,
-            text=True,
-            check=False,
-            env={**os.environ, **threads},
-        )
+        command, threads = [program(), "-i", "layer"], {"OMP_NUM_THREADS": "1"} | os.environ
+        done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False, env=threads)
         printed = Path(folder, "layer.dat")
         if done.returncode or not printed.exists():
             raise NotConvergedError(f"calculix ended with code {done.returncode}: {_error(done.stdout)}")
@@ -493,7 +459,7 @@ def deck(mesh: Section, layer: Layer, contact_radius: float, heights: FloatArray
         heights: of the profile at the mesh's radii [m].
     """
     touching = [i for i in range(mesh.radius.size) if mesh.radius[i] <= contact_radius * (1 + 1e-12)]
-    contact = [int(mesh.surface[i]) for i in touching]
+    contact = [int(mesh.number[i, -1]) for i in touching]
     element = "CAX8R" if layer.poissons_ratio > NEARLY_INCOMPRESSIBLE else "CAX8"
     held = [("BASE", 2), ("AXIS", 1), *([("BASE", 1)] if layer.support == "bonded" else [])]
     return "\n".join(
@@ -504,8 +470,8 @@ def deck(mesh: Section, layer: Layer, contact_radius: float, heights: FloatArray
             f"*ELEMENT, TYPE={element}, ELSET=LAYER",
             *(",".join(map(str, (e, *nodes))) for e, nodes in enumerate(mesh.elements(), 1)),
             *_set("CONTACT", contact),
-            *_set("BASE", (int(n) for n in mesh.base if n)),
-            *_set("AXIS", (int(n) for n in mesh.axis if n)),
+            *_set("BASE", (int(n) for n in mesh.number[:, 0] if n)),
+            *_set("AXIS", (int(n) for n in mesh.number[0] if n)),
             *_set("EDGE", contact[-1:]),
             "*MATERIAL, NAME=LAYER",
             "*ELASTIC",

@@ -45,15 +45,12 @@ def rows(monkeypatch, tmp_path):
     return rows
 
 
-def test_a_hang_ends_by_default_and_is_named(rows):
+def test_a_hang_ends_by_default_after_five_minutes_and_is_named(rows):
+    """Here the default is half a second; that another limit may be given is seen in `test_runner`."""
+    assert FOREIGN_TIME_LIMIT == 300.0
     found = rows(Hanging)
     assert {(row.status, row.reason) for row in found["mine"]} == {(Status.TIMEOUT, "mine: not finished after 0.5 s")}
     assert {row.status for row in found["fast"]} == {Status.PASS}
-
-
-def test_the_limit_is_five_minutes_and_another_one_may_be_told(rows):
-    assert FOREIGN_TIME_LIMIT == 300.0
-    assert {row.reason for row in rows(Hanging, time_limit=0.1)["mine"]} == {"mine: not finished after 0.1 s"}
 
 
 def test_leaving_the_program_is_a_crash_that_is_named(rows):
