@@ -32,6 +32,7 @@ from reports.words import (
     scaled_column,
     scaled_unit,
     small,
+    with_article,
 )
 
 if TYPE_CHECKING:
@@ -80,7 +81,7 @@ def _title(solution: Solution) -> str:
     """Method, indenter, layer: "MDR: TruncatedCone on a bonded layer, nu = 0.45"."""
     effects = "".join(f", {type(effect).__name__}" for effect in solution.scene.effects)
     indenter = type(solution.scene.indenter).__name__
-    return f"{display_name(solution.method)}: {indenter} on a {solution.scene.layer.title}{effects}"
+    return f"{display_name(solution.method)}: {indenter} on {with_article(solution.scene.layer.title)}{effects}"
 
 
 def _readable(value: float, uncertainty: float) -> str:
