@@ -32,6 +32,7 @@ from reports.words import (
     scaled_column,
     scaled_unit,
     small,
+    with_article,
 )
 
 if TYPE_CHECKING:
@@ -80,7 +81,7 @@ def _title(solution: Solution) -> str:
     """Method, indenter, layer: "MDR: TruncatedCone on a bonded layer, nu = 0.45"."""
     effects = "".join(f", {type(effect).__name__}" for effect in solution.scene.effects)
     indenter = type(solution.scene.indenter).__name__
-    return f"{display_name(solution.method)}: {indenter} on a {solution.scene.layer.title}{effects}"
+    return f"{display_name(solution.method)}: {indenter} on {with_article(solution.scene.layer.title)}{effects}"
 
 
 def _readable(value: float, uncertainty: float) -> str:
@@ -142,18 +143,24 @@ def critical_facts(solution: Solution) -> list[tuple[str, str]]:
     return [(quantity_words(name), _critical_value(solution, name)) for name in single_numbers(solution)]
 
 
+def solution_notes(solution: Solution) -> list[tuple[str, str]]:
+    """What to know before the numbers: a warning of deep contacts, and notes that no `validity` line replaces."""
+    warning = depth_note(solution.scene, depths_of(solution))
+    replaced: tuple[str, ...] = ()
+    if isinstance(solution.scene.layer, Layer) and isinstance(solution, ContactPath):
+        replaced = told_of_friction(solution.scene.layer, solution.contact_radius)
+    notes = [("note", note) for note in solution.notes if note not in (warning, *replaced)]
+    return [("warning", warning), *notes] if warning else notes
+
+
 def solution_facts(solution: Solution) -> list[tuple[str, str]]:
-    """Error estimate, cost, scene and notes of an answer, without the notes that the command prints more closely."""
+    """Error estimate, cost, stages and scene of an answer."""
     worst = {name: float(np.max(error)) for name, error in solution.error_estimate.items() if np.size(error)}
     estimates = ", ".join(f"{quantity_words(name)} {small(error)}" for name, error in worst.items())
     facts = [("relative error estimate", estimates)] if estimates else []
     facts += [("cost", f"{duration(solution.cost.wall_seconds)}, {solution.cost.unknowns} unknowns")]
     facts += [("stages", ", ".join(map(_stage, solution.stages)))] if solution.stages else []
-    facts += [("scene", scene_line(solution.scene))]
-    elsewhere = [depth_note(solution.scene, depths_of(solution))]
-    if isinstance(solution.scene.layer, Layer) and isinstance(solution, ContactPath):
-        elsewhere += told_of_friction(solution.scene.layer, solution.contact_radius)
-    return facts + [("note", note) for note in solution.notes if note not in elsewhere]
+    return [*facts, ("scene", scene_line(solution.scene))]
 
 
 def _critical_value(solution: Solution, name: str) -> str:

@@ -66,8 +66,7 @@ def _panels(groups: Sequence[Any], draw: Callable[[Axes, Any], None]) -> Figure:
 
 def logarithmic(size: tuple[float, float], x_label: str, y_label: str) -> tuple[Figure, Axes]:
     """One pair of logarithmic axes."""
-    drawing = Figure(figsize=size, layout="constrained")
-    axes = drawing.subplots()
+    drawing, (axes,) = panels(1, size=size)
     axes.set(xscale="log", yscale="log", xlabel=x_label, ylabel=y_label)
     return drawing, axes
 
@@ -253,8 +252,7 @@ def _draw_costs(costs: Sequence[CostOfAccuracy]) -> Figure:
 
 
 def _draw_ends(tests: Sequence[StressTest]) -> Figure:
-    drawing = Figure(figsize=(FRONT[0], max(FRONT[1], 1.0 + 0.24 * len(tests))), layout="constrained")
-    axes = drawing.subplots()
+    drawing, (axes,) = panels(1, size=(FRONT[0], max(FRONT[1], 1.0 + 0.24 * len(tests))))
     for place, test in enumerate(tests):
         number = completed(test)
         failed = number < len(test.steps) and test.steps[number].status == Status.FAIL
@@ -269,8 +267,7 @@ def _draw_ends(tests: Sequence[StressTest]) -> Figure:
 
 
 def _draw_agreement(found: Sequence[Verdict]) -> Figure:
-    drawing = Figure(figsize=(5.0, 0.8 + 0.4 * len(found)), layout="constrained")
-    axes = drawing.subplots()
+    drawing, (axes,) = panels(1, size=(5.0, 0.8 + 0.4 * len(found)))
     shares = [(difference(v) / v.tolerance, _stated(v) / v.tolerance) for v in found]
     least = min((share for pair in shares for share in pair if share > 0.0), default=1.0)
     left = 10.0 ** math.floor(math.log10(max(1e-6, min(least, 0.1))))

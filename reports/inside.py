@@ -19,7 +19,7 @@ from contact.answer.inside import InsideFields
 from contact.records.units import prefix_for
 from contact.records.validation import FloatArray
 from reports.style import BLACK, GREY
-from reports.words import display_name, with_prefix
+from reports.words import display_name, with_article, with_prefix
 
 # Points along r and z of the half-section: half as many show corners in the contours.
 POINTS = (200, 100)
@@ -118,7 +118,7 @@ def _headline(halves: tuple[Half, Half], *, compared: bool) -> str:
     size = "at true size" if left.enlarged == 1.0 else f"{left.enlarged:g} times"
     stated = [f"{display_name(h.path.method)} {h.fields.error_estimate['stress']:.0e}" for h in halves[: 1 + compared]]
     return (
-        f"{scene.indenter.kind().replace('_', ' ')} on a {scene.layer.title}, "
+        f"{scene.indenter.kind().replace('_', ' ')} on {with_article(scene.layer.title)}, "
         f"a = {left.path.contact_radius[-1] / left.unit:.4g} {_prefix(left)}m\n"
         f"error over the largest stress, as stated: {', '.join(stated)}\n"
         f"thick line: contact; {'dotted: interfaces; ' if _interfaces(left) else ''}displacements drawn {size}"

@@ -98,6 +98,11 @@ def quantity_words(name: str) -> str:
     )
 
 
+def with_article(noun: str) -> str:
+    """A noun with its article: a bonded layer, an unbonded layer."""
+    return f"{'an' if noun[0] in 'aeiou' else 'a'} {noun}"
+
+
 def duration(seconds: float) -> str:
     """Seconds in the unit that fits: 4.2 ms, 1.3 s, 2 min 05 s."""
     if not math.isfinite(seconds):

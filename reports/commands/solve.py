@@ -29,6 +29,7 @@ from reports.answer import (
     propagated_table,
     solution_csv,
     solution_facts,
+    solution_notes,
     solution_table,
     sweep_table,
 )
@@ -148,10 +149,8 @@ def _solved(scene: Scene, request: Request) -> tuple[Solution, list[tuple[str, s
 
 
 def _show_answer(solution: Solution) -> None:
-    """A warning where the layer is pressed deeper than small strains allow, critical numbers, and the table."""
-    warning = depth_note(solution.scene, depths_of(solution))
-    show_facts([("warning", warning)] if warning else [], on=console())
-    show_facts(critical_facts(solution), on=console())
+    """Warnings and notes, critical numbers, and the table."""
+    show_facts(solution_notes(solution) + critical_facts(solution), on=console())
     show_table(solution_table(solution), on=console())
 
 

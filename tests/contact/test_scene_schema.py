@@ -32,7 +32,7 @@ def accepted(mapping):
 
 
 def test_the_published_file_is_that_of_the_code():
-    """Write it again with: contact-verify schema scene > examples/scene.schema.json."""
+    """Write it again with: contact-verify solve --schema > examples/scene.schema.json."""
     published = json.loads((EXAMPLES / "scene.schema.json").read_text(encoding="utf-8"))
     assert published == SCHEMA
 
