@@ -138,27 +138,6 @@ class Growing:
     contact: RubbedContact
     states: list[RubbedState]
 
-    @cached_property
-    def depth(self) -> FloatArray:
-        """Depth delta [m] at touching points, shape (k,)."""
-        return np.asarray(self.contact.radius * np.array([state.depth for state in self.states]))
-
-    @cached_property
-    def force(self) -> FloatArray:
-        """Force F/E* [m^2], shape (k,)."""
-        return np.asarray(self.contact.radius**2 * np.array([state.force for state in self.states]))
-
-    @cached_property
-    def touching(self) -> FloatArray:
-        """Radius of the touching node over that of the strip, shape (k,)."""
-        return self.contact.surface.radii[1 : len(self.states) + 1]
-
-    @cached_property
-    def radius(self) -> FloatArray:
-        """Contact radius a [m], shape (k,): the touching node and `EDGE_SHARE` of a cell."""
-        share = EDGE_SHARE - np.where(self.stick == 1.0, self.less_by_stick, 0.0)
-        return np.asarray(self.contact.radius * self.touching + share * self.cell)
-
     @property
     def cell(self) -> float:
         """Cell of the strip [m]."""
@@ -170,39 +149,44 @@ class Growing:
         return LESS_BY_STICK * (math.log(3.0 - 4.0 * self.contact.surface.poissons_ratio) / (2.0 * math.pi)) ** 2
 
     @cached_property
-    def stick(self) -> FloatArray:
-        """Stick radius over a, shape (k,)."""
-        inner, touching = np.array([stick_radius(self.contact, state) for state in self.states]), self.touching
-        return np.asarray(np.where(inner == touching, 1.0, inner / (touching + EDGE_SHARE * touching[0])))
+    def points(self) -> dict[str, FloatArray]:
+        """Depth, force, radius, stick radius over a, and heat over force times depth, shape (k,) each.
 
-    @cached_property
-    def heat(self) -> FloatArray:
-        """Dissipated energy over force times depth, shape (k,): this ratio changes little as the contact grows."""
-        heat = self.contact.radius**3 * np.array([state.dissipated for state in self.states])
-        return np.asarray(heat / (self.force * self.depth))
+        The radius is that of the touching node and `EDGE_SHARE` of a cell. The ratio of the heat changes little as the
+        contact grows.
+        """
+        unit, nodes = self.contact.radius, self.contact.surface.radii[1 : len(self.states) + 1]
+        depth, force, heat = (np.array([getattr(s, n) for s in self.states]) for n in ("depth", "force", "dissipated"))
+        inner = np.array([stick_radius(self.contact, state) for state in self.states])
+        sticks, slid = inner == nodes, nodes + EDGE_SHARE * nodes[0]
+        return {
+            "depth": unit * depth,
+            "force": unit**2 * force,
+            "radius": unit * (slid - np.where(sticks, self.less_by_stick * nodes[0], 0.0)),
+            "stick": np.where(sticks, 1.0, inner / slid),
+            "heat": heat / (force * depth),
+        }
 
-    def local(self, values: FloatArray, depth: float) -> tuple[float, float]:
-        """Value and d/d ln(depth) at a depth [m] of a quantity (k,), by a polynomial fitted to nearby points."""
-        log = np.log(self.depth)
-        middle, aside = int(np.searchsorted(log, np.log(depth))), max(2, len(log) // PER_NEIGHBOUR)
+    def at(self, depth: float) -> dict[str, float]:
+        """The quantities of `points` at a depth [m], by polynomials in ln(depth) fitted to nearby points.
+
+        Also the stiffness k_N = dF/d(delta) = (F/delta) dlnF/dln(delta), since without pressure at the edge dF/da = 0
+        at given depth, and the widening dln(a)/dln(delta).
+        """
+        points = self.points
+        log = np.log(points["depth"] / depth)
+        middle, aside = int(np.searchsorted(log, 0.0)), max(2, len(log) // PER_NEIGHBOUR)
         first = max(0, min(middle - aside, len(log) - 2 * aside))
         near = slice(first, first + 2 * aside)
-        fit = np.polynomial.Polynomial.fit(log[near], values[near], DEGREE)
-        return float(fit(np.log(depth))), float(fit.deriv()(np.log(depth)))
-
-    def at(self, name: str, depth: float) -> float:
-        """Force, radius, stiffness, heat or stick at a depth [m], in the units of these; stiffness/E* [m]."""
-        if name in ("heat", "stick"):
-            return self.local(getattr(self, name), depth)[0]
-        if name == "stiffness":
-            # k_N = dF/d(delta) = (F/delta) dlnF/dln(delta): without pressure at the edge dF/da = 0 at given depth.
-            log_force, exponent = self.local(np.log(self.force), depth)
-            return math.exp(log_force) / depth * exponent
-        return math.exp(self.local(np.log(getattr(self, name)), depth)[0])
+        columns = np.log(points["force"]), np.log(points["radius"]), points["stick"], points["heat"]
+        fit = np.polynomial.polynomial.polyfit(log[near], np.column_stack(columns)[near], DEGREE)
+        force, radius, stick, heat = map(float, (*np.exp(fit[0, :2]), *fit[0, 2:]))
+        found = {"force": force, "radius": radius, "stick": stick, "heat": heat}
+        return found | {"stiffness": force / depth * float(fit[1, 0]), "widening": float(fit[1, 1])}
 
     def state_at(self, depth: float) -> RubbedState:
         """The equilibrium at a depth [m]."""
-        passed = int(np.searchsorted(self.depth[:-1], depth))
+        passed = int(np.searchsorted(self.points["depth"][:-1], depth))
         before = self.states[passed - 1] if passed else at_rest(self.contact)
         return advance(self.contact, before, passed + 1, at_load(depth / self.contact.radius, by_depth=True))
 
@@ -226,7 +210,8 @@ class GrowthRecord:
 
     def serves(self, name: str, value: float) -> bool:
         """Whether a radius [m], depth [m] or force/E* [m^2] has enough cells."""
-        return bool(np.interp(value, getattr(self.fine, name), self.fine.radius) >= SERVED * self.fine.radius[-1])
+        points = self.fine.points
+        return bool(np.interp(value, points[name], points["radius"]) >= SERVED * points["radius"][-1])
 
     def numbers(self, name: str, value: float, *, extrapolated: bool = True) -> dict[str, float]:
         """Radius, depth [m], force/E* [m^2], stiffness/E* [m], stick radius [m] and heat/E* [m^3] in one state.
@@ -237,38 +222,43 @@ class GrowthRecord:
             extrapolated: whether the cells' leading error is subtracted, else the finer strip answers.
         """
         depth = value if name == "depth" else self._depth_of(name, value, extrapolated)
-        found = {each: self._at(each, depth, extrapolated) for each in ("radius", "force", "stiffness", "heat")}
-        heat, stick = found["heat"] * found["force"] * depth, self._stick(depth, found["radius"], extrapolated)
-        return found | {"depth": depth, "stick": stick * found["radius"], "heat": heat} | {name: value}
+        found = self._at(depth, extrapolated)
+        heat, stick = found["heat"] * found["force"] * depth, self._stick(depth, found, extrapolated)
+        kept = {each: found[each] for each in ("radius", "force", "stiffness")}
+        return kept | {"depth": depth, "stick": stick * found["radius"], "heat": heat} | {name: value}
 
     def _depth_of(self, name: str, value: float, extrapolated: bool) -> float:
         """The depth [m] at which radius [m] or force/E* [m^2] has a value."""
 
         def missing(log_depth: float) -> float:
             """Relative difference of the quantity from ``value`` at a depth."""
-            return self._at(name, math.exp(log_depth), extrapolated) / value - 1.0
+            return self._at(math.exp(log_depth), extrapolated)[name] / value - 1.0
 
-        reached = np.log(self.fine.depth)
+        reached = np.log(self.fine.points["depth"])
         return float(np.exp(brentq(missing, reached[0], reached[-1] + 0.1, xtol=1e-14)))
 
-    def _at(self, name: str, depth: float, extrapolated: bool) -> float:
-        """A quantity at a depth, ``F_h + (F_h - F_2h) / (2^p - 1)``, or on the finer strip."""
-        fine, order = self.fine.at(name, depth), HEAT_ORDER if name == "heat" else 2.0
-        change = fine - self.coarse.at(name, depth) if extrapolated else 0.0
-        return fine + change / float(2.0**order - 1.0)
+    def _at(self, depth: float, extrapolated: bool) -> dict[str, float]:
+        """Quantities at a depth, ``F_h + (F_h - F_2h) / (2^p - 1)``, or those on the finer strip."""
+        fine = self.fine.at(depth)
+        if not extrapolated:
+            return fine
+        coarse, orders = self.coarse.at(depth), {"heat": HEAT_ORDER}
+        return {name: v + (v - coarse[name]) / float(2.0 ** orders.get(name, 2.0) - 1.0) for name, v in fine.items()}
 
-    def _stick(self, depth: float, radius: float, extrapolated: bool) -> float:
+    def _stick(self, depth: float, found: dict[str, float], extrapolated: bool) -> float:
         """Stick radius over a.
 
         With too few cells that stick, or that slide, it is that of the finer strip, and without extrapolation that of
         the coarser one, so that `errors` still compares two strips.
         """
-        fine, coarse = (float(np.interp(depth, strip.depth, strip.stick)) for strip in (self.fine, self.coarse))
+        fine, coarse = (
+            float(np.interp(depth, strip.points["depth"], strip.points["stick"])) for strip in (self.fine, self.coarse)
+        )
         if min(fine, coarse) == 1.0:
             return 1.0
-        if min(fine, 1.0 - fine) < FEWEST_STUCK * self.fine.cell / radius:
+        if min(fine, 1.0 - fine) < FEWEST_STUCK * self.fine.cell / found["radius"]:
             return fine if extrapolated else coarse
-        return min(self._at("stick", depth, extrapolated), 1.0)
+        return min(found["stick"], 1.0)
 
     def errors(self, name: str, value: float) -> dict[str, float]:
         """Errors of `numbers`, of the stick radius over a, of the heat over F delta, and relative for the others.
@@ -288,7 +278,7 @@ class GrowthRecord:
         if name == "radius":
             # The edge shifts the depth by d ln(delta)/d ln(a) times as much, and dF/F = (k_N delta/F) d(delta)/delta.
             # The stiffness grows more slowly than the force.
-            depth = edge / self.fine.local(np.log(self.fine.radius), found["depth"])[1]
+            depth = edge / self.fine.at(found["depth"])["widening"]
             exponent = found["stiffness"] * found["depth"] / found["force"]
             for each, power in (("depth", 1.0), ("force", exponent), ("stiffness", exponent)):
                 error[each] += power * depth

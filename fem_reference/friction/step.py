@@ -195,10 +195,12 @@ def _equilibrium(
     friction[slides] = contact.coefficient * sliding[:active][slides]
     unknown, pressures, shears = np.append(np.arange(active), n + stuck), slice(0, active), slice(n, n + active)
     row, depth_share, value = control(contact, active)
-    rows, size = np.vstack([compliance[unknown], row]), len(unknown)
+    size = len(unknown)
     matrix = np.zeros((size + 1, size + 1))
-    matrix[:, :size] = rows[:, unknown]
-    matrix[:, pressures] += rows[:, shears] * friction
+    matrix[:size, :size] = compliance[np.ix_(unknown, unknown)]
+    matrix[:size, pressures] += compliance[unknown, shears] * friction
+    matrix[size, :size] = row[unknown]
+    matrix[size, pressures] += row[shears] * friction
     matrix[pressures, size], matrix[size, size] = -contact.surface.resultants[pressures], depth_share
     right = np.concatenate([-contact.profile[pressures], before.radial[stuck], [value]])
     solved = np.linalg.solve(matrix, right)
