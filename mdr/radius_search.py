@@ -320,10 +320,10 @@ class RadiusSearch:
         first = missed(z, np.ones(z.shape, dtype=np.bool_))
         step = -_WIDER * first / np.maximum(slope, 1e-3)
         step = np.where(first < 0, 1, -1) * np.maximum(np.abs(step), EPS * (1 + np.abs(z)))
-        return self._radius(_roots(missed, z, first, step))
+        return self._radius(roots(missed, z, first, step))
 
 
-def _roots(
+def roots(
     missed: Callable[[FloatArray, BoolArray], FloatArray], start: FloatArray, first: FloatArray, step: FloatArray
 ) -> FloatArray:
     """Roots x of increasing functions, shape (n,), by Chandrupatla's method: Adv. Eng. Softw. 28 (1997) 145.

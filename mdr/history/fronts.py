@@ -20,15 +20,13 @@ from numpy.typing import NDArray
 
 from bem.numerics import EPS, panels
 from contact import FlatPunch, InvalidInput, Scene, UnsupportedSceneError
-from contact.records.validation import FloatArray
+from contact.records.validation import BoolArray, FloatArray
 from mdr.equilibria import is_simple, refuse_inadmissible
 from mdr.history.spring_bed import Path, SpringBed, followed
 from mdr.history.spring_law import SpringLaw
-from mdr.radius_search import Quantity, RadiusSearch, refuse_too_wide
+from mdr.radius_search import Quantity, RadiusSearch, refuse_too_wide, roots
 from mdr.spring_bed import Springs
 
-# Secant steps to a front; eight are usual.
-_MOST_STEPS = 100
 # Springs among which fronts are bracketed, besides one between all depths of the history.
 _SPREAD = 33
 # Ratio of the widths of neighbouring panels near a front, and their largest number. With 2 springs double.
@@ -62,7 +60,7 @@ class Response(NamedTuple):
     depth: FloatArray
     force: FloatArray
     radius: FloatArray
-    known: NDArray[np.bool_]
+    known: BoolArray
     bent: bool
     springs: int
     doubt: float = 0.0
@@ -126,7 +124,7 @@ class Problem(NamedTuple):
         refuse_inadmissible(self.scene, self.springs, self.springs.state(a, values, np.maximum(values.g, depth)))
 
 
-def fronts(law: SpringLaw, path: Path, some: NDArray[np.bool_] | bool = True) -> FloatArray:
+def fronts(law: SpringLaw, path: Path, some: BoolArray | bool = True) -> FloatArray:
     """gamma [m] at some instants, -1 where nothing touches, shape (n,)."""
     depth, peaks = path.depth, path.peaks
     # Deeper than ever, the indenter touches all springs up to its depth.
@@ -157,29 +155,13 @@ def _brackets(law: SpringLaw, path: Path) -> tuple[FloatArray, FloatArray]:
 
 
 def _refined(law: SpringLaw, path: Path, instants: NDArray[np.intp], low: FloatArray, high: FloatArray) -> FloatArray:
-    """Fronts at some instants by the Illinois rule, all at once."""
-    (a, f_a), (b, f_b) = low.copy(), high.copy()
+    """Fronts at some instants, all at once, in units of the largest depth."""
     top = path.peaks[-1]
-    open_, side = np.arange(instants.size), np.zeros(instants.size)
-    for step in range(_MOST_STEPS):
-        o = open_
-        with np.errstate(invalid="ignore", divide="ignore"):
-            g = np.nan_to_num(b[o] - f_b[o] * (b[o] - a[o]) / (f_b[o] - f_a[o]))
-        middle = (a[o] + b[o]) / 2
-        g = np.where((g > a[o]) & (g < b[o]) & (step % 4 != 3), g, middle)
-        f = _edges(law, path, instants[o], g)
-        inside = f > 0
-        f_b[o] = np.where(inside & (side[o] > 0), f_b[o] / 2, f_b[o])
-        f_a[o] = np.where(~inside & (side[o] < 0), f_a[o] / 2, f_a[o])
-        side[o] = np.where(inside, 1.0, -1.0)
-        a[o], f_a[o] = np.where(inside, g, a[o]), np.where(inside, f, f_a[o])
-        b[o], f_b[o] = np.where(inside, b[o], g), np.where(inside, f_b[o], f)
-        rounded = np.abs(f) <= 2 * EPS * top
-        a[o[rounded]] = b[o[rounded]] = g[rounded]
-        open_ = o[b[o] - a[o] > 4 * EPS * b[o]]
-        if not open_.size:
-            break
-    return np.asarray((a + b) / 2)
+
+    def missed(g: FloatArray, at: BoolArray) -> FloatArray:
+        return np.asarray(-_edges(law, path, instants[at], top * g) / top)
+
+    return np.asarray(top * roots(missed, low[0] / top, -low[1] / top, (high[0] - low[0]) / top))
 
 
 def _edges(law: SpringLaw, path: Path, instants: NDArray[np.intp], g: FloatArray) -> FloatArray:
@@ -252,7 +234,7 @@ def layout(springs: Springs, radii: FloatArray, nodes: int) -> Layout:
     return Layout(np.append(0.0, g), np.append(core, weight), np.append(flat, flat + excess))
 
 
-def refuse_open_inside(touching: NDArray[np.bool_], time: float) -> None:
+def refuse_open_inside(touching: BoolArray, time: float) -> None:
     """Refuse a contact with a gap inside.
 
     Raises:

@@ -22,6 +22,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.special import hyp1f1
 
 from bem.numerics import EPS
 from contact import NotConvergedError
@@ -38,9 +39,6 @@ _ROUNDING = 8 * EPS
 _PARTS, _HALVES_MORE, _MOST_HALVES = 16, 6, 40
 # Samples of a depth between two instants, whose largest one is computed.
 _PEAK_SAMPLES = 33
-# Spans over relaxation times from which strains are polynomials with an exponential, and terms of their power series
-# below: the first one left out is 3e-17. At half the first value polynomials lose a digit more.
-_STEEP, _TERMS = 2.0, 25
 # Newton steps to a root; six are usual.
 _MOST_STEPS = 80
 _AT_END = np.ones(1)
@@ -71,32 +69,14 @@ class Motion:
         """Depth at shares of the interval [m]."""
         return polynomial(self.way, s)
 
-    @cached_property
-    def _memory(self) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Coefficients of the strains from rest, shape (m, q), and of exp(-x s) in them with its x = span/tau, (m,).
-
-        R' = -x R + delta' is solved by a power series, and at large x by a polynomial less exp(-x s) of its value at 0.
-        """
-        x, degree = self.span / self.law.times, self.rise.size
-        steep = x > _STEEP
-        series = np.zeros((x.size, degree if steep.all() else max(degree, _TERMS)))
-        for n in range(series.shape[1] - 1):
-            series[:, n + 1] = ((self.rise[n] if n < degree else 0.0) - x * series[:, n]) / (n + 1)
-        series[steep] = 0.0
-        for n in range(degree - 1, -1, -1):
-            later = (n + 1) * series[:, n + 1] if n + 1 < degree else 0.0
-            series[:, n] = np.where(steep, (self.rise[n] - later) / x, series[:, n])
-        return series, np.where(steep, series[:, 0], 0.0), x
-
     def strains(self, s: FloatArray) -> FloatArray:
-        """e_j of a spring in contact from the start, without strain then, at shares of the interval [m], (m, ..)."""
-        series, fading, x = self._memory
-        powers = np.ones((series.shape[1], s.size))
-        np.multiply.accumulate(np.broadcast_to(s.ravel(), (len(powers) - 1, s.size)), axis=0, out=powers[1:])
-        found = series @ powers
-        if fading.any():
-            found -= fading[:, None] * np.exp(np.multiply.outer(-x, s.ravel()))
-        return found.reshape(x.size, *s.shape)
+        """e_j of a spring in contact from the start, without strain then, at shares of the interval [m], (m, ..).
+
+        int_0^s exp(-x (s - v)) v^n dv = s^(n+1)/(n+1) 1F1(1, n+2, -x s), x = span/tau.
+        """
+        z = np.multiply.outer(self.span / self.law.times, s)
+        terms = (rate * s ** (n + 1) / (n + 1) * hyp1f1(1.0, n + 2.0, -z) for n, rate in enumerate(self.rise.tolist()))
+        return np.asarray(sum(terms))
 
     def force(self, s: FloatArray) -> FloatArray:
         """C of springs in contact, at shares of the interval."""

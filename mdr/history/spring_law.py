@@ -19,32 +19,18 @@ the nearer rate, and the moduli are computed from the roots (Gu and Eisenstat 19
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
+from scipy.special import hyp1f1
 
 from contact.records.validation import FloatArray
 from contact.scene.effects import Relaxation
 
 # Halvings of the integers that store a positive double: its 63 bits without the sign.
 _HALVINGS = 63
-# Coefficients of (x - 1 + exp(-x))/x^2, and where the series is used: there the first one left out is 1e-17. Beyond, at
-# most four digits cancel in a hundred thousand.
-_SERIES = np.array([(-1.0) ** n / math.factorial(n + 2) for n in range(11)])
-_SMALL = 0.3
-
-
-def ramp_response(x: FloatArray) -> FloatArray:
-    """(x - 1 + exp(-x))/x^2 at x >= 0."""
-    large = np.maximum(x, _SMALL)
-    found = (large + np.expm1(-large)) / large**2
-    small = x < _SMALL
-    if small.any():
-        found[small] = np.polynomial.polynomial.polyval(x[small], _SERIES)
-    return np.asarray(found)
 
 
 class Modes(NamedTuple):
@@ -161,8 +147,8 @@ class SpringLaw:
         if self.is_elastic:
             return force
         z = self.modes.rates[:, None] * np.diff(time)
-        steady = np.divide(-np.expm1(-z), z, out=np.ones_like(z), where=z > 0)
-        gained = force[:-1] * steady + np.diff(force) * ramp_response(z)
+        # 1F1(1, 2, -z) = (1 - exp(-z))/z and 1F1(1, 3, -z)/2 = (z - 1 + exp(-z))/z^2.
+        gained = force[:-1] * hyp1f1(1.0, 2.0, -z) + np.diff(force) * hyp1f1(1.0, 3.0, -z) / 2
         gained = (self.modes.of_force * np.diff(time) * gained).T
         amplitudes = [np.zeros(self.modes.rates.size)]
         for decay, gain in zip(np.exp(-z.T), gained, strict=True):

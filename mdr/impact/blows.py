@@ -8,7 +8,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bem.equation import Sizes
 from bem.flat_punch import FlatPunchSource
 from bem.kernels.moduli import relaxation_of
 from bem.numerics import EPS
@@ -17,7 +16,7 @@ from contact.records.validation import FloatArray
 from contact.stated import stated_error
 from mdr.impact.course import Course, Divided, course
 from mdr.impact.motion import Bodies
-from mdr.impact.track import Bed, bed_of, track_of
+from mdr.impact.track import Bed, track_of, units_of
 from mdr.own_units import OwnUnits, is_power_law
 from mdr.profiles import tip_of
 from mdr.radius_search import SeveralContacts, refuse_too_wide
@@ -91,7 +90,7 @@ class Blow:
         With p a multiple of the tip's exponent the radius is a power of s; 5 is smooth enough for any other exponent.
         Where p = 1 would do, 2 resolves branches that relax at once, and tips whose shape changes near their end.
         """
-        n, law = tip_of(self.bed.indenter).exponent, is_power_law(self.bed.indenter)
+        n, law = tip_of(self.scene.indenter).exponent, is_power_law(self.scene.indenter)
         if n == 1 and law and not (self.rates * self.duration > _FAST).any():
             return 1
         return {1.0: 2, 1.5: 3, 2.0: 2, 3.0: 3, 4.0: 4}.get(n, 5)
@@ -99,7 +98,7 @@ class Blow:
     @property
     def kind(self) -> tuple[bool, int, int, bool]:
         """What impacts that are solved together have in common."""
-        return isinstance(self.bed.indenter, FlatPunch), self.power, self.rates.size, self.viscosity == 0
+        return isinstance(self.scene.indenter, FlatPunch), self.power, self.rates.size, self.viscosity == 0
 
 
 def blow_of(scene: Scene, flat_punch: FlatPunchSource) -> Blow:
@@ -111,8 +110,9 @@ def blow_of(scene: Scene, flat_punch: FlatPunchSource) -> Blow:
     loading = scene.loading
     if not isinstance(loading, Impact):
         raise UnsupportedSceneError(f"loading = {type(loading).__name__}: an impact batch needs Impact")
-    law, (bed, units) = relaxation_of(scene), bed_of(scene, flat_punch)
-    modulus, track = law.instantaneous_modulus, track_of(bed, flat_punch.sizes)
+    law, units = relaxation_of(scene), units_of(scene, flat_punch)
+    bed, modulus = Bed(units.layer, units.indenter, flat_punch), law.instantaneous_modulus
+    track = track_of(bed, finer=False)
     weights, rates = np.append(law.long_term_modulus, law.moduli) / modulus, np.append(0.0, 1 / law.times)
     velocity, pull, eta = loading.velocity / units.depth, 2 * units.stiffness / loading.mass, law.viscosity / modulus
     # Over 2 E*: the energy, and the force of an elastic layer where a dashpot's impulse eta int K d(depth) is M v_0.
@@ -132,7 +132,7 @@ class Attempt(NamedTuple):
     Attributes:
         course: The answer.
         finer: Its companion.
-        values: Five outcomes in the units of the beds, shape (5, n).
+        values: Five outcomes in these units, shape (5, n).
         error: Their relative errors.
     """
 
@@ -179,12 +179,11 @@ class Outcome(NamedTuple):
         return np.asarray(found)
 
 
-def solved(blows: Sequence[Blow], sizes: Sizes, accuracy: float, numbers: Sequence[int] = (0,)) -> list[Outcome]:
+def solved(blows: Sequence[Blow], accuracy: float, numbers: Sequence[int] = (0,)) -> list[Outcome]:
     """Solve impacts of one kind with more and more nodes per phase, until their errors are below the accuracy.
 
     Args:
         blows: The impacts.
-        sizes: Resolution of their springs.
         accuracy: Wanted relative accuracy.
         numbers: By which messages name the impacts.
 
@@ -196,7 +195,7 @@ def solved(blows: Sequence[Blow], sizes: Sizes, accuracy: float, numbers: Sequen
     nodes, found, going = round(_NODES - _PER_DIGIT * np.log10(accuracy)), dict[int, Outcome](), list(range(len(blows)))
     while going:
         own, going, more = going, [], round(_NEXT * nodes)
-        for i, one in zip(own, _attempted([blows[i] for i in own], sizes, nodes), strict=True):
+        for i, one in zip(own, _attempted([blows[i] for i in own], nodes), strict=True):
             before = found.get(i, one)
             found[i] = min(before, one, key=lambda outcome: outcome.rank)
             stays = one is not before and before.error < _CONVERGED and one.error > before.error / 2
@@ -208,31 +207,31 @@ def solved(blows: Sequence[Blow], sizes: Sizes, accuracy: float, numbers: Sequen
     return [found[i] for i in range(len(blows))]
 
 
-def _attempted(blows: Sequence[Blow], sizes: Sizes, nodes: int) -> list[Outcome]:
+def _attempted(blows: Sequence[Blow], nodes: int) -> list[Outcome]:
     """Solve impacts with so many nodes per phase, together as long as they pass the same breaks."""
     try:
-        attempt = _compared(blows, sizes, nodes)
+        attempt = _compared(blows, nodes)
     except Divided as divided:
         found: dict[int, Outcome] = {}
         for group in (np.flatnonzero(divided.apart), np.flatnonzero(~divided.apart)):
             own = [blows[i] for i in group.tolist()]
             for blow in own if divided.is_short and divided.apart[group[:1]].any() else []:
-                blow.reach = _further(blow, sizes)
-            found |= dict(zip(group.tolist(), _attempted(own, sizes, nodes) if own else [], strict=True))
+                blow.reach = _further(blow)
+            found |= dict(zip(group.tolist(), _attempted(own, nodes) if own else [], strict=True))
         return [found[i] for i in range(len(blows))]
     return [Outcome(attempt, place) for place in range(len(blows))]
 
 
 @np.errstate(all="ignore")  # motions of bodies that never turn, or never leave, end in no numbers
-def _compared(blows: Sequence[Blow], sizes: Sizes, nodes: int) -> Attempt:
+def _compared(blows: Sequence[Blow], nodes: int) -> Attempt:
     """An answer and its companion, which begins with a better guess.
 
     Raises:
         Divided: If some impacts pass more breaks than others, or exceed their tracks.
     """
     guess = np.array([(blow.duration, blow.damping) for blow in blows]).T
-    answer = course(_bodies(blows, sizes), nodes, guess)
-    finer = course(_bodies(blows, sizes.finer), round(_FINER * nodes), answer)
+    answer = course(_bodies(blows, finer=False), nodes, guess)
+    finer = course(_bodies(blows, finer=True), round(_FINER * nodes), answer)
     values, other, unsure = answer.outcomes(), finer.outcomes(), answer.unsure + finer.unsure
     tracks, edges = answer.bodies.tracks, values[4, :, None]
     rounding = [float(np.add(*track.springs.floor(edge))[0]) for track, edge in zip(tracks, edges, strict=True)]
@@ -248,23 +247,23 @@ def _compared(blows: Sequence[Blow], sizes: Sizes, nodes: int) -> Attempt:
     return Attempt(answer, finer, values, errors)
 
 
-def _bodies(blows: Sequence[Blow], sizes: Sizes) -> Bodies:
+def _bodies(blows: Sequence[Blow], *, finer: bool) -> Bodies:
     """Impacts on tracks that are tabulated as far as they reach."""
-    tracks = [track_of(blow.bed, sizes) for blow in blows]
+    tracks = [track_of(blow.bed, finer=finer) for blow in blows]
     for track, blow in zip(tracks, blows, strict=True):
         track.cover(blow.reach)
     names = ("reach", "velocity", "pull", "weights", "rates", "viscosity")
     return Bodies(tracks, blows[0].power, *(np.array([getattr(blow, name) for blow in blows]) for name in names))
 
 
-def _further(blow: Blow, sizes: Sizes) -> float:
+def _further(blow: Blow) -> float:
     """A larger depth up to which the track of an impact is tabulated.
 
     Raises:
         InvalidInput: If the indenter ends, or the contact becomes too wide.
         SeveralContacts: If g falls.
     """
-    track = track_of(blow.bed, sizes)
+    track = track_of(blow.bed, finer=False)
     track.cover(_FURTHER * blow.reach)
     if track.deepest > blow.reach:
         return min(_FURTHER * blow.reach, track.deepest)

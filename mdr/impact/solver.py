@@ -70,9 +70,9 @@ def solve_impact(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[st
     log, known = StageLog(), {"accuracy": DEFAULT_ACCURACY, **settings}
     accuracy = _checked(float(known["accuracy"] or DEFAULT_ACCURACY))
     with log.stage("equivalent_system"):
-        blow, sizes = blow_of(scene, flat_punch), flat_punch.sizes
+        blow = blow_of(scene, flat_punch)
     with log.stage("impact"):
-        outcome = solved([blow], sizes, accuracy)[0]
+        outcome = solved([blow], accuracy)[0]
     _refuse_inadmissible(scene, flat_punch, outcome.in_si(blow)[4])
     return history(blow, outcome, log, known)
 
@@ -95,7 +95,7 @@ def impact_batch(
     Returns:
         Arrays in the order of the scenes. Each entry is what the scene alone would give, to the last digit.
     """
-    sizes, accuracy = flat_punch.sizes, _checked(accuracy)
+    accuracy = _checked(accuracy)
     blows = [blow_of(scene, flat_punch) for scene in scenes]
     values, errors, done = np.empty((5, len(blows))), np.empty((5, len(blows))), 0
     kinds = [blow.kind for blow in blows]
@@ -103,7 +103,7 @@ def impact_batch(
         members = list(group)
         for start in range(0, len(members), CHUNK):
             chunk = members[start : start + CHUNK]
-            found = solved([blows[i] for i in chunk], sizes, accuracy, chunk)
+            found = solved([blows[i] for i in chunk], accuracy, chunk)
             for i, one in zip(chunk, found, strict=True):
                 values[:, i], errors[:, i] = one.in_si(blows[i]), one.attempt.error[:, one.place]
                 refuse_deep(scenes[i], values[3, i])

@@ -21,10 +21,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from bem.equation import Sizes
 from bem.flat_punch import FlatPunchSource, IntegralEquation
 from bem.kernels.moduli import contact_modulus
-from bem.kernels.of_layer import ContactKernel, contact_kernel, unit_of
 from contact import ElasticLayer, FlatPunch, Profile, Scene, UnsupportedSceneError
 from contact.records.validation import FloatArray
 from mdr.equilibria import springs_on
@@ -49,41 +47,24 @@ _KEPT = 256
 
 
 class Bed(NamedTuple):
-    """Layer and profile in their own units, 2 E* = 1.
+    """Layer and profile in their own units, and where the flat-punch data come from."""
 
-    Attributes:
-        kernel: Kernel of the layer.
-        unit: Unit of length of the kernel.
-        indenter: Profile.
-        tabulated: Layer and table that springs come from; None if from the layer's equation.
-    """
-
-    kernel: ContactKernel
-    unit: float
+    layer: ElasticLayer
     indenter: Profile
-    tabulated: tuple[ElasticLayer, FlatPunchSource] | None = None
-
-    def springs(self, sizes: Sizes) -> Springs:
-        """The springs at the given resolution."""
-        if self.tabulated is not None:
-            layer, source = self.tabulated
-            springs = springs_on(layer, self.indenter, source)
-            return springs if sizes == springs.sizes else springs.finer
-        return Springs(self.kernel, self.unit, 0.5, tip_of(self.indenter), sizes)
+    flat_punch: FlatPunchSource
 
 
-def bed_of(scene: Scene, flat_punch: FlatPunchSource) -> tuple[Bed, OwnUnits]:
-    """The bed of a scene and its units.
+def units_of(scene: Scene, flat_punch: FlatPunchSource) -> OwnUnits:
+    """The units in which the springs of a scene are tabulated.
 
     Raises:
         UnsupportedSceneError: If a tip is too flat, or its heights are beyond doubles.
     """
     layer, indenter = scene.layer, scene.indenter
-    tabulated = None if layer.is_half_space or isinstance(flat_punch, IntegralEquation) else (layer, flat_punch)
-    if tabulated or not is_power_law(indenter):
-        units = OwnUnits(layer, indenter, 1.0, 1.0, contact_modulus(layer))
-    else:
+    if is_power_law(indenter) and (layer.is_half_space or isinstance(flat_punch, IntegralEquation)):
         units = own_units(layer, indenter)
+    else:
+        units = OwnUnits(layer, indenter, 1.0, 1.0, contact_modulus(layer))
     exponent = tip_of(indenter).exponent
     if exponent > _FLATTEST:
         raise UnsupportedSceneError(
@@ -91,7 +72,7 @@ def bed_of(scene: Scene, flat_punch: FlatPunchSource) -> tuple[Bed, OwnUnits]:
         )
     if not 0 < units.depth < math.inf:
         raise UnsupportedSceneError(f"indenter: heights of a tip r^{exponent:g} over a thickness are beyond doubles")
-    return Bed(contact_kernel(units.layer), unit_of(units.layer), units.indenter, tabulated), units
+    return units
 
 
 class Piece:
@@ -277,6 +258,7 @@ class Track:
 
 
 @lru_cache(maxsize=_KEPT)
-def track_of(bed: Bed, sizes: Sizes) -> Track:
-    """K and a of a bed."""
-    return Track(bed.springs(sizes))
+def track_of(bed: Bed, *, finer: bool) -> Track:
+    """K and a of a bed, or the same at the finer resolution whose change states errors."""
+    springs = springs_on(*bed)
+    return Track(springs.finer if finer else springs)
