@@ -34,6 +34,8 @@ if TYPE_CHECKING:
     from mdr.impact.solver import ImpactResults
 
 Progress: TypeAlias = Callable[[int, int], None]
+# Numbers of scenes, and the function that computes the rows of some of them.
+Group: TypeAlias = tuple[list[int], Callable[[list[int]], FloatArray]]
 
 _PRESCRIBED = (ContactRadii, IndentationDepths, NormalForces)
 # Scenes between two reports of progress.
@@ -104,17 +106,7 @@ def pull_offs(scenes: Sequence[Scene], flat_punch: FlatPunchSource, *, progress:
     for number, scene in enumerate(scenes):
         if not isinstance(scene.loading, Detachment):
             raise InvalidInput(f"scenes[{number}].loading = {type(scene.loading).__name__}: give a Detachment")
-    found = np.full((3, len(scenes)), np.nan)
-    done = 0
-    for members, solve in pull_off_groups(scenes, flat_punch):
-        for start in range(0, len(members), _CHUNK):
-            chunk = members[start : start + _CHUNK]
-            found[:, chunk] = solve(chunk)
-            done += len(chunk)
-            if progress is not None:
-                progress(done, len(scenes))
-    _refuse_unknown(found)
-    _refuse_deep(scenes, found[1])
+    found = _solved(scenes, pull_off_groups(scenes, flat_punch), 3, progress)
     return PullOffs(contact_radius=found[0], depth=found[1], force=found[2])
 
 
@@ -129,37 +121,41 @@ def equilibria(scenes: Sequence[Scene], flat_punch: FlatPunchSource, *, progress
         InvalidInput: If a scene lists effects or prescribes more than one value.
         NotConvergedError: If an answer is not finite.
     """
-    found = np.full((4, len(scenes)), np.nan)
     groups: dict[Hashable, list[int]] = defaultdict(list)
     for number, scene in enumerate(scenes):
         _refuse(number, scene)
         groups[_kind(number, scene)].append(number)
-    done = 0
-    for members in groups.values():
-        found[:, members] = _together([scenes[i] for i in members], flat_punch)
-        done += len(members)
-        if progress is not None:
-            progress(done, len(scenes))
-    _refuse_unknown(found)
-    _refuse_deep(scenes, found[1])
+    together = lambda chunk: _together([scenes[i] for i in chunk], flat_punch)  # noqa: E731
+    found = _solved(scenes, [(members, together) for members in groups.values()], 4, progress)
     return Equilibria(
         contact_radius=found[0], indentation_depth=found[1], normal_force=found[2], contact_stiffness=found[3]
     )
 
 
-def _refuse_unknown(found: FloatArray) -> None:
-    """Raise `NotConvergedError` if an answer is not finite."""
+def _solved(scenes: Sequence[Scene], groups: Sequence[Group], rows: int, progress: Progress | None) -> FloatArray:
+    """Rows of numbers of every scene, the depth second, shape (rows, n); groups are solved by chunks.
+
+    Raises:
+        NotConvergedError: If an answer is not finite.
+        UnsupportedSceneError: If a depth is too large for small strains.
+    """
+    found, done = np.full((rows, len(scenes)), np.nan), 0
+    for members, solve in groups:
+        for start in range(0, len(members), _CHUNK):
+            chunk = members[start : start + _CHUNK]
+            found[:, chunk] = solve(chunk)
+            done += len(chunk)
+            if progress is not None:
+                progress(done, len(scenes))
     unknown = np.flatnonzero(~np.isfinite(found).all(axis=0))
     if unknown.size:
         raise NotConvergedError(f"scenes[{unknown[0]}]: no finite answer, nor of {unknown.size - 1} others")
-
-
-def _refuse_deep(scenes: Sequence[Scene], depths: FloatArray) -> None:
-    for number, (scene, depth) in enumerate(zip(scenes, depths.tolist(), strict=True)):
+    for number, (scene, depth) in enumerate(zip(scenes, found[1].tolist(), strict=True)):
         try:
             refuse_deep(scene, depth)
         except UnsupportedSceneError as error:
             raise UnsupportedSceneError(f"scenes[{number}]: {error}") from None
+    return found
 
 
 def _refuse(number: int, scene: Scene) -> None:

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import ClassVar, NamedTuple
+from typing import ClassVar, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -96,7 +96,7 @@ class Springs:
         """
         return cls(contact_kernel(layer), unit_of(layer), contact_modulus(layer), tip_of(indenter), sizes)
 
-    def at_sizes(self, sizes: Sizes) -> Springs:
+    def at_sizes(self, sizes: Sizes) -> Self:
         """The same springs at another resolution."""
         return replace(self, sizes=sizes)
 

@@ -19,7 +19,7 @@ from typing import ClassVar, TypeAlias
 
 import numpy as np
 
-from bem.equation import Radius, Rows, Sizes
+from bem.equation import Radius, Rows
 from bem.flat_punch import FlatPunchSource
 from bem.grid.discs import shared_error
 from bem.kernels.of_layer import contact_kernel
@@ -129,10 +129,6 @@ class TableSprings(Springs):
         source.solution(layer, SMALLEST_RATIO)
         springs = Springs.of(layer, indenter)
         return cls(springs.kernel, springs.unit, springs.modulus, springs.tip, measured=TablePunches(source, layer))
-
-    def at_sizes(self, sizes: Sizes) -> TableSprings:
-        """The same springs with other quadratures of the profile."""
-        return replace(self, sizes=sizes)
 
     @cached_property
     def finer(self) -> Springs:

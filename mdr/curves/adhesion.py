@@ -15,7 +15,6 @@ from functools import lru_cache
 from typing import Final
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from bem.flat_punch import IntegralEquation
 from contact import Adhesion, IndentationDepths, NotConvergedError, Paraboloid, Scene, Sphere
@@ -94,19 +93,6 @@ def table_of(scene: Scene) -> Table:
 
 
 @dataclass(frozen=True)
-class BranchShape:
-    """F/E on the branch at the points in contact, zero at all others."""
-
-    depths: FloatArray
-    forces: FloatArray
-    attached: BoolArray
-
-    def extended(self, depth: ArrayLike) -> FloatArray:
-        """phi [m^2]; points in contact beyond pull-off have the force of pull-off."""
-        return np.where(self.attached, np.interp(np.asarray(depth, dtype=np.float64), self.depths, self.forces), 0.0)
-
-
-@dataclass(frozen=True)
 class Adhering(Family):
     """Curves of withdrawal over u: sqrt(w/E) with a free work of adhesion, ln E with a known one.
 
@@ -133,8 +119,9 @@ class Adhering(Family):
         return u if self.work is None else math.sqrt(self.work / self.factor(u))
 
     def at(self, u: float) -> CurveShape:
-        """phi of the branch."""
-        return BranchShape(*self.table.branch(self.root(u)), self.attached)
+        """phi of the branch: beyond pull-off that of pull-off, and zero at points that are not in contact."""
+        depths, forces = self.table.branch(self.root(u))
+        return lambda depth: np.where(self.attached, np.interp(np.asarray(depth), depths, forces), 0.0)
 
     def factor(self, u: float) -> float:
         """E [Pa], where the work is known."""
@@ -152,8 +139,8 @@ class Adhering(Family):
 
     def error(self, u: float, depth: FloatArray) -> float:
         """That of the elastic contact, and of the table by its change with every other radius."""
-        coarse = replace(self, table=self.table.every_other()).at(u).extended(depth)
-        fine = self.at(u).extended(depth)
+        coarse = replace(self, table=self.table.every_other()).at(u)(depth)
+        fine = self.at(u)(depth)
         largest = float(np.abs(fine).max(initial=1e-300))
         return self.elastic_error + float(np.abs(coarse - fine)[self.attached].max(initial=0.0)) / (3 * largest)
 

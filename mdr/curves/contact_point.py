@@ -190,7 +190,7 @@ def trial_indentations(data: Data, rough: float, reach: float) -> FloatArray:
 
 def fitted_at(data: Data, family: Family, indentation: float, u: float) -> Fitted:
     """Modulus and residual at a depth of indentation [m]."""
-    phi = data.projected(family.at(u).extended(data.depth - data.deepest + indentation))
+    phi = data.projected(family.at(u)(data.depth - data.deepest + indentation))
     square = float(phi @ phi)
     if not family.is_scaled:
         modulus = family.factor(u)
@@ -203,7 +203,7 @@ def least_squares(data: Data, family: Family, trials: dict[float, FloatArray]) -
     """Ends of least squares from the best trial contact points of each u, the smallest squares first."""
     rated = []
     for u, points in trials.items():
-        phi = family.at(u).extended(data.depth - data.deepest + points[:, None])
+        phi = family.at(u)(data.depth - data.deepest + points[:, None])
         if family.is_scaled:
             squares = -_gains(data, phi)
         else:

@@ -13,15 +13,15 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Sequence
-from typing import Any, Final, Protocol
+from collections.abc import Callable, Sequence
+from typing import Any, Final, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from contact import Adhesion, CoatedPair, ElasticBase, InvalidInput, LayerStack, Scene
 from contact.records.validation import FloatArray
-from mdr.curves.force_curve import ForceCurve, blended, curve_to, longest_curve
+from mdr.curves.force_curve import blended, curve_to, longest_curve
 
 UNITS: Final = {"contact_point": "m", "baseline": "N", "tilt": "N/m", "thickness": "m", "work_of_adhesion": "J/m^2"}
 BACKGROUND: Final = ("contact_point", "baseline", "tilt")
@@ -34,11 +34,8 @@ _THICKNESSES: Final = tuple(10 ** (k / 4) for k in range(-4, 5))
 _SECOND: Final = tuple(1.1**k for k in range(-3, 4))
 
 
-class CurveShape(Protocol):
-    """A force curve of a given shape."""
-
-    def extended(self, depth: ArrayLike) -> FloatArray:
-        """phi = F/E [m^2] at depths [m] of any size, zero where nothing touches."""
+# phi = F/E [m^2] at depths [m] of any size, zero where nothing touches.
+CurveShape: TypeAlias = Callable[[ArrayLike], FloatArray]
 
 
 class Family:
@@ -54,9 +51,9 @@ class Family:
     is_scaled: bool = True
     starts: Sequence[float] = (0.0,)
 
-    def __init__(self, shape: CurveShape) -> None:
-        """The family of one curve."""
-        self._shape = shape
+    def __init__(self, shape: CurveShape, error: float = 0.0) -> None:
+        """The family of one curve, with the relative error of its computation."""
+        self._shape, self._error = shape, error
 
     def at(self, u: float) -> CurveShape:
         """phi at u."""
@@ -76,7 +73,7 @@ class Family:
 
     def error(self, u: float, depth: FloatArray) -> float:
         """Relative error of the force by the computation, at depths [m]."""
-        return float(getattr(self.at(u), "error", 0.0))
+        return self._error
 
 
 class Solved(Family):
@@ -89,11 +86,12 @@ class Solved(Family):
         self.starts = np.log(values).tolist()
         self._scene, self._values = scene, values
         self.reach = min(longest_curve(one, reach).largest_depth for one in scenes)
-        self._at = blended(values, [curve_to(one, self.reach) for one in scenes])
+        curves = [curve_to(one, self.reach) for one in scenes]
+        self._at, self._error = blended(values, curves), max(one.error for one in curves)
 
-    def at(self, u: float) -> ForceCurve:
+    def at(self, u: float) -> CurveShape:
         """The curve at exp(u), at the ends those of the outermost value."""
-        return self._at(self._inside(u))
+        return self._at(self._inside(u)).extended
 
     def factor(self, u: float) -> float:
         """The modulus of the surface [Pa]."""
@@ -111,7 +109,8 @@ def elastic_family(scene: Scene, names: Sequence[str], reach: float, about: floa
     """The family of a scene without adhesion, up to a depth [m]; about a value of the varied number, if it is given."""
     varied = [name for name in names if name == "thickness" or "." in name]
     if not varied:
-        return Family(longest_curve(scene, reach))
+        curve = longest_curve(scene, reach)
+        return Family(curve.extended, curve.error)
     (name,) = varied
     guess = about or number_of(scene, name)
     factors = _SECOND if about else _THICKNESSES if name == "thickness" else _MODULI

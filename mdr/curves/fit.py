@@ -180,7 +180,7 @@ def _stated(scene: Scene, data: Data, fitted: Fitted, confidence: float) -> Curv
             f"needs {len(contact_names) + _SPARE_POINTS}; measure more points in contact"
         )
     shifted = data.depth - point
-    phi = family.at(u).extended(shifted)
+    phi = family.at(u)(shifted)
     line = _background(data, data.force - modulus * phi, shifted)
     varied, by_u, by_modulus = family.value(u, modulus)
     known = line | {"contact_point": point, family.varied: varied}
@@ -244,7 +244,7 @@ def _derivatives(family: Family, u: float, shifted: FloatArray, modulus: float) 
 
     def force(at: float, move: float = 0.0) -> FloatArray:
         factor = modulus if family.is_scaled else family.factor(at)
-        return factor * family.at(at).extended(shifted + move)
+        return factor * family.at(at)(shifted + move)
 
     move = _STEP * max(abs(float(shifted.max())), 1e-6 * float(np.ptp(shifted)))
     by_depth = (force(u, move) - force(u, -move)) / (2 * move)
@@ -306,6 +306,6 @@ def _by_formulas(scene: Scene, data: Data, own: float) -> tuple[FormulaFit, ...]
     """Each formula fitted to a curve without tilt."""
     found, rough = [], rough_indentation(data)
     for formula in formulas_for(scene):
-        best = _search(data, Family(formula), rough, math.inf)
+        best = _search(data, Family(formula.per_modulus), rough, math.inf)
         found.append(FormulaFit(formula=formula, youngs_modulus=best.modulus, bias=best.modulus / own - 1.0))
     return tuple(found)

@@ -143,7 +143,6 @@ def blended(numbers: Sequence[float], curves: Sequence[ForceCurve]) -> Callable[
         curve = copy.copy(curves[0])
         log_force, power = spline(np.log(number))
         curve._interpolate(curves[0]._nodes[0], log_force, power)
-        curve.error = max(one.error for one in curves)
         return curve
 
     return at

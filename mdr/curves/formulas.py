@@ -44,10 +44,6 @@ class Formula:
         x = (d / self.length) ** self.share
         return np.asarray(self.factor * d**self.power * polyval(x, self.coefficients))
 
-    def extended(self, depth: ArrayLike) -> FloatArray:
-        """phi [m^2], as `per_modulus` gives it."""
-        return self.per_modulus(depth)
-
 
 HERTZ = "Hertz 1882"
 SNEDDON = "Sneddon 1965"
