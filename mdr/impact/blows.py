@@ -27,7 +27,7 @@ _SOFTEST = 0.02
 # d^2 K over the stored energy and d K over the force, over 2 E*: upper bounds (cones on thin layers), and usual values.
 _MOST_WORK, _MOST_FORCE, _USUAL_WORK, _USUAL_FORCE = 30.0, 6.0, 4.0, 1.5
 # Factor to the depth up to which a track serves an impact that exceeds it.
-_FURTHER = 8.0
+_FURTHER = 2.0
 # Nodes per phase: so many, and so many per digit of the accuracy. With half of the latter, peak forces reach half the
 # digits at once.
 _NODES, _PER_DIGIT = 8, 1.8

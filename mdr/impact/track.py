@@ -36,8 +36,8 @@ from mdr.spring_bed import Springs, SpringValues
 _WIDTH, _FEWER = 0.5, 4
 # s_0 over the smallest length. With twice as much the first touch is less smooth, with half a panel is added.
 _LEAST = 0.25
-# Panels of a piece that are tabulated at first, about up to its smallest length; then one at a time.
-_AT_FIRST = 4
+# Panels of a piece that are tabulated at first, up to half its smallest length or less; then one at a time.
+_AT_FIRST = 2
 # Least distance of contacts from an upright end, over its radius.
 _NEAR_END = 1e-6
 # Largest exponent n of a tip r^n: beyond it, energies underflow.
