@@ -43,9 +43,10 @@ MAX_STEPS = 200_000
 INSTANT = 1e-7
 # Fewest events (a vertex touches or leaves) in a segment whose dashpot force is smoothed.
 FEWEST_EVENTS = 4
-# Events closer than this share of a step are one event. With a hundredth of it roundings split them.
+# Events closer than this share of a step are one event. With a hundredth of it roundings split events, and forces on a
+# dashpot err ten times as much. With a hundred times as much they are the same.
 SLIGHTLY = 1e-6
-# Secants to the next event. One suffices where moduli relax in proportion, and three for other layers.
+# Secants to the next event: one or two are needed where moduli relax in proportion, up to four in other layers.
 MOST_SECANTS = 20
 # Octaves of steps in a segment, the fewest and the most, and the number that all segments of a history share. Steps
 # double from octave to octave: after a kink of the load the layer relaxes on every time scale.

@@ -36,6 +36,7 @@ def test_a_quick_solution_knows_how_its_depth_grows(indenter, radius):
     assert found == pytest.approx((depth[2] - depth[0]) / (near[2] - near[0]), rel=1e-2, abs=0)
 
 
+@pytest.mark.slow
 def test_the_slope_is_read_where_a_table_is_smooth():
     """In rings across a row of the table the slope was 2e-2 off, and radii at loads up to 1.7 times what was stated."""
     scene = scene_of(5, 16, ratio=(0.1, 5.0))

@@ -143,6 +143,7 @@ def test_coulombs_law_holds_and_slip_goes_against_the_traction():
     assert path.dissipated_energy[0] > 0.0
 
 
+@pytest.mark.slow
 def test_the_stick_radius_of_a_thick_layer_is_self_similar():
     """Spence 1975: on the half-space c/a depends on nu and the coefficient alone, not on the depth."""
     body = Layer(thickness=100.0, youngs_modulus=3.0, poissons_ratio=0.0)
@@ -258,7 +259,8 @@ def test_forces_converge_with_second_order_in_the_cells():
     assert abs(logs[2] - logs[1]) < 2e-3
 
 
-@pytest.mark.parametrize("support", ["bonded", pytest.param("unbonded", marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("support", ["bonded", "unbonded"])
 def test_forces_under_stick_converge_to_those_of_mdr_with_second_order(support):
     """Seen to fail with first order and by 1e-4 while tractions had a kink inside cells of the mesh."""
     scene = rubbed(math.inf, layer(0.5, support), ContactRadii([5.0]))

@@ -90,6 +90,7 @@ def test_lines_of_1e14_cells_take_no_minutes():
     assert time.process_time() - start < 5  # 0.3 s; more than 15 s for a line in one piece
 
 
+@pytest.mark.slow
 def test_gmsh_does_not_let_a_broken_pipe_end_the_process():
     code = (
         "import os\n"

@@ -87,6 +87,7 @@ def test_ring_contact_is_refused():
         QUICK.solve(Scene(layer=LAYER, indenter=rings, loading=IndentationDepths([1e-6])))
 
 
+@pytest.mark.slow
 def test_contact_close_to_the_end_of_the_profile_is_answered_and_beyond_it_refused():
     scene = Scene(layer=LAYER, indenter=Sphere(radius=0.2e-3), loading=IndentationDepths([0.6e-3]))
     path, exact = QUICK.solve(scene), Mdr().solve(scene)
