@@ -34,6 +34,7 @@ def test_every_row_says_what_was_compared_or_why_not():
         assert cells[6].strip(), line
 
 
+@pytest.mark.first(3)
 @pytest.mark.parametrize(("kinds", "seed", "methods"), _cases())
 def test_rows_of_the_page_hold(kinds, seed, methods):
     found = compared(kinds, seed, (BY_NAME[methods.removeprefix("mdr, ")],))

@@ -29,6 +29,7 @@ def test_an_elastic_mdr_answer_loads_lapack_alone_and_no_other_method():
     assert not loaded & {*FAR, "bem.method", "bem.grid.operators", "mdr.impact", "mdr.adhesive"}
 
 
+@pytest.mark.first(1)
 @pytest.mark.parametrize("indenter", ["Cone(slope=0.1)", "TruncatedCone(flat_radius=5e-4, slope=0.1)"])
 def test_a_first_answer_on_a_stack_its_pressure_and_its_pull_off_load_no_masked_arrays(indenter):
     """A truncated cone's did for `np.unique` alone: a tenth of the waiting."""
@@ -45,6 +46,7 @@ Mdr().solve(pulled)
     assert not loaded_after(code) & {"numpy.ma", "scipy.linalg", "scipy.special"}
 
 
+@pytest.mark.first(1)
 @pytest.mark.parametrize("later", ["import scipy.linalg", "import scipy.linalg.lapack", "import scipy.sparse.linalg"])
 def test_scipy_loads_after_its_compiled_file(later):
     told = f"{later}; import scipy.linalg; assert scipy.linalg.solve_triangular([[2.0]], [1.0])[0] == 0.5"

@@ -115,6 +115,7 @@ def test_finite_elements_load_only_the_listed_effect():
     assert [m for m in adhering if m.startswith(IN_TIME)] == []
 
 
+@pytest.mark.first(1)
 @pytest.mark.parametrize(("method", "settings"), [("fem", COARSE_FEM), ("mdr", "{}")])
 def test_full_stick_loads_no_other_effect(method, settings):
     found = effects_among(solved(method, "adhered", settings))
@@ -122,6 +123,7 @@ def test_full_stick_loads_no_other_effect(method, settings):
     assert [m for m in found if not m.startswith(FRICTION)] == []
 
 
+@pytest.mark.first(1)
 @pytest.mark.parametrize(("scene", "loads"), [("elastic", False), ("sticky", True)])
 def test_boundary_elements_follow_a_branch_only_with_adhesion(scene, loads):
     found = solved("bem", scene, '{"points": 96}')
@@ -135,6 +137,7 @@ def test_the_direct_integral_equation_loads_no_other_method():
     assert found["stages"] == ["error_estimate", "integral_equation", "one_circle"]
 
 
+@pytest.mark.first(1)
 @pytest.mark.parametrize(
     ("method", "settings", "stages"),
     [

@@ -4,6 +4,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 ROOT = Path(__file__).resolve().parents[2]
 # Python's own modules on POSIX have loaded some of these before: only later imports are blocked.
 WITHOUT_POSIX = """
@@ -61,6 +63,7 @@ def test_all_modules_import_without_posix():
     assert done.returncode == 0, done.stderr[-1500:]
 
 
+@pytest.mark.slow
 def test_three_methods_solve_under_a_lock_and_a_time_limit_without_posix(tmp_path):
     done = without_posix(SOLVE, tmp_path)
     assert done.stdout == "solved\n", done.stderr[-1500:]

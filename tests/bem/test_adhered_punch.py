@@ -51,6 +51,7 @@ EXAMPLES = [
 ]  # fmt: skip
 
 
+@pytest.mark.first(1)
 @pytest.mark.parametrize("example", EXAMPLES)
 def test_values_of_another_program(example):
     nu, ratio, support, k, c, k0, shear, p, q, slip = example

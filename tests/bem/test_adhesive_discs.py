@@ -42,6 +42,7 @@ def detached(layer, indenter, control, points=96):
     return Bem(points=points).solve(scene(layer, indenter, Detachment(control=control)))
 
 
+@pytest.mark.first(2)
 @ALL_LAYERS
 @pytest.mark.parametrize("control", ["displacement", pytest.param("force", marks=pytest.mark.slow)])
 @pytest.mark.parametrize(
@@ -70,6 +71,7 @@ def test_the_branch_is_that_of_mdr_stable_and_unstable():
     assert {(control, "pull-off"), ("force", "pull-off")} <= kinds
 
 
+@pytest.mark.first(2)
 @ALL_LAYERS
 @pytest.mark.parametrize("indenter", [SPHERE, CONE, PUNCH], ids=lambda i: type(i).__name__)
 def test_depths_are_followed_in_and_out(layer, indenter):
@@ -85,6 +87,7 @@ def test_depths_are_followed_in_and_out(layer, indenter):
         assert np.all(error <= path.error_estimate[name][held] + 1e-11), name
 
 
+@pytest.mark.first(2)
 @ALL_LAYERS
 @pytest.mark.parametrize(
     "loading",
@@ -188,6 +191,7 @@ def test_measured_profiles_on_layers_pull_off_within_their_stated_errors():
         assert abs(getattr(cells, name) / getattr(exact, name) - 1) <= cells.error_estimate[name][0], name
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("kink", "work"), [(0.4, np.exp(-8.5)), pytest.param(0.8, np.exp(-6.0), marks=pytest.mark.slow)]
 )
@@ -256,6 +260,7 @@ def test_a_profile_of_parabolic_pieces_lets_go_once_under_each_control(method):
     assert met == [(control, kind) for control in ("displacement", "force") for kind in ("pull-off", "snap-in")]
 
 
+@pytest.mark.first(1)
 @pytest.mark.parametrize(
     ("layer", "indenter", "work"),
     [

@@ -192,6 +192,7 @@ def test_the_stiffness_at_a_given_radius_states_the_error_of_its_own_punch(layer
     assert stated <= 100.0 * error + 1e-11
 
 
+@pytest.mark.first(1)
 @pytest.mark.parametrize(
     ("layer", "flat", "prescribed"),
     [

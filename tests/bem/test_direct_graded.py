@@ -63,6 +63,7 @@ BEHIND_RIMS = ("flat punch", "truncated cone", "truncated, from beside the rim t
 QUICK = [("softer below, elastic base", contact) for contact in ("truncated cone",)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "contact"),
     [pytest.param(n, c, marks=() if (n, c) in QUICK else pytest.mark.slow) for n in LAYERS for c in CONTACTS],

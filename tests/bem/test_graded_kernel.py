@@ -35,6 +35,7 @@ def sublayers(n, layer, base, slips):
     return StackKernel(sheets, below), float(layer.youngs_modulus.at(0.0, 1.0) / moduli[0])
 
 
+@pytest.mark.first(5)
 @pytest.mark.parametrize(
     ("support", "slips"),
     [("bonded", False), ("unbonded", True), (BASE, False), (BASE.replace(interface="unbonded"), True)],

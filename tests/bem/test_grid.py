@@ -117,6 +117,7 @@ def test_discs_of_the_half_space_have_the_radius_of_their_stiffness():
     )
 
 
+@pytest.mark.first(2)
 @pytest.mark.parametrize("rim", [0.998, 0.9997, 1.0 - 1e-9])
 @pytest.mark.parametrize("loading", [IndentationDepths, NormalForces, ContactRadii])
 def test_a_worn_cone_whose_flat_end_is_nearly_all_of_the_contact_is_answered(rim, loading):

@@ -14,6 +14,7 @@ LAYERS = [
 RATIOS = np.geomspace(1e-3, 10.0, 60)
 
 
+@pytest.mark.first(8)
 @pytest.mark.parametrize("layer", LAYERS)
 @pytest.mark.parametrize("nodes", [8, 16, 24])
 def test_stated_error_covers_the_true_one(layer, nodes):

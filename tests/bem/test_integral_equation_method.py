@@ -38,6 +38,7 @@ def test_it_is_a_method():
     assert IntegralEquationMethod(panel_width=0.5).refined().panel_width == 0.25
 
 
+@pytest.mark.first(14)
 @pytest.mark.parametrize("layer", LAYERS)
 @pytest.mark.parametrize("indenter", INDENTERS[:-1], ids=lambda i: type(i).__name__)
 def test_direct_solution_agrees_with_mdr(layer, indenter):
@@ -112,6 +113,7 @@ def test_a_prescribed_depth_or_force_takes_few_equations(indenter):
         np.testing.assert_allclose(found.contact_radius, known.contact_radius, rtol=1e-12, atol=0.0)
 
 
+@pytest.mark.slow
 def test_rounding_of_the_kernel_is_stated_where_all_discretisations_suffer_it_alike():
     """k_bar is 2e4 here: answers on fewer nodes agreed to 1e-13 by chance and were 7e-12 off."""
     layer = Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.5)
@@ -145,6 +147,7 @@ PLANTED = {
 }
 
 
+@pytest.mark.first(1)
 @pytest.mark.parametrize("fault", PLANTED)
 def test_an_error_planted_in_each_discretisation_is_stated(fault, monkeypatch):
     scene = Scene(

@@ -1,6 +1,7 @@
 """Pressures under flat punches against the equation in extended precision."""
 
 import numpy as np
+import pytest
 from mpmath import mp
 
 from benchmarks.references.layer_equation import DIGITS, pressure
@@ -8,6 +9,7 @@ from contact import Layer
 from docs.gallery._flat_punch import FlatPunchValues
 
 
+@pytest.mark.slow
 def test_pressures_are_right_within_the_condition_of_the_equation():
     """Beside r = h 18 roundings times k_bar were lost, where slopes were taken at the end of a panel."""
     ratio, nu = 2.3, 0.45

@@ -44,6 +44,7 @@ def assert_covered(source, scene):
     return path, exact
 
 
+@pytest.mark.first(3)
 @pytest.mark.parametrize("indenter", [PARABOLOID, CONE, FlatPunch(radius=2e-3)], ids=["paraboloid", "cone", "punch"])
 @pytest.mark.parametrize(("support", "nu"), KERNELS)
 def test_stated_errors_cover_elastic_contacts(support, nu, indenter):

@@ -90,6 +90,7 @@ def repository(tmp_path_factory):
     return folder
 
 
+@pytest.mark.slow
 def test_a_planted_slowdown_of_one_and_a_half_and_a_changed_answer_are_seen_in_real_processes(repository):
     with worktree(repository, "quick") as base:
         race, line = raced(LITTLE, 1.1, base, repository, rounds=7)
@@ -117,6 +118,7 @@ def test_an_unknown_revision_or_row_is_one_clear_line(words, said, capsys):
     assert said in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_a_slower_row_fails_and_a_row_that_the_revision_cannot_run_is_skipped(repository, monkeypatch, capsys):
     monkeypatch.setattr(race_module, "SOURCE", repository)
     monkeypatch.setattr(race_module, "PREPARED", "")

@@ -66,6 +66,7 @@ def test_samples_agree_with_differences():
     assert again.quantity("normal_force").inputs[0] == sampled.quantity("normal_force").inputs[0]
 
 
+@pytest.mark.slow
 def test_a_range_is_uniform_and_its_middle_is_solved():
     """E* = E/(1 - nu^2): over nu from 0.28 to 0.32 its standard deviation is 2 nu/(1 - nu^2) 0.04/sqrt(12)."""
     found = propagate(HERTZ.replace(layer=HALF_SPACE.replace(poissons_ratio=0.2)), "poissons_ratio=0.28..0.32")

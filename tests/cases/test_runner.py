@@ -107,6 +107,7 @@ def test_shared_inputs_of_compared_answers_are_recorded(tmp_path):
     assert verdict(run(fake_case(fast=spoiled(FAST, **kernel)), tmp_path), "force agrees").shared == ()
 
 
+@pytest.mark.slow
 def test_a_task_beyond_its_time_is_a_timeout(tmp_path):
     result = run(fake_case(slow=spoiled(SLOW, plant="sleep"), ladder={"cell": 0.1}), tmp_path, time_limit=0.5)
     assert statuses(result, "force agrees") == {Status.TIMEOUT}
@@ -114,6 +115,7 @@ def test_a_task_beyond_its_time_is_a_timeout(tmp_path):
     assert exit_code(result.statuses) is ExitCode.GATE_FAILED
 
 
+@pytest.mark.slow
 def test_a_process_that_dies_under_a_time_limit_is_an_answer(tmp_path):
     result = run(fake_case(slow=spoiled(SLOW, plant="die")), tmp_path, time_limit=60.0)
     assert statuses(result, "force agrees") == {Status.INVALID}

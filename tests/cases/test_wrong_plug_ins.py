@@ -72,6 +72,7 @@ def comparisons(result):
     ]
 
 
+@pytest.mark.slow
 def test_a_force_ten_times_too_large_fails_everywhere_although_it_states_90_percent(run_with):
     code, result = run_with(TenTimes, "round_and_worn_tips", "--method", "mine")
     assert code == 1
@@ -86,6 +87,7 @@ def test_a_method_that_claims_1e_9_and_is_2e_3_wrong_fails(run_with):
     assert all("explain" in claim.message or "does not cover" in claim.message for claim in comparisons(result))
 
 
+@pytest.mark.first(1)
 @pytest.mark.parametrize("beside", [(), ("--method", "mdr")])
 def test_a_method_that_solves_nothing_did_not_run(run_with, beside, capsys):
     code, result = run_with(Refusing, "paraboloid", "--method", "mine", *beside)

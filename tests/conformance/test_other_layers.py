@@ -58,6 +58,7 @@ def test_flat_punch_tables_refuse_graded_layers():
         build("mdr_table", {"cells": 64, "ratios": 60, "radii": 100}).solve(scene_of(LAYERS[1]))
 
 
+@pytest.mark.first(1)
 @pytest.mark.parametrize("layer", LAYERS, ids=lambda layer: layer.title)
 def test_the_choice_by_accuracy_answers_other_layers(layer):
     assert solve(scene_of(layer), accuracy=1e-3).stated_error <= 1e-3

@@ -85,6 +85,7 @@ COMBINATIONS = [
 ]
 
 
+@pytest.mark.first(2)
 @pytest.mark.parametrize(("method", "kind"), COMBINATIONS)
 def test_other_units_give_the_same_answer(method, kind):
     solver, scene = build(method, METHODS[method]), SCENES[kind]

@@ -143,6 +143,7 @@ def test_a_shape_is_changed_like_any_record():
     assert dataclasses.replace(Pyramid(slope=0.3), sides=3) == Pyramid(slope=0.3, sides=3)
 
 
+@pytest.mark.first(5)
 @pytest.mark.parametrize(
     ("method", "shape"),
     [(Mdr(), shape) for shape in EXAMPLES if getattr(shape, "sides", 4) > 3]
@@ -158,6 +159,7 @@ def test_other_units_give_the_same_answer(method, shape):
             assert getattr(other, name) / units.factor(name) == pytest.approx(getattr(answer, name), rel=1e-9, abs=0.0)
 
 
+@pytest.mark.slow
 def test_refined_settings_and_threads_answer_alike():
     scene = press(Pyramid(slope=0.1))
     for method in (Mdr(), Bem(points=96)):

@@ -64,6 +64,7 @@ def test_finite_elements_without_viscosity_are_an_elastic_impact(name):
     assert difference(with_zero, elastic, NUMBERS) < ZERO
 
 
+@pytest.mark.first(1)
 @pytest.mark.parametrize("name", VISCOUS)
 @pytest.mark.parametrize("history", [HISTORY, CREEP], ids=["depth", "force"])
 def test_finite_elements_without_viscosity_follow_an_elastic_history(history, name):

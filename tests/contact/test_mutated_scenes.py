@@ -132,6 +132,7 @@ def judged(draw, folder, read=load_scene):
     return kind, "" if isinstance(scene, Scene) and harmless else f"{told}: read as {scene_to_mapping(scene)}"
 
 
+@pytest.mark.first(1)
 @pytest.mark.parametrize("seed", range(3))
 def test_a_mistake_is_one_message_or_the_scene_that_the_file_says(tmp_path, seed):
     draw = random.Random(seed)

@@ -111,11 +111,13 @@ def test_recipe_fills_the_summary_page_and_annotates_on_github(broken_on_github)
     assert 1 <= done.stdout.count("::error") <= 9
 
 
+@pytest.mark.slow
 def test_recipe_refuses_wrong_usage_with_exit_code_4(tmp_path):
     assert verify(tmp_path, "out", "--suite", "weekly").returncode == 4
     assert verify(tmp_path).returncode != 0
 
 
+@pytest.mark.slow
 def test_workflow_runs_the_recipe_and_keeps_what_it_writes(tmp_path):
     workflow = WORKFLOW.read_text(encoding="utf-8")
     (command,) = re.findall(r"run: .*(sh examples/ci/verify\.sh .*)", workflow)

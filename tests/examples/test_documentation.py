@@ -29,6 +29,7 @@ WRITTEN = ("book/", "commands/", "generated/", "start/", "figures/", "tasks/")
 COMMAND = re.compile(r"contact-verify ((?:[a-z]+|--\w+)[^`#\n;,)]*)")
 
 
+@pytest.mark.first(1)
 @pytest.mark.parametrize(
     "path",
     [pytest.param(path, marks=pytest.mark.slow if path.stem == "3_relaxation" else ()) for path in TUTORIALS],

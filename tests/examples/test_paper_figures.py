@@ -13,6 +13,7 @@ NUMBERS = (3, 4, 7, 9, 11, *(pytest.param(number, marks=pytest.mark.slow) for nu
 made = cache(paper_figure)
 
 
+@pytest.mark.first(1)
 @pytest.mark.parametrize("number", NUMBERS)
 def test_every_figure_has_finite_labelled_curves_with_errors(number):
     figure = made(number)

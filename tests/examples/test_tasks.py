@@ -51,6 +51,7 @@ def test_a_task_has_at_most_ten_lines(name):
     assert len([line for line in lines if line.strip() and not line.startswith(("#", '"""'))]) <= 10
 
 
+@pytest.mark.first(3)
 @pytest.mark.parametrize("name", tasks(SCENES))
 def test_a_scene_is_solved_with_small_stated_errors(name, folder):
     scene = load_scene(folder / name)
@@ -64,6 +65,7 @@ def test_a_scene_is_solved_with_small_stated_errors(name, folder):
         assert np.all(np.diff(answer.normal_force) > 0.0)
 
 
+@pytest.mark.first(4)
 @pytest.mark.parametrize("name", tasks(SCRIPTS))
 @pytest.mark.usefixtures("folder")
 def test_a_script_prints_what_its_page_says(name, capsys):

@@ -47,6 +47,7 @@ def weighted_distance(path, fields):
     return np.sqrt(np.array([of_p, of_q]) / (weight @ p**2))
 
 
+@pytest.mark.first(1)
 @pytest.mark.parametrize(
     ("nu", "support", "ratio"),
     [

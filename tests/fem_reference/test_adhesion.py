@@ -75,6 +75,7 @@ def test_sphere_pull_off_from_the_half_space():
     assert np.all(np.diff(by_depth.contact_radius) < 0)
 
 
+@pytest.mark.slow
 def test_flat_punch_on_an_incompressible_layer_detaches_stably_and_then_jumps():
     """The radius at the maximum is where it is flat, and needs a finer mesh: `test_threshold_of_stable_detachment`."""
     method = Fem(order=3, growth=0.7, edge_cell=1e-6, truncation=1e-7)

@@ -51,6 +51,7 @@ def agree(path, exact):
         assert np.all(np.abs(getattr(path, name) - getattr(exact, name)) <= stated), name
 
 
+@pytest.mark.first(1)
 @pytest.mark.parametrize(
     ("nu", "support", "radius", "indenter"),
     [
@@ -103,6 +104,7 @@ def slope_on_strips(nu, support, depth):
     return float(effect.first_order[0]), *found
 
 
+@pytest.mark.first(1)
 @pytest.mark.parametrize(
     ("nu", "support", "depth"),
     [
@@ -153,6 +155,7 @@ def test_the_stick_radius_of_a_thick_layer_is_self_similar():
     assert share == pytest.approx(np.full(3, share[-1]), rel=0.0, abs=0.01)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("nu", "share"),
     [
@@ -193,6 +196,7 @@ def test_force_rises_from_free_slip_to_full_stick():
 CYCLE = (0.0, 0.05, 0.1, 0.05, 0.02, 0.06, 0.1, 0.0, 0.1, -0.01)
 
 
+@pytest.mark.slow
 def test_a_cycle_of_depth_dissipates_and_closes():
     scene = rubbed(0.2, layer(0.5), DepthHistory(time=np.arange(float(len(CYCLE))), depth=np.array(CYCLE)))
     history = COARSE.solve(scene)
@@ -220,6 +224,7 @@ def test_a_history_of_force_is_that_of_its_depths():
     assert again.dissipated_energy == pytest.approx(first.dissipated_energy, rel=2e-2, abs=1e-9)
 
 
+@pytest.mark.slow
 def test_what_is_hardly_pressed_any_more_carries_its_force_and_never_pulls():
     """Below the force of one cell the contact was lost although a force was prescribed; a depth there was pulled."""
     time, forces = np.arange(5.0), [0.0, 1e-2, 1e-8, 1e-9, 1e-10]

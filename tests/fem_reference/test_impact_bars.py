@@ -54,6 +54,7 @@ def damped(indenter: Profile, viscosity: float) -> Scene:
     return Scene(layer=layer, indenter=indenter, loading=Impact(mass=1e-3, velocity=0.1), effects=effects)
 
 
+@pytest.mark.first(1)
 @pytest.mark.parametrize(
     ("indenter", "viscosity"),
     [(PUNCH, 1e4), (ROUND, 1e4), *(pytest.param(tip, 1e6, marks=pytest.mark.slow) for tip in (PUNCH, ROUND))],

@@ -35,6 +35,7 @@ def solved(asked):
     return COARSE.solve(asked)
 
 
+@pytest.mark.first(1)
 @pytest.mark.parametrize(
     ("indenter", "loading", "nu"),
     [

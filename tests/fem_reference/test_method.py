@@ -55,6 +55,7 @@ def assert_covered(path, errors, size):
         assert abs(error) <= path.error_estimate[quantity][0] <= size, quantity
 
 
+@pytest.mark.first(2)
 @pytest.mark.parametrize("ratio", [0.1, 20])
 @pytest.mark.parametrize(("nu", "support"), [(0.5, "bonded"), (0.45, "bonded"), (0.3, "unbonded")])
 def test_truncated_cone_within_its_error_bars(ratio, nu, support):
@@ -74,6 +75,7 @@ def test_requested_accuracy_is_reached():
     assert_covered(path, true_errors(path, 2, 0.3, "bonded"), 1e-4)
 
 
+@pytest.mark.first(1)
 @pytest.mark.parametrize("loading", [ContactRadii([1e-3]), IndentationDepths([5e-5]), NormalForces([0.1])], ids=str)
 def test_every_loading_is_refined_until_its_own_errors_hold(loading):
     """Where the radius is searched for, it counts too; the pressure states more, and the answer says so."""

@@ -45,6 +45,7 @@ def assert_covered(path):
         assert np.all(path.error_estimate[name] < 0.5), name
 
 
+@pytest.mark.first(1)
 @pytest.mark.parametrize(
     ("indenter", "quantity"),
     [(PROFILES[0], NormalForces), pytest.param(PROFILES[1], IndentationDepths, marks=pytest.mark.slow)],

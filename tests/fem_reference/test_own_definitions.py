@@ -132,6 +132,7 @@ SHAPES = (
 )
 
 
+@pytest.mark.first(1)
 @pytest.mark.parametrize("indenter", SHAPES, ids=lambda p: type(p).__name__)
 @pytest.mark.parametrize("loading", [ContactRadii([0.5]), IndentationDepths([0.05])], ids=lambda x: type(x).__name__)
 def test_heights_and_slopes_of_the_scene_reach_no_answer(indenter, loading, monkeypatch):

@@ -171,6 +171,7 @@ def test_friction_and_time_are_refused():
     assert "contact in time by fem models one uniform layer" in Fem().supports(impact).reason
 
 
+@pytest.mark.first(1)
 @pytest.mark.parametrize(
     ("indenter", "loading", "words"),
     [

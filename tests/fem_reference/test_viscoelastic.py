@@ -42,6 +42,7 @@ def impact_scene(thickness, nu=0.5, indenter=BALL, effects=(SOLID,)):
 
 
 # restitution of the standard solid sphere impact, from the reduction to springs (an independent method)
+@pytest.mark.first(1)
 @pytest.mark.parametrize(
     ("thickness", "restitution"),
     [(1e-3, 0.64341), *(pytest.param(*each, marks=pytest.mark.slow) for each in ((2e-3, 0.55924), (3e-3, 0.52344)))],
@@ -61,6 +62,7 @@ def test_requested_accuracy_of_an_impact_is_reached_or_refused():
         solve_to_accuracy(lambda settings: history, 1e-9, None, moves=True)
 
 
+@pytest.mark.slow
 def test_a_nearly_incompressible_layer_answers_like_an_incompressible_one():
     almost = QUICK.solve(impact_scene(1e-3, 0.49999))
     exactly = QUICK.solve(impact_scene(1e-3))
@@ -180,6 +182,7 @@ def test_peak_force_of_a_kelvin_voigt_impact_is_within_its_error_bar(damping):
 
 
 # peaks of a paraboloid, R = h, that hits a standard solid with G_inf = G_0 / 10, by the reduction to springs
+@pytest.mark.first(1)
 @pytest.mark.parametrize(
     ("velocity", "tau", "growth", "name", "expected"),
     [
@@ -290,6 +293,7 @@ def test_peak_depth_is_of_the_energys_order_in_the_cells(effects):
     assert [peak_depth(cells) for cells in (30, 40)] == pytest.approx([fine, fine], rel=1e-5, abs=0.0)
 
 
+@pytest.mark.slow
 def test_a_force_that_goes_back_to_zero_is_zero_in_the_end():
     """Roundings of the ramp left 3e-17 of it; "no depth carries the prescribed force"."""
     layer = Layer.incompressible(thickness=1e-3, shear_modulus=G1 + G_INF)
@@ -299,6 +303,7 @@ def test_a_force_that_goes_back_to_zero_is_zero_in_the_end():
         assert answer.normal_force[-1] == answer.contact_radius[-1] == 0.0
 
 
+@pytest.mark.slow
 def test_a_ramp_of_depth_on_a_dashpot_is_that_of_the_half_space():
     """F = (16/3) sqrt(R) G d^1.5 + 8 eta a d'; at equal steps the contact on cells missed 3.5e-3 of the peak."""
     G, R, depth, ramp, eta = 1e6, 0.01, 1e-5, 0.05, 3e4

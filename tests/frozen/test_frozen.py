@@ -29,6 +29,7 @@ def _entries():
             yield pytest.param(file.stem, entry, marks=marks, id=f"{file.stem}-{entry['seed'][1]}")
 
 
+@pytest.mark.first(4)
 @pytest.mark.parametrize(("kind", "entry"), list(_entries()))
 def test_frozen_answer_is_within_both_stated_errors(kind, entry):
     scene = scene_from_mapping(entry["scene"]).replace(beyond_small_strains=True)

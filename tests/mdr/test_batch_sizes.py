@@ -144,6 +144,7 @@ def test_a_scene_without_an_answer_is_refused(monkeypatch):
         pull_offs(scenes(Detachment(), (Adhesion(work_of_adhesion=0.05),)), PUNCH)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kernel", ["Haswell", pytest.param("Nehalem", marks=pytest.mark.slow)])
 def test_bits_do_not_depend_on_the_batch_with_blas_of_another_processor(kernel):
     """Seen to fail with Haswell's, where a product with eleven rows rounded otherwise for two lanes than for four."""

@@ -44,6 +44,7 @@ def shuffled(scenes):
     return [scenes[i] for i in RNG.permutation(len(scenes))]
 
 
+@pytest.mark.slow
 def test_pull_offs_are_what_detachment_paths_say():
     scenes = shuffled(
         [

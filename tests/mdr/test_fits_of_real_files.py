@@ -70,6 +70,7 @@ def film(modulus, base=1e9):
     return Scene(layer=stack, indenter=TIP, loading=IndentationDepths([3e-7]))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("guess", [pytest.param(1e9, marks=pytest.mark.slow), 8e9])
 def test_the_modulus_of_a_film_does_not_follow_its_guess(guess):
     path = Mdr().solve(film(2e9).replace(loading=IndentationDepths(np.linspace(5e-9, 3e-7, 60))))

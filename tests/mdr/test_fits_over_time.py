@@ -61,6 +61,7 @@ TRUE = {
 }
 
 
+@pytest.mark.first(1)
 @pytest.mark.parametrize(("effect", "end"), [(SOLID, HOLD), (PRONY, TIME.size)], ids=["hold", "withdrawal"])
 def test_force_over_time_gives_the_moduli_and_times_that_made_it(effect, end, relaxed):
     """Contact point and baseline are shifted, and fitted."""
@@ -82,6 +83,7 @@ def test_depth_over_time_gives_the_moduli_and_times_that_made_it(effect):
     assert found.response == "depth"
 
 
+@pytest.mark.slow
 def test_intervals_hold_and_noise_has_no_warning(relaxed):
     draw, inside = np.random.default_rng(5), []
     guess = scene(GUESSES[SOLID], DepthHistory(time=[0, 1], depth=[0, 1e-7]))
@@ -93,6 +95,7 @@ def test_intervals_hold_and_noise_has_no_warning(relaxed):
     assert np.mean(inside) > 0.8
 
 
+@pytest.mark.slow
 def test_times_that_are_kept_are_not_fitted_and_another_solid_warns(relaxed):
     kept = PRONY.replace(shear_moduli=[1.9e3, 0.1e3])
     loading = DepthHistory(time=[0, 1], depth=[0, 1e-7])
@@ -123,6 +126,7 @@ viscosity = "1 kPa s"
 """
 
 
+@pytest.mark.slow
 def test_the_command_fits_a_table_with_times_and_writes_every_number(tmp_path, capsys, relaxed):
     scene_file, curve, table = tmp_path / "solid.toml", tmp_path / "curve.csv", tmp_path / "fit.csv"
     scene_file.write_text(SCENE_FILE)

@@ -130,6 +130,7 @@ def test_intervals_hold_as_often_as_they_say():
     assert told[-1] == (1000, 1000)
 
 
+@pytest.mark.slow
 def test_thickness_and_modulus_that_cannot_be_told_apart_are_named():
     _, _, force = noisy(0.01)
     found = fit_curve(SCENE, DEPTH, force[0], parameters=("youngs_modulus", "contact_point", "thickness"))

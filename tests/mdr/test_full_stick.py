@@ -81,6 +81,7 @@ def test_pressure_adds_up_to_the_force(body, shape):
     assert total == pytest.approx(float(path.normal_force[0]), rel=1e-5 if isinstance(indenter, Cone) else 1e-8, abs=0)
 
 
+@pytest.mark.slow
 def test_the_three_loadings_agree():
     path = stuck(0.3, PARABOLOID, ContactRadii([0.4, 1.0, 2.0]))
     by_depth = stuck(0.3, PARABOLOID, IndentationDepths(path.indentation_depth[::-1]))
@@ -191,6 +192,7 @@ def test_stick_travels_through_files(tmp_path):
     assert load_scene(file) == scene
 
 
+@pytest.mark.slow
 def test_bound_and_first_order_of_friction():
     """First order against quadrature of another program; at mu = 0.01 increments of Coulomb friction by elements."""
     scene = Scene(layer=layer(0.5), indenter=PARABOLOID, loading=IndentationDepths([0.03, 0.12, 0.21]))

@@ -64,6 +64,7 @@ def test_values_of_another_program():
     assert found.shear_stress[1] == pytest.approx(-0.1030422626, rel=0, abs=1e-10)
 
 
+@pytest.mark.slow
 def test_largest_stresses_of_another_program():
     inside = pressed(unit_layer(0.3), Paraboloid(radius_of_curvature=1.0), 1.0).inside()
     worst, shear = inside.largest("von_mises"), inside.largest("interface_shear")

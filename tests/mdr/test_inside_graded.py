@@ -52,6 +52,7 @@ def in_sublayers(layer, count):
     return StackKernel(tuple(Sheet(1.0, float(G), float(n), slip) for G, n, slip in rows), base), shear
 
 
+@pytest.mark.first(1)
 @pytest.mark.parametrize(
     ("nu", "support"),
     [
@@ -117,6 +118,7 @@ LAYERS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name",
     ["softer", *(pytest.param(n, marks=pytest.mark.slow) for n in ("exponential", "incompressible", "nu over depth"))],
@@ -154,6 +156,7 @@ def laws(layer, inside, r, z):
     return [(float(residual), scale) for residual in residuals]
 
 
+@pytest.mark.first(1)
 @pytest.mark.parametrize("planted", ["slope of the moduli", "half-space of the depth"])
 def test_planted_faults_are_seen(planted, monkeypatch):
     if planted == "slope of the moduli":

@@ -116,6 +116,7 @@ def force_at(path, step, inside):
     return abs(total / path.normal_force[step] - 1.0)
 
 
+@pytest.mark.first(1)
 @pytest.mark.parametrize("step", [1, 3, 5])
 @pytest.mark.parametrize(
     "indenter",
@@ -152,6 +153,7 @@ def test_creep_under_a_force():
     assert force_at(crept, -1, inside) < 1e-6
 
 
+@pytest.mark.slow
 def test_a_bare_dashpot():
     """Its pressure is infinite at the advancing edge, and refused there by name."""
     path = followed(SOFT, INDENTERS[0], TIME, DEPTH, KelvinVoigt(shear_modulus=1.0, viscosity=0.5))

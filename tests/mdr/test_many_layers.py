@@ -49,6 +49,7 @@ def scenes(indenter, loading, thickest=1e-2, count=7, **layer):
     ]
 
 
+@pytest.mark.first(11)
 @pytest.mark.parametrize("loading", LOADINGS)
 @pytest.mark.parametrize("indenter", INDENTERS)
 @pytest.mark.parametrize(("nu", "support"), [(0.5, "bonded"), (0.3, "unbonded")])

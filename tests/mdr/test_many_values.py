@@ -14,6 +14,7 @@ LAYER = Layer(thickness=1e-3, youngs_modulus=1e6, poissons_ratio=0.45)
 VALUES = (ContactRadii, 6e-4, 3e-3), (IndentationDepths, 1e-7, 2e-4), (NormalForces, 1e-7, 1.0)
 
 
+@pytest.mark.first(1)
 @pytest.mark.parametrize(("kind", "low", "high"), VALUES)
 def test_blocks_are_short_loadings(kind, low, high):
     indenter = TruncatedCone(flat_radius=5e-4, slope=0.1)

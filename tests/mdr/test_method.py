@@ -76,6 +76,7 @@ def test_radii_depths_and_forces_describe_the_same_path(layer, indenter):
             np.testing.assert_allclose(getattr(other, name), getattr(path, name), rtol=3e-12, err_msg=name)
 
 
+@pytest.mark.first(1)
 @EACH_INDENTER
 def test_the_pressure_carries_the_force(layer, indenter):
     """2 pi int p r dr = F by quadrature between the singular radii; F comes from the springs, Eq. (4)."""

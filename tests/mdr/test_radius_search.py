@@ -15,6 +15,7 @@ STACKS = [
 ]
 
 
+@pytest.mark.first(1)
 @pytest.mark.parametrize("loading", ["IndentationDepths", "NormalForces"])
 @pytest.mark.parametrize("layer", ["half-space", "bonded layer", "unbonded layer", *STACKS])
 def test_radii_of_random_loads_give_the_loads_again(layer, loading):

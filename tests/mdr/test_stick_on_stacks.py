@@ -65,6 +65,7 @@ def test_the_surface_below_a_punch_neither_sinks_unevenly_nor_slides(name, ratio
     assert beside == pytest.approx(punch.beside(places), rel=0.0, abs=1e-11 * np.abs(beside).max())
 
 
+@pytest.mark.slow
 def test_growth_on_a_layer_cut_in_two_is_that_on_the_layer():
     whole = Layer(thickness=2.0, youngs_modulus=1.0, poissons_ratio=0.45)
     cut = stack((1.2, 1.0, 0.45), (0.8, 1.0, 0.45))
@@ -90,6 +91,7 @@ def test_finite_elements_agree_within_what_both_state(name, radius):
     assert path.error_estimate["base_force_defect"][0] < 1e-8
 
 
+@pytest.mark.slow
 def test_finite_elements_agree_on_one_stack():
     exact = Mdr().solve(scene_of(STACKS["soft on stiff"], ContactRadii([1.0])))
     path = Fem(growth=1.0).solve(scene_of(STACKS["soft on stiff"], IndentationDepths(exact.indentation_depth)))

@@ -40,6 +40,7 @@ def indenter(kind: str, b: float) -> Profile:
     }[kind]
 
 
+@pytest.mark.first(4)
 @pytest.mark.parametrize("body", BODIES)
 @pytest.mark.parametrize("kind", ["cone", "paraboloid", "spheroconical", "table"])
 @pytest.mark.parametrize("nodes", [12, pytest.param(20, marks=pytest.mark.slow)])

@@ -37,6 +37,7 @@ def marked(faults):
     return [pytest.param(f, marks=pytest.mark.slow if LONG & {*f.probes} else (), id=named(f)) for f in faults]
 
 
+@pytest.mark.first(4)
 @pytest.mark.parametrize("fault", marked(f for f in (*FAULTS, OWN) if not shared_by_all(f)))
 def test_what_some_methods_share_parts_them_from_others(fault, monkeypatch):
     probe = next(name for name in COMPARED_IN if name in fault.probes)
@@ -46,6 +47,7 @@ def test_what_some_methods_share_parts_them_from_others(fault, monkeypatch):
     assert pair if seen.of(methods=BOTH) else apart
 
 
+@pytest.mark.first(4)
 @pytest.mark.parametrize("fault", marked(f for f in FAULTS if shared_by_all(f)))
 def test_what_all_methods_share_is_noticed_by_a_closed_form_or_a_value(fault, monkeypatch):
     assert noticed(fault, monkeypatch, methods=("mdr",), kinds=(Kind.EXACT, Kind.INVARIANT)).failing()

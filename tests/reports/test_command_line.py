@@ -221,6 +221,7 @@ def test_no_option_is_left_aside_in_silence(hertz, options, words, capsys, monke
     assert words in capsys.readouterr().err.replace("\n", " ")
 
 
+@pytest.mark.slow
 def test_pictures_are_written_in_three_formats(hertz, tmp_path):
     begins = {".svg": b"<svg", ".png": b"\x89PNG", ".pdf": b"%PDF"}
     files = [tmp_path / f"answer{ending}" for ending in begins]

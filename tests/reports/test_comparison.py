@@ -53,6 +53,7 @@ def test_what_got_worse_is_the_headline(runs, capsys):
     assert not not_a_number(page)
 
 
+@pytest.mark.slow
 def test_pages_are_rebuilt_from_stored_results_without_a_change(runs, capsys):
     first, _ = runs
     rebuild(first)

@@ -30,6 +30,7 @@ def solved(*more):
     return code, read_run(Path("out"))
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("library")
 def test_alone_it_is_compared_with_the_fast_method_where_it_models_the_scene(tmp_path):
     case = with_registered(load_cases()["thin_layer_limits"], ["mine"])

@@ -21,6 +21,7 @@ def test_advice_names_what_matters(scene, capsys):
     assert "Finite thickness matters at 1 %: without it " in capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_a_climbed_ladder_tells_its_digits_and_writes_its_table(tmp_path, capsys):
     assert run(["run", "--only", "stability", "vanishing flat end", "--out", str(tmp_path)]) == 0
     assert "vanishing flat end, mdr: answered to the end, at least 1" in capsys.readouterr().out

@@ -41,6 +41,7 @@ def not_a_number(text):
     return re.findall(r"\b(nan|inf|None)\b", text.replace("fill: none", "").replace("stroke: none", ""))
 
 
+@pytest.mark.slow
 def test_nothing_on_the_page_or_in_the_data_reads_nan_or_none(page, directory):
     assert not not_a_number(page)
     assert not not_a_number((directory / "answers.csv").read_text(encoding="utf-8"))
@@ -69,6 +70,7 @@ def test_all_parts_are_there_in_order(page):
     assert places == sorted(places)
 
 
+@pytest.mark.slow
 def test_measurements_without_checks_show_no_empty_matrix(tmp_path):
     run = only(PASSING, verdicts=())
     page = text_of(Run(judged=run.judged, answers=type(run.answers)()), tmp_path)
@@ -82,6 +84,7 @@ def test_a_passing_run_has_no_word_of_failure(tmp_path):
     assert not re.search(r"\b(FAIL|FAILED|INVALID|DIFF)\b", words)
 
 
+@pytest.mark.slow
 def test_an_interrupted_run_says_so(tmp_path):
     assert "INCOMPLETE" in words_of(text_of(only(PASSING, complete=False), tmp_path))
 
@@ -162,6 +165,7 @@ def test_every_link_between_the_pages_has_its_target(levels):
             assert (page.parent / file).is_file() if file else anchor in ids, link
 
 
+@pytest.mark.slow
 def test_pages_of_cases_that_are_gone_are_removed(tmp_path):
     (tmp_path / CASES).mkdir()
     (tmp_path / CASES / "gone.html").write_text("earlier", encoding="utf-8")
@@ -184,6 +188,7 @@ def test_every_picture_is_written_and_named_below_it(directory, page):
     assert {f"{name}.svg" for name in re.findall(r"<code>figures/([^<]*)\.svg</code>", page)} == written
 
 
+@pytest.mark.first(1)
 @pytest.mark.parametrize("name", [PASSING, FAILING, ""])
 def test_pictures_are_byte_identical_on_a_second_run(name):
     run = example()
@@ -242,6 +247,7 @@ def test_the_numbers_of_a_run_stand_in_one_table_with_all_their_digits(directory
     assert [float(row["error"]) for row in found] == [q.error[0] for q in force]
 
 
+@pytest.mark.slow
 def test_a_text_with_angle_brackets_stays_a_text(tmp_path):
     (case,) = only(PASSING).judged.cases
     case = dataclasses.replace(case, question="Is a < b & <script>alert(1)</script>?")

@@ -21,6 +21,7 @@ def longest_line(svg):
     return max(path.count("L") for path in re.findall(r'<path d="([^"]*)" clip-path', svg))
 
 
+@pytest.mark.first(1)
 @pytest.mark.parametrize("task", ["relaxation", "creep", "afm_pyramid", "worn_tip"])
 def test_a_written_picture_follows_the_answer_between_prescribed_states(task, tmp_path, capsys):
     file = tmp_path / "answer.svg"

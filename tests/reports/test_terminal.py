@@ -32,6 +32,7 @@ def process(arguments, **environment):
     )
 
 
+@pytest.mark.first(1)
 @pytest.mark.parametrize("environment", ENCODINGS, ids=str)
 def test_an_answer_is_printed_in_any_encoding(environment, tmp_path):
     scene = tmp_path / "scene µ.toml"
@@ -43,6 +44,7 @@ def test_an_answer_is_printed_in_any_encoding(environment, tmp_path):
     assert written.is_file()
 
 
+@pytest.mark.first(1)
 @pytest.mark.parametrize(
     "command", [["--help"], ["solve", "--help"], ["run", "--list"], ["solve", "µ \u2013 漢.toml"]], ids=str
 )

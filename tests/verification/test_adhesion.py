@@ -87,6 +87,7 @@ PROFILES = (
 )
 
 
+@pytest.mark.first(2)
 @pytest.mark.parametrize("indenter", PROFILES, ids=lambda p: type(p).__name__)
 @pytest.mark.parametrize("base", [layer(0.5), layer(0.3, support="unbonded")], ids=["bonded", "unbonded"])
 def test_equilibrium_and_stability_are_those_of_the_energy(base, indenter):

@@ -102,6 +102,7 @@ def test_a_detachment_at_a_rim_states_what_it_errs():
         assert true <= coarse.error_estimate[quantity][0] + fine.error_estimate[quantity][0], quantity
 
 
+@pytest.mark.first(1)
 @pytest.mark.parametrize("growth", [0, 8, 22])
 def test_a_flat_end_that_is_hardly_outgrown_detaches_like_a_punch(growth):
     """The branch beyond the flat end is 1e-14 to 1e-12 of it long: roundings of the way along it count."""

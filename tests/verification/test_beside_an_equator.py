@@ -100,6 +100,7 @@ def test_cells_that_do_not_resolve_an_upright_end_are_refused() -> None:
         Bem(points=128).solve(contact(1e-5, Layer.half_space(youngs_modulus=1.0, poissons_ratio=0.3)))
 
 
+@pytest.mark.first(2)
 @pytest.mark.parametrize("fem", [Fem(), Fem(accuracy=1e-2)])
 @pytest.mark.parametrize("left", [1e-5, 1e-9])
 def test_finite_elements_resolve_what_is_left_before_the_end(left: float, fem: Fem) -> None:
@@ -108,6 +109,7 @@ def test_finite_elements_resolve_what_is_left_before_the_end(left: float, fem: F
     assert within_stated(fem, scene, Mdr().solve(scene))
 
 
+@pytest.mark.first(1)
 @pytest.mark.parametrize("left", [1e-5, 1e-7, 1e-9])
 def test_finite_elements_at_usual_cells_lack_no_triangles_before_the_end(left: float) -> None:
     """Meshes lacked triangles near the edge: the depth erred by 1.6e-3 and 3.2e-3 at 1e-7 and 1e-9."""

@@ -102,6 +102,7 @@ def test_a_kelvin_voigt_half_space_creeps_from_depth_zero_under_a_paraboloid():
     assert within(answer, "indentation_depth", (FORCE * creep("kelvin_voigt", TIMES) / BALL_FORCE) ** (2 / 3))
 
 
+@pytest.mark.slow
 def test_released_after_a_first_jump_the_depth_is_that_of_a_fast_ramp():
     force = FORCE * np.array([1.0, 1.0, 0.3, 0.3])
     time = np.array([0.0, 1.0, 1.5, 3.0])

@@ -33,6 +33,7 @@ def case():
     return judge([CASE], answers, example_stamp())
 
 
+@pytest.mark.slow
 def test_every_claim_of_the_page_passes(case):
     assert [(v.claim, v.scene, v.message) for v in case.verdicts if v.status is not Status.PASS] == []
     assert {claim.kind for claim in case.verdicts} == {Kind.ORDER, Kind.INVARIANT}

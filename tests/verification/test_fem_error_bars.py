@@ -28,6 +28,7 @@ from tests.referees.second_opinion import second_opinion
 LAYER = Layer(thickness=0.5, youngs_modulus=1.0, poissons_ratio=0.3)
 
 
+@pytest.mark.first(1)
 @pytest.mark.parametrize("gap", [1e-3, pytest.param(1e-5, marks=pytest.mark.slow), 1e-7])
 def test_contacts_that_are_nearly_flat_punches(gap):
     indenter = TruncatedCone(flat_radius=1 - gap, slope=0.1)

@@ -35,6 +35,7 @@ def scene(effect, tip, loading, thickness=2e-3):
     return Scene(layer=layer, indenter=tip, loading=loading, effects=(effect,))
 
 
+@pytest.mark.first(1)
 @pytest.mark.parametrize(
     ("effect", "tip"), [(SOLID, BALL), (PRONY, CONE), (DAMPED, CONE)], ids=["solid", "prony", "kelvin_voigt"]
 )
@@ -57,6 +58,7 @@ def test_a_depth_that_is_there_at_the_first_instant_acts_at_once(effect):
     assert np.all(np.abs(answer.normal_force - exact) <= answer.uncertainty("normal_force"))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("effect", [DAMPED, pytest.param(SOLID, marks=pytest.mark.slow)], ids=["kelvin_voigt", "solid"])
 def test_a_force_that_is_there_at_the_first_instant_acts_at_once(effect):
     answer = Fem().solve(scene(effect, BALL, ForceHistory(time=[0, 10], force=[1e-4, 1e-4]), np.inf))

@@ -77,6 +77,7 @@ def test_a_relaxation_far_faster_than_the_impact_is_an_answer_or_a_named_refusal
     assert 1.0 - 9.0 * np.pi * time / 0.3 < restitution <= 1.0
 
 
+@pytest.mark.slow
 def test_springs_that_touch_at_one_instant_under_a_force_have_no_infinite_front():
     """Infinite pace times no time was NaN (and a warning, which fails a test)."""
     layer = Layer(thickness=3.37702e-07, youngs_modulus=11772.7, poissons_ratio=0.5, support="unbonded")

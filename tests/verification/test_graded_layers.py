@@ -44,6 +44,7 @@ def test_stiffnesses_on_a_constant_modulus_are_covered():
     assert np.all(error < 4e-14)  # 2.7e-14 at a/h = 0.4: 120 roundings, where 1 - 2 nu = 2e-5 takes four digits
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("support", ["bonded", pytest.param("unbonded", marks=pytest.mark.slow)])
 def test_a_constant_modulus_is_one_layer(support):
     """A layer without bond is slow, but graded in the test above."""
@@ -69,6 +70,7 @@ def test_a_constant_modulus_is_one_layer(support):
         )
 
 
+@pytest.mark.slow
 def test_adhesion_obeys_griffith():
     """c_N = dk_N/da/2 from k_N at neighbouring radii, fourth order."""
     work, a, step = 1e-3, 0.6, 0.012
@@ -86,6 +88,7 @@ def test_what_is_not_modelled_is_refused_by_name():
         solve(EXPONENTIAL, PARABOLOID, ContactRadii([2000.0]))
 
 
+@pytest.mark.first(1)
 @pytest.mark.parametrize("radius", [0.3, 1.3])
 def test_the_pressure_is_even_about_the_axis(radius):
     """Panels there are as narrow as 1e-6 of the contact: their slopes made p(0) up to 1 % wrong."""

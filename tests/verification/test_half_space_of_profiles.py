@@ -54,6 +54,7 @@ CLOSE = {
 }
 
 
+@pytest.mark.first(1)
 @pytest.mark.parametrize("radii", CLOSE)
 @pytest.mark.parametrize("radius", [1.7])
 def test_a_measured_table_with_uneven_radii(radii, radius):

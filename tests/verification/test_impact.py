@@ -225,6 +225,7 @@ def test_a_rounded_cone_on_a_layer_of_many_relaxation_times_turns_once():
     assert answer.energy_residual < 1e-7
 
 
+@pytest.mark.slow
 def test_an_indenter_that_stays_is_refused():
     """A Maxwell layer relaxes faster than the punch is thrown back: it creeps to rest, and no restitution is given."""
     layer = incompressible(1e-3, 1e6)

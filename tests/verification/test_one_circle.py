@@ -60,6 +60,7 @@ def scene_of(indenter, loading, layer=LAYER, effects=()):
     return Scene(layer=layer, indenter=indenter, loading=loading, effects=effects)
 
 
+@pytest.mark.first(4)
 @METHODS
 @pytest.mark.parametrize(("indenter", "depth", "dip"), [(DIPPED, 1.5e-5, 2e-3), (NARROW, 4e-6, 0.8e-3)])
 def test_a_second_dip_below_the_surface_is_refused_with_its_radius(method, indenter, depth, dip):
@@ -139,6 +140,7 @@ MOTIONS = [
 ]
 
 
+@pytest.mark.first(2)
 @pytest.mark.parametrize("method", [MDR, FEM], ids=lambda m: m.name)
 @pytest.mark.parametrize("loading", MOTIONS, ids=lambda value: type(value).__name__)
 def test_motions_are_refused_at_their_largest_contact(method, loading):
@@ -173,6 +175,7 @@ def gap_beside(path, indenter):
     return (indenter.height(r) - depth + path.surface_displacement(r)) / depth
 
 
+@pytest.mark.first(1)
 @pytest.mark.parametrize(("method", "count"), [(MDR, 25), (DIRECT, 3), (FEM, 2), (BEM, 2)], ids=lambda v: str(v)[:3])
 def test_what_is_answered_has_no_negative_gap_beside_the_contact(method, count):
     check_random_tables(method, count, seed=1)
@@ -240,6 +243,7 @@ def test_tables_with_falling_slopes_are_not_convex(indenter):
     assert not indenter.is_convex
 
 
+@pytest.mark.first(1)
 @pytest.mark.parametrize(("support", "ratio"), [("bonded", 0.5), ("bonded", 0.48), ("unbonded", 0.3)])
 def test_the_mdr_profile_of_every_truncated_cone_rises(support, ratio):
     """So convex profiles, sums of truncated cones, cannot be touched by a bulge beside the contact."""

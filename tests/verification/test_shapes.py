@@ -150,6 +150,7 @@ def test_a_thin_incompressible_layer_obeys_poissons_equation(ratio):
     assert found != pytest.approx(limit, rel=0.06 / ratio, abs=0.0)
 
 
+@pytest.mark.first(1)
 @BOTH
 @pytest.mark.parametrize("indenter", [Pyramid(slope=0.1), PolygonalPunch(inscribed_radius=0.3)])
 def test_forces_are_the_inverse_of_depths(method, indenter):
@@ -171,6 +172,7 @@ def test_the_stiffness_is_the_derivative_of_the_force(body):
     assert path.contact_stiffness[1] == pytest.approx(numeric, rel=1e-6, abs=0.0)
 
 
+@pytest.mark.slow
 def test_many_depths_are_those_of_few():
     """Long paths interpolate the harmonics over the contact radius."""
     depths = np.geomspace(1e-3, 0.1, 60)
@@ -312,6 +314,7 @@ def test_stated_errors_cover_forty_random_scenes(seed):
     assert min(*covered.values(), pressures) >= 0.95 * total, (covered, pressures)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("order", "ratio", "nu"),
     [

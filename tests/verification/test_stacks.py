@@ -279,6 +279,7 @@ def test_a_small_contact_on_a_bending_film_is_refused_where_it_is_touched_beside
     assert solve(layer, Cone(slope=0.1), IndentationDepths([0.0494])).contact_radius[0] < 0.016
 
 
+@pytest.mark.slow
 def test_wide_contacts_beyond_a_falling_profile_are_answered_where_they_press():
     """The separate integral equation knows no profile g at all."""
     radius, layer = 5.0, stack((0.2, 100.0, 0.2), (0.8, 1.0, 0.49))

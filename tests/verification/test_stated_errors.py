@@ -122,6 +122,7 @@ def uncovered(name: str, count: int) -> list[str]:
     return lines
 
 
+@pytest.mark.first(1)
 @pytest.mark.parametrize("name", [name for name, row in ROWS.items() if row.fast])
 def test_a_few_scenes_are_covered(name):
     assert not uncovered(name, ROWS[name].fast)

@@ -155,6 +155,7 @@ def brute_force(thickness, time, depth, count=160, substeps=400):
     return np.array(forces)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("thickness", [1e-3])
 def test_loading_unloading_and_reloading_before_recovery(thickness):
     time = np.linspace(0.0, 5e-3, 61)

@@ -27,6 +27,7 @@ def test_every_number_is_written_once_and_none_is_left_over():
     assert {f"{kind}: {name}" for kind, names in WRITTEN.items() for name in names} == set(ENTRIES)
 
 
+@pytest.mark.first(1)
 @pytest.mark.parametrize("name", QUICK)
 def test_some_numbers_are_computed_again_on_more_nodes(name):
     assert digits_agree(ENTRIES[name], 2)

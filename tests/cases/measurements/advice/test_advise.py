@@ -147,6 +147,7 @@ def test_the_jkr_number_says_what_leaving_adhesion_out_shows(work, verdict):
     assert (part(advice, "Adhesion") in advice.needed) is ("may" in verdict)
 
 
+@pytest.mark.first(2)
 @pytest.mark.parametrize("loading", [Impact(mass=1e-3, velocity=0.1), DepthHistory(time=[0, 1e-3], depth=[0, 1e-5])])
 @pytest.mark.parametrize(("share", "verdict"), [(1e-3, "changes no quantity"), (1e-1, "may change a quantity")])
 def test_a_dashpot_counts_where_leaving_it_out_shows_it(loading, share, verdict):
