@@ -54,6 +54,7 @@ FORBIDDEN = {
 }
 
 
+@pytest.mark.first(2)
 @pytest.mark.parametrize("package", FORBIDDEN)
 def test_importing_a_package_loads_only_what_it_needs(package):
     code = f"import sys, {package}; print(' '.join(sorted({{m.split('.')[0] for m in sys.modules}})))"

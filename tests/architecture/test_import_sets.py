@@ -58,6 +58,7 @@ def test_lapack_is_scipys_where_its_file_is_not_found_alone():
     assert "scipy.linalg" in loaded_after(f"{told}; assert lapack().dpotrf([[4.0]])[0][0, 0] == 2.0")
 
 
+@pytest.mark.slow
 def test_a_command_that_solves_loads_neither_storage_nor_scipys_linear_algebra():
     run = "from typer.testing import CliRunner; from reports.command_line import app; "
     run += "assert CliRunner().invoke(app, ['solve', 'examples/cartilage.toml']).exit_code == 0"
@@ -66,17 +67,20 @@ def test_a_command_that_solves_loads_neither_storage_nor_scipys_linear_algebra()
     assert not loaded & {"scipy.linalg", "scipy.sparse", "scipy.optimize", "scipy.special"}
 
 
+@pytest.mark.slow
 def test_an_answer_of_boundary_elements_loads_fftw_and_nothing_of_other_methods():
     loaded = loaded_after("from bem import Bem; Bem(points=96).solve(scene)")
     assert "pyfftw.pyfftw" in loaded
     assert not loaded & {"pyfftw", "fem_reference", "mdr", "matplotlib", "h5py", "bem.cells"}
 
 
+@pytest.mark.slow
 def test_packages_load_after_their_compiled_files():
     told = "import scipy.special, scipy.fft; assert scipy.special.jv(0, 0.0) == 1.0 and scipy.fft.dct([1.0])[0] == 2.0"
     assert "scipy.fft" in loaded_after(f"from bem import Bem; Bem(points=96).solve(scene); {told}")
 
 
+@pytest.mark.slow
 def test_an_answer_of_finite_elements_loads_no_optimiser():
     loaded = loaded_after("from fem_reference import Fem; Fem(accuracy=1e-2).solve(scene)")
     assert not loaded & {

@@ -41,6 +41,7 @@ def test_it_is_a_method():
     assert Bem(points=128).refined() == Bem(points=256)
 
 
+@pytest.mark.first(4)
 @pytest.mark.parametrize(
     ("indenter", "loading"),
     [
@@ -103,6 +104,7 @@ def test_displacement_beside_hertz_is_the_closed_form():
     np.testing.assert_allclose(path.surface_displacement(r), exact, rtol=2e-3)
 
 
+@pytest.mark.slow
 def test_periodic_boundary_agrees_for_a_thin_layer():
     loading = IndentationDepths([2e-4])  # a/h about 6
     free, periodic = (solve(PARABOLOID, loading, points=256, boundary=b) for b in ("free", "periodic"))
@@ -213,6 +215,7 @@ def test_the_step_of_slopes_leaves_no_error_of_its_own_on_fine_grids(layer, flat
         assert error < 1.5e-5
 
 
+@pytest.mark.first(8)
 @pytest.mark.parametrize("indenter", [PARABOLOID, CONE], ids=["paraboloid", "truncated cone"])
 @pytest.mark.parametrize("prescribed", [ContactRadii, IndentationDepths, NormalForces])
 @pytest.mark.parametrize("layer", [HALF_SPACE, LAYER], ids=["half-space", "layer"])

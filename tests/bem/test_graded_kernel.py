@@ -53,6 +53,7 @@ def test_many_sublayers_extrapolated_have_the_same_kernel(support, slips, modulu
     np.testing.assert_allclose(GradedKernel(layer).chi(k), twice, rtol=2e-10)
 
 
+@pytest.mark.first(1)
 @pytest.mark.parametrize(
     "layer",
     [

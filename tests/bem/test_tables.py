@@ -85,6 +85,7 @@ def test_a_punch_under_a_force_states_the_error_of_its_displacement():
     assert 0.0 < error <= path.error_estimate["surface_displacement"]
 
 
+@pytest.mark.first(1)
 @pytest.mark.parametrize("settings", [{"cells": 64}, {"ratios": 16}, {"radii": 12}])
 def test_an_error_of_each_size_of_a_table_is_stated(settings):
     """Few cells, rows or columns alone make an answer worse by more than a fine table's, and are stated."""

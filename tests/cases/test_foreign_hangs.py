@@ -45,6 +45,7 @@ def rows(monkeypatch, tmp_path):
     return rows
 
 
+@pytest.mark.slow
 def test_a_hang_ends_by_default_after_five_minutes_and_is_named(rows):
     """Here the default is half a second; that another limit may be given is seen in `test_runner`."""
     assert FOREIGN_TIME_LIMIT == 300.0

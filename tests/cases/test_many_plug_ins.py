@@ -61,6 +61,7 @@ def test_packages_never_meet_in_a_claim_and_each_pair_is_compared_once(install, 
     comparisons(joined)
 
 
+@pytest.mark.first(32)
 @pytest.mark.parametrize("suite", ["", "ci"])
 @pytest.mark.parametrize("name", LIBRARY)
 def test_a_chosen_method_is_asked_the_same_whatever_else_is_installed(install, name, suite):

@@ -213,6 +213,7 @@ def test_a_dying_process_is_an_answer_and_all_others_are_as_in_one_process(tmp_p
     assert statuses(result, "first order") == {Status.PASS}
 
 
+@pytest.mark.slow
 def test_timed_tasks_come_last_and_give_the_cost_of_accuracy(tmp_path):
     events = []
     result = run(fake_case(work=True), tmp_path, progress=events.append)

@@ -99,6 +99,7 @@ def errors(answer, best):
 SLOW = ("force history", "graded", "graded worn", "stick layer", "stick stack")
 
 
+@pytest.mark.first(6)
 @pytest.mark.parametrize("name", [pytest.param(n, marks=[pytest.mark.slow] * (n in SLOW)) for n in SCENES])
 def test_refining_leaves_a_third_of_a_coarse_error_at_most(name):
     scene = SCENES[name]

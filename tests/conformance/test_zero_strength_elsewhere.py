@@ -58,6 +58,7 @@ def test_tables_without_work_of_adhesion_are_tables_without_adhesion():
     )
 
 
+@pytest.mark.first(1)
 @pytest.mark.parametrize("name", VISCOUS)
 def test_finite_elements_without_viscosity_are_an_elastic_impact(name):
     with_zero, elastic = COARSE.solve(IMPACT.replace(effects=(VISCOUS[name],))), COARSE.solve(IMPACT)
@@ -72,6 +73,7 @@ def test_finite_elements_without_viscosity_follow_an_elastic_history(history, na
     assert difference(with_zero, elastic, ("normal_force", "indentation_depth")) < ZERO
 
 
+@pytest.mark.first(1)
 @pytest.mark.parametrize(
     "method", [COARSE, Bem(points=96), IntegralEquationMethod(), COARSE_TABLE], ids=["fem", "bem", "direct", "table"]
 )

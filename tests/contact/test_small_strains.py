@@ -64,6 +64,7 @@ def test_depths_from_the_thickness_on_are_refused_under_every_loading(name):
     assert "note: the depth is" in repr(answer)
 
 
+@pytest.mark.first(1)
 @pytest.mark.parametrize("method", [Mdr(), Fem(order=2, edge_cell=1e-3)], ids=lambda m: m.name)
 def test_every_method_refuses_and_notes(method):
     with pytest.raises(UnsupportedSceneError, match="beyond_small_strains"):

@@ -221,6 +221,7 @@ def test_smoothing_moves_the_force_by_at_most_what_its_bound_says():
     assert 0.0 < moved <= 1.05 * other.contact_stiffness[0] * smooth.smoothing
 
 
+@pytest.mark.slow
 def test_pint_is_loaded_only_where_a_unit_is_met():
     code = (
         "import sys; from contact import scene_from_mapping as s; "

@@ -129,6 +129,7 @@ def worst_of_the_fit(layers, seed):
     return worst, 25 * layers
 
 
+@pytest.mark.slow
 def test_the_compact_fit_is_within_a_tenth_of_a_per_cent():
     assert worst_of_the_fit(24, seed=5)[0] < 1e-3
 

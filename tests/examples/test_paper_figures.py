@@ -34,6 +34,7 @@ def test_every_figure_has_finite_labelled_curves_with_errors(number):
                 assert max(one.half_width) < 1e-5 * max(map(abs, one.y))
 
 
+@pytest.mark.first(1)
 @pytest.mark.parametrize("number", [*(n for n in NUMBERS if isinstance(n, int) and n != 4), *NUMBERS[-3:]])
 def test_symbols_of_finite_elements_lie_on_the_lines(number):
     shown = [(panel, one) for panel in made(number).panels for one in panel.series if one.style == "symbols"]

@@ -79,6 +79,7 @@ def test_two_methods_agree_within_stated_errors(nu, support, ratio):
     assert of_shear < elements.error_estimate["tangential_traction"][0] < 2e-3
 
 
+@pytest.mark.first(1)
 @pytest.mark.parametrize("nu", [0.0, pytest.param(0.3, marks=pytest.mark.slow), 0.5])
 def test_half_space(nu):
     """Mossakovskii: F = 4 G a delta ln(3 - 4 nu)/(1 - 2 nu), at nu = 1/2 the frictionless 8 G a delta.
@@ -123,6 +124,7 @@ def test_an_accuracy_is_kept():
     assert path.normal_force == pytest.approx(Mdr().solve(scene).normal_force, rel=1e-5, abs=0.0)
 
 
+@pytest.mark.first(1)
 @pytest.mark.parametrize(("nu", "support"), [(0.0, "unbonded"), (0.3, "bonded"), (0.5, "bonded"), (0.5, "unbonded")])
 def test_stick_is_never_softer_than_free_slip(nu, support):
     stuck, free = (Fem(order=3).solve(punch(layer(nu, support), 1.5, effects=e)) for e in (STICK, ()))

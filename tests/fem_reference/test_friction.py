@@ -76,6 +76,7 @@ def test_full_stick_is_that_of_mdr(nu, support, radius, indenter):
     assert path.tangential_traction(r) == pytest.approx(traction, rel=0.0, abs=1e-2 * mean)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "loading", [pytest.param(IndentationDepths([2e-3, 0.05]), marks=pytest.mark.slow), NormalForces([0.1])]
 )

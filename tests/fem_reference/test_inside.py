@@ -89,6 +89,7 @@ CONTACTS = {
 SLOW = ("nearly incompressible", "thin and incompressible", "unbonded")
 
 
+@pytest.mark.first(1)
 @pytest.mark.parametrize("kind", [pytest.param(one, marks=pytest.mark.slow if one in SLOW else ()) for one in CONTACTS])
 def test_fields_are_those_of_mdr_within_the_stated_error(kind):
     """Displacements to 1e-5 of the depth, stresses to 1e-3 of the mean pressure (root mean square), away from rims."""

@@ -78,6 +78,7 @@ class AlwaysCareless(Careless):
     orders = ("NATURAL", "COLAMD")
 
 
+@pytest.mark.first(5)
 @pytest.mark.parametrize("nu", [0.0, 0.3, 0.4999999, 0.5])
 @pytest.mark.parametrize("degree", [2, 3, 4])
 def test_minimum_degree_needs_no_pivoting_and_agrees_with_partial_pivoting(degree, nu, monkeypatch):

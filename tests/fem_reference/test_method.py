@@ -153,6 +153,7 @@ def test_flat_punch_takes_depths_and_forces():
     assert depths.cost.counters["factorisations"] == 2
 
 
+@pytest.mark.first(1)
 @pytest.mark.parametrize("scale", [1e-9, 1e9])
 def test_answers_do_not_depend_on_the_unit_of_length(scale):
     reference = QUICK.solve(cone_scene(1))

@@ -27,6 +27,7 @@ LAYER = Layer(thickness=1e-3, youngs_modulus=1e6, poissons_ratio=0.45)
 BY_DEPTH, BY_FORCE = IndentationDepths(values=[1e-5]), NormalForces(values=[1e-2])
 
 
+@pytest.mark.first(1)
 @pytest.mark.parametrize(
     ("flat_radius", "loading"),
     [

@@ -54,6 +54,7 @@ def test_restitution_of_a_sphere_on_an_incompressible_standard_solid(thickness, 
     assert history.energy_residual < 1e-4
 
 
+@pytest.mark.slow
 def test_requested_accuracy_of_an_impact_is_reached_or_refused():
     history = Fem(accuracy=1e-3).solve(impact_scene(2e-3))
     assert history.coefficient_of_restitution == pytest.approx(0.55924, rel=1e-3, abs=0.0)
@@ -79,6 +80,7 @@ def kelvin_voigt_restitution(damping):
     return exp(-2 * damping / s * angle)
 
 
+@pytest.mark.first(1)
 @pytest.mark.parametrize("damping", [0.05, 1.0, 3.0])
 def test_flat_punch_on_a_kelvin_voigt_layer(damping):
     a, G, mass, k_bar = 1e-3, 1e6, 0.01, 3.61873584896  # k_bar: a/h = 1, nu = 1/2, from the integral equation
@@ -158,6 +160,7 @@ def test_energies_at_the_loss_of_contact_err_by_the_square_of_the_step_wherever_
     assert np.ptp(factors, axis=0) == pytest.approx(np.zeros(2), rel=0.0, abs=0.01)
 
 
+@pytest.mark.first(1)
 @pytest.mark.parametrize("damping", [0.3, 0.5, 2.0])
 def test_peak_force_of_a_kelvin_voigt_impact_is_within_its_error_bar(damping):
     # a damped oscillator, s = sqrt(1 - D^2), t in units of sqrt(M / k): F is M v_0 sqrt(k / M) times

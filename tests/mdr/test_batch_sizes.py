@@ -59,6 +59,7 @@ def assert_repeated(together, alone, count, tolerance=1e-9):
         )
 
 
+@pytest.mark.first(1)
 @pytest.mark.parametrize("size", around(batches._CHUNK)[::2])
 def test_pull_offs_of_every_size(size):
     effects = (Adhesion(work_of_adhesion=0.05),)
@@ -80,6 +81,7 @@ def test_impacts_of_every_size(size):
     assert_repeated(impacts(scenes(loading, (VISCOUS,), size), PUNCH), alone, size, tolerance=0.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [pytest.param(5, marks=pytest.mark.slow), 6])
 def test_different_impacts_are_the_same_bits_together_and_alone(seed):
     """Two thirds of them relax, on nought to three branches; a third are flat punches.

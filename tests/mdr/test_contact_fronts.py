@@ -71,6 +71,7 @@ def test_a_liquid_under_a_falling_force_creeps_on_in_closed_form():
     assert np.all(answer.error_estimate["indentation_depth"] < 1e-12)
 
 
+@pytest.mark.slow
 def test_after_a_fall_steps_only_where_the_contact_has_been_larger():
     """The depth is exact again once the contact is larger than ever; before, it is less than F_e would make it."""
     scene = Scene(

@@ -176,6 +176,7 @@ def test_a_limit_leaves_deeper_points_out(limit, deepest):
 ADHERING = [(w, e, d) for w in (1e-5, 1e-4, 1e-3) for e in (3e2, 5e3) for d in (2e-7, 1e-6)]
 
 
+@pytest.mark.first(7)
 @pytest.mark.parametrize(("work", "modulus", "deepest"), ADHERING)
 def test_adhesion_is_found_from_any_guess_or_refused(work, modulus, deepest):
     layer = Layer(thickness=20e-6, youngs_modulus=modulus, poissons_ratio=0.5)
@@ -243,6 +244,7 @@ def test_a_free_tilt_does_not_change_what_a_formula_says(before):
         assert one.bias == pytest.approx(other.bias, rel=0.02, abs=0.0)
 
 
+@pytest.mark.first(2)
 @pytest.mark.parametrize("travel", [20e-6, 26e-6, 34e-6, 44e-6])
 def test_a_sphere_that_hardly_adheres_is_withdrawn_over_any_travel(travel):
     scene = HALF_SPACE.replace(indenter=Sphere(radius=1e-6), effects=(Adhesion(work_of_adhesion=1e-6),))

@@ -57,6 +57,7 @@ def largest(found, names=STRESSES):
     return max(float(np.abs(getattr(found, name)).max()) for name in names)
 
 
+@pytest.mark.first(2)
 @pytest.mark.parametrize(
     "layer", [SOFT, HALF, pytest.param(STACK, marks=pytest.mark.slow)], ids=["layer", "half-space", "stack"]
 )
@@ -178,6 +179,7 @@ def test_an_elastic_history_on_a_compressible_layer():
         assert getattr(found, name) == pytest.approx(getattr(exact, name), rel=1e-5, abs=1e-9)
 
 
+@pytest.mark.slow
 def test_planted_faults_are_seen(monkeypatch):
     """What the layer adds left out, and the state of another instant, move stresses and displacements off the laws."""
     path = followed(SOFT, INDENTERS[0], TIME, DEPTH)

@@ -71,6 +71,7 @@ def test_a_sphere_close_to_its_equator_is_answered_on_a_thin_layer(radius):
     np.testing.assert_allclose(again.normal_force, path.normal_force, rtol=1e-11)
 
 
+@pytest.mark.first(3)
 @pytest.mark.parametrize("radius", [160.01, 162.0, 165.0])
 @pytest.mark.parametrize("ratio", [159.84, 160.0])
 def test_a_sphere_whose_equator_is_near_is_answered_by_its_own_depth_and_force(radius, ratio):
@@ -142,6 +143,7 @@ def test_roundings_beside_an_equator_are_no_fall_of_the_profile():
     assert 1e-7 < path.error_estimate["indentation_depth"][0] < 1e-2
 
 
+@pytest.mark.slow
 def test_more_resolution_than_needed_changes_no_pressure():
     """At a/h = 10 and nu = 1/2, far more polynomials than wave numbers of the default would resolve."""
     scene = Scene(layer=LAYERS["bonded 0.5"], indenter=INDENTERS[0], loading=ContactRadii([10.0]))

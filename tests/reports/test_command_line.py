@@ -163,6 +163,7 @@ def test_nothing_to_run_is_exit_code_5(library, tmp_path):
     assert run_here(tmp_path) == 5
 
 
+@pytest.mark.slow
 def test_github_gets_annotations_and_nobody_else(library, tmp_path, capsys, monkeypatch):
     library(fake_case(slow=spoiled(SLOW, plant="nan")))
     run_here(tmp_path)
@@ -356,6 +357,7 @@ def test_the_example_scene_is_a_scene(tmp_path, capsys):
     assert load_scene(path).indenter.flat_radius == 0.5e-3
 
 
+@pytest.mark.slow
 def test_solve_loads_with_few_collections_of_garbage(hertz):
     """They walk what was just loaded: 124 of the youngest objects once, 85 now, and go on afterwards."""
     code = (
@@ -386,6 +388,7 @@ def test_help_loads_no_solver_and_takes_hardly_longer_than_the_library_that_prin
     assert used < 2.0 * processor_seconds("import typer.rich_utils")
 
 
+@pytest.mark.slow
 def test_commands_compute_on_one_thread_unless_told_otherwise():
     code = (
         "import reports.command_line, scipy.linalg, threadpoolctl; "

@@ -58,6 +58,7 @@ def test_a_range_by_equal_factors_is_drawn_on_a_logarithmic_axis():
     assert {axes.get_xscale() for axes in drawn.axes} == {"log"}
 
 
+@pytest.mark.first(1)
 @pytest.mark.parametrize(
     ("arguments", "told"),
     [

@@ -200,6 +200,7 @@ def test_pictures_are_byte_identical_on_a_second_run(name):
         assert not re.search(r"\d{4}-\d\d-\d\d|nan", first)
 
 
+@pytest.mark.slow
 def test_panels_without_a_refused_step_fill_their_picture():
     """The layout of all panels failed, with a warning, where every step of a stress test was completed."""
     run = only(PASSING)

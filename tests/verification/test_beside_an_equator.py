@@ -117,6 +117,7 @@ def test_finite_elements_at_usual_cells_lack_no_triangles_before_the_end(left: f
     assert Fem().solve(scene).indentation_depth == pytest.approx(Mdr().solve(scene).indentation_depth, rel=1e-5, abs=0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("loading", [pytest.param(IndentationDepths, marks=pytest.mark.slow), NormalForces])
 def test_finite_elements_search_up_to_the_end(loading: type[IndentationDepths | NormalForces]) -> None:
     """What came within a tenth of the end was refused as if it reached it."""

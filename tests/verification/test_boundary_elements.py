@@ -37,6 +37,7 @@ def test_contacts_at_round_multiples_of_a_flat_radius():
     assert np.all(np.abs(path.normal_force - exact.normal_force) <= path.uncertainty("normal_force"))
 
 
+@pytest.mark.first(1)
 @pytest.mark.parametrize("indenter", [PARABOLOID, CONE], ids=["paraboloid", "truncated cone"])
 @pytest.mark.parametrize("ratio", [1.0, 2.0])
 def test_direct_contact_at_512(indenter, ratio):

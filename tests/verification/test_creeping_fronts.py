@@ -1,6 +1,7 @@
 """Fronts beside springs that were let go moments before, against single springs integrated by SciPy."""
 
 import numpy as np
+import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
@@ -55,6 +56,7 @@ def gap(x):
     return state[0] - (DEPTHS[-1] - g)
 
 
+@pytest.mark.slow
 def test_a_front_that_creeps_back_over_springs_let_go_moments_before():
     answer = Mdr().solve(scene())
     released, edge = answer.contact_radius[2:]

@@ -41,6 +41,7 @@ def test_every_claim_of_the_page_passes(case):
     assert {claim.why for claim in case.verdicts} == set(reasons(CASE.name).values())
 
 
+@pytest.mark.slow
 def test_every_pair_has_both_orders_and_mixed_ones_at_both_ratios_of_poisson(case):
     assert {study.scene for study in case.convergence} >= {f"{name}, nu={nu}" for name in MIXED for nu in (0.3, 0.5)}
     for study in case.convergence:

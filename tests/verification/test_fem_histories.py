@@ -46,6 +46,7 @@ def test_a_short_ramp_of_depth_is_within_its_stated_error(effect, tip):
     assert np.median(found.stated) < 2e-2
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("effect", [PRONY], ids=["prony"])
 def test_a_depth_that_is_there_at_the_first_instant_acts_at_once(effect):
     relaxed, answer = (

@@ -64,6 +64,7 @@ def assert_one_answer(path, other):
         assert np.all(np.abs(getattr(path, name) / getattr(other, name) - 1) <= stated), name
 
 
+@pytest.mark.first(1)
 @pytest.mark.parametrize(
     ("layer", "plain"),
     [

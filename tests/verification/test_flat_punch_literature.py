@@ -21,6 +21,7 @@ PRESSURE = {
 }
 
 
+@pytest.mark.first(1)
 @pytest.mark.parametrize("layer", LAYERS)
 def test_spring_stiffness_is_the_derivative_of_the_contact_stiffness(layer):
     """c_bar = d(xi k_bar)/dxi, Eq. (10): y1^2 against sixth-order differences of k_bar, which err by about 1e-11."""

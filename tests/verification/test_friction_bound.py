@@ -88,6 +88,7 @@ def test_the_first_order_under_a_truncated_cone_is_the_integral_over_pressure_an
     assert friction_effect(path, 0.3).first_order[0] == pytest.approx(exact, rel=1e-6, abs=0.0)
 
 
+@pytest.mark.slow
 def test_the_bound_takes_the_largest_slip_between_any_radii():
     layer = Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.5)
     path = Mdr().solve(Scene(layer=layer, indenter=Cone(slope=0.1), loading=ContactRadii([5.0])))

@@ -31,6 +31,7 @@ def spherocone_depth(slope, x):
     return x * (sphere + slope * mp.acos(b / x))
 
 
+@pytest.mark.first(7)
 @pytest.mark.parametrize("slope", [0.1, 3.0, 200.0])
 @pytest.mark.parametrize("radius", [0.3, 0.99, 1.01, 50.0])
 def test_a_spherical_tip_on_a_steep_cone(slope, radius):

@@ -80,6 +80,7 @@ def test_an_elastic_impact_gives_everything_back_and_lasts_as_hertz_says():
     assert answer.contact_time == pytest.approx(factor * depth / 0.2, rel=1e-10, abs=0.0)
 
 
+@pytest.mark.slow
 def test_a_layer_that_softens_a_thousandfold_on_the_way_in():
     """The springs must reach farther than the approach lets expect; against the paper's explicit springs."""
     solid = StandardSolid(long_term_shear_modulus=1e-3, maxwell_shear_modulus=0.999, viscosity=0.999e-3)
@@ -160,6 +161,7 @@ def test_a_blunt_cone_ends_as_a_flat_punch():
     assert abs(gaps[1]) < 1e-5
 
 
+@pytest.mark.first(1)
 @pytest.mark.parametrize("support", ["bonded", "unbonded"])
 def test_thin_layers_obey_their_own_group(support):
     """Two impacts on a thin layer with equal chi_TL and equal G_inf/G_1 rebound alike, Eq. (54)."""
@@ -276,6 +278,7 @@ def test_a_body_that_viscosity_nearly_stops_states_what_roundings_do_to_its_cont
 BLUNT = TruncatedCone(flat_radius=2e-4, slope=0.1)
 
 
+@pytest.mark.first(2)
 @pytest.mark.parametrize("time", [1e-8, 1e-4])
 @pytest.mark.parametrize("tip", [FlatPunch(radius=1e-3), Paraboloid(radius_of_curvature=5e-3), Cone(slope=0.1), BLUNT])
 def test_an_indenter_that_never_turns_is_refused_at_once_and_quietly(tip, time):

@@ -22,6 +22,7 @@ def outcome(scene, accuracy):
 
 
 # Of seed 9 these are the scenes in which both runs miss the truth alike: by up to 68 times what they tell.
+@pytest.mark.first(1)
 @pytest.mark.parametrize(("number", "accuracy"), [(39, 1e-5), (28, 1e-6), (8, 1e-9)])
 def test_two_runs_that_agree_by_chance_still_state_an_error(number, accuracy):
     """Fails without the floor under stated errors: three tenths of the accuracy asked for."""

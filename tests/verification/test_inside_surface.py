@@ -36,6 +36,7 @@ RADII = np.array([0.05, 0.2, 0.45, 0.6, 0.8, 0.95, 1.2])
 BELOW = 1e-8
 
 
+@pytest.mark.first(3)
 @pytest.mark.parametrize(
     ("indenter", "layer"),
     [*zip(INDENTERS, [*LAYERS.values()] * 2, strict=False), (INDENTERS[2], LAYERS["incompressible"])],

@@ -80,6 +80,7 @@ def test_the_limits_are_a_rigid_machine_and_a_prescribed_force():
     assert rigid.force_at_loss == pytest.approx(-5 / 6 * np.pi * WORK * R, rel=1e-12, abs=0.0)
 
 
+@pytest.mark.first(1)
 @pytest.mark.parametrize(
     ("indenter", "stiffness"), [(FlatPunch(radius=3e-4), 3e3), (TruncatedCone(flat_radius=2e-4, slope=0.05), 30.0)]
 )

@@ -70,12 +70,14 @@ def test_a_second_dip_below_the_surface_is_refused_with_its_radius(method, inden
     assert where == pytest.approx(dip, rel=0.05, abs=0)
 
 
+@pytest.mark.first(2)
 @METHODS
 def test_no_method_answers_where_a_wider_contact_would_swallow_the_dip(method):
     with pytest.raises(ContactError, match="circle"):
         method.solve(scene_of(NARROW, IndentationDepths(values=[6e-6])))
 
 
+@pytest.mark.first(2)
 @EXACT_EDGES
 @pytest.mark.parametrize(("indenter", "depth"), [(NARROW, 6e-6), (STEPPED, 3e-5)])
 def test_rings_are_refused_as_what_the_method_does_not_model(method, indenter, depth):
@@ -83,6 +85,7 @@ def test_rings_are_refused_as_what_the_method_does_not_model(method, indenter, d
         method.solve(scene_of(indenter, IndentationDepths(values=[depth])))
 
 
+@pytest.mark.first(7)
 @EXACT_EDGES
 @pytest.mark.parametrize(
     ("indenter", "radius"), [(DIPPED, 2.4e-3), (DIPPED, 3e-3), (NARROW, 0.9e-3), (STEPPED, 2.5e-3)]
@@ -99,6 +102,7 @@ def test_a_wider_contact_that_presses_everywhere_is_answered(method, indenter, r
     assert np.all(path.pressure(np.linspace(0.001, 0.999, 200) * radius) > 0.0)
 
 
+@pytest.mark.first(3)
 @METHODS
 @pytest.mark.parametrize("loading", [ContactRadii(values=[0.24e-3]), NormalForces(values=[4.9e-3])])
 def test_the_same_under_prescribed_radii_and_forces(method, loading):
@@ -203,6 +207,7 @@ def check_random_tables(method, count, seed):
     assert answered >= count // 5
 
 
+@pytest.mark.first(2)
 @METHODS
 def test_a_noisy_table_that_touches_nowhere_else_is_answered(method):
     radii = np.linspace(0.0, 2e-3, 21)

@@ -171,6 +171,7 @@ def test_the_referee_keeps_its_digits_where_a_punch_sinks_into_a_layer_that_flow
     assert distance_from_springs(scene)[0] <= 1e-14
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("number", [112, pytest.param(135, marks=pytest.mark.slow)])
 def test_a_layer_that_flows_is_followed_on_more_springs_before_it_is_refused(number):
     scene = scene_of(77, number)

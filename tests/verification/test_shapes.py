@@ -182,6 +182,7 @@ def test_many_depths_are_those_of_few():
         np.testing.assert_allclose(getattr(path, name)[[7, 33]], getattr(few, name), rtol=2e-7)
 
 
+@pytest.mark.slow
 def test_the_whole_grid_is_that_of_a_quadrant():
     """An order that is odd by name only: n = 3 without a share needs the whole grid."""
     profile = Paraboloid(radius_of_curvature=1.0)

@@ -87,6 +87,7 @@ CONTACTS = {
 PULLING = {("a sheet of great modulus", name) for name in ("truncated cone", "flat punch", "measured")}
 
 
+@pytest.mark.first(6)
 @pytest.mark.parametrize(
     ("name", "contact"),
     [*((name, "truncated cone") for name in STACKS), *(("slipping", c) for c in CONTACTS if c != "truncated cone")],

@@ -26,6 +26,7 @@ def relative(layer, wavenumber, factor=1.0):
     return np.abs(factor * own / surface_kernel(layer).chi(wavenumber * layer.surface.thickness) - 1)
 
 
+@pytest.mark.first(12)
 @pytest.mark.parametrize("name", LAYERS)
 def test_two_kernels_agree(name):
     """One linear system loses digits like (k h)^-3 of thin layers, so long waves are left out."""
