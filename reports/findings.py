@@ -154,7 +154,7 @@ class Finding:
 
     @property
     def where(self) -> str:
-        """The scene, or how many of how many."""
+        """Name of the only scene, or "3 of 5 scenes"."""
         return self.scenes[0] if self.total == 1 else f"{len(self.scenes)} of {self.total} scenes"
 
     @property
