@@ -142,11 +142,7 @@ def solve(
     scene: Annotated[Path, typer.Argument(help="Scene in TOML: tables layer, indenter, loading and effects.")],
     *,
     method: Annotated[
-        str,
-        Option(
-            help="mdr (the default), mdr_table, fem, bem, integral_equation, or a method that an installed package "
-            "registers under the entry point contact_verification.methods."
-        ),
+        str, Option(help="mdr (the default), mdr_table, fem, bem, integral_equation, or a registered one: see above.")
     ] = "",
     accuracy: Annotated[
         float | None,
@@ -195,6 +191,8 @@ def solve(
     """Solve one scene: force, depth, contact radius and stiffness, each with its error estimate.
 
     Start from an example: contact-verify solve --example > scene.toml.
+
+    An installed package registers a method of its own by the entry point contact_verification.methods.
 
     Editors check a scene that begins with `#:schema FILE`, with FILE from contact-verify solve --schema > FILE.
     """

@@ -144,7 +144,7 @@ class Layer(ElasticLayer):
     thickness: Annotated[
         float,
         *number(
-            "give it in metres; for an infinite one half_space = true in a file, Layer.half_space in Python",
+            "give the thickness in metres; for an infinite one half_space = true in a file, Layer.half_space in Python",
             "m",
             above=True,
             infinite=True,
