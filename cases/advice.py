@@ -196,7 +196,7 @@ GRADING = "grading (the surface's material instead)"
 
 
 def layer_parts(layer: ElasticLayer) -> tuple[str, ...]:
-    """Names of what may be left out, the finite thickness last; none of a half-space."""
+    """Names of the simplifications of a layer that can be tried, infinite thickness last; empty for a half-space."""
     return tuple(name for name, _ in _simpler_layers(layer))
 
 

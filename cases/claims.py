@@ -58,7 +58,7 @@ class Study:
     nightly: bool = False
 
     def check(self, case: Case) -> None:
-        """Refuse what the case does not have."""
+        """Raise InvalidInput if the study names scenes or methods that the case does not have (here: none)."""
 
     def in_suite(self, suite: str) -> "Study | None":
         """Return the study as a suite carries it out, or None."""

@@ -212,10 +212,10 @@ class FemInterior:
         return np.asarray(change.reshape(len(chosen), -1, len(NAMES)).max(axis=1)[back])
 
     def _stated(self, values: FloatArray, error: FloatArray) -> dict[str, float]:
-        """Largest error of each of `GROUPS` over its scale.
+        """Relative error of each group of fields in `GROUPS`: its largest error at the points over a scale.
 
-        Scales are the depth, for stresses and pressure the largest of these at the points, and for the gradient the
-        largest gradient there, at least that stress over min(a, thickness).
+        The scale of displacements is the depth. That of stresses and of the pressure is the largest of both at the
+        points. That of the gradient is its largest value, at least the largest stress over min(a, thickness).
         """
         contact, tiny = self.section.contact, np.finfo(float).tiny
         depth = max(abs(self.section.depth) * contact.contact_radius, tiny)

@@ -104,7 +104,9 @@ def impact(scene: Scene, settings: Discretisation, *, written: Mapping[str, Sett
 
 
 def history(scene: Scene, settings: Discretisation, *, written: Mapping[str, Setting], log: StageLog) -> HistoryPath:
-    """The response to prescribed depths or forces.
+    """Solve a history of prescribed depths or forces on one strip that is as wide as the largest contact.
+
+    Three solutions state the errors: with half the cells and half the steps, with half the cells, and the answer.
 
     Raises:
         InvalidInput: nothing is ever pressed.

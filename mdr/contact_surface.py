@@ -116,7 +116,7 @@ class Surface:
         return float(known + self._smooth.sum())
 
     def smooth_slope(self, t: FloatArray) -> FloatArray:
-        """psi' without the logarithm at the edge."""
+        """psi' [-] at t [m] without the logarithm at the edge, see `corner`."""
         full = np.zeros(2 * self._smooth.size)
         full[::2] = self._smooth
         return np.asarray(legendre.legval(t / self.a, legendre.legder(full)) / self.a)
@@ -227,10 +227,10 @@ class Surface:
         return total
 
     def _weighted_spectrum(self, farthest: float) -> tuple[FloatArray, FloatArray]:
-        """Wave numbers k a, and (1 - chi) phi^(k) [m] with the weights of their quadrature."""
+        """Nodes k a and (1 - chi) phi^ times weights [m], by which `_softening` is a sum of J_0(kr)."""
         if farthest not in self._spectra:
             largest = self.sizes.reach * self.a / self.springs.unit
-            more = 2.0 ** (self.sizes.extra / 6)  # a companion has twice the wave numbers
+            more = 2.0 ** (self.sizes.extra / 6)  # the finer solution that states errors: twice the wave numbers
             reach = more * float(np.clip(_SLOW_WAVES / largest, *_SLOW_DECAY)) if self.kernel.tail else 1.0
             kappa, w, table = self._radius.waves(farthest, reach)
             rest = self.kernel.one_minus_chi(kappa / self.a * self.springs.unit)

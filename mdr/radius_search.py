@@ -147,7 +147,7 @@ class RadiusSearch:
             raise SeveralContacts(fall)
 
     def _grid(self, low: float, high: float) -> FloatArray:
-        """Places of a table, denser where a profile has breaks if g may fall."""
+        """Values of z at which g is tabulated: equidistant, and some between neighbouring breaks if g may fall."""
         z = np.linspace(low, high, 2 + int(_DENSITY * (high - low)))
         if not self.may_fall or not self.springs.tip.breaks:
             return z

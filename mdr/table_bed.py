@@ -91,6 +91,8 @@ class TableRadius(Radius):
         self.count = next(punches.at(np.array([ratio]))).punch.shape[1]
         self.degree = np.sqrt(4 * np.arange(self.count) + 1)  # b_n(1)
         self._waves = self._waves._replace(orders=self.count)
+        # lower_jn = ((1 + R) b_n)(v_j) = b_n(v_j) + int_0^1 R_j(s) b_n(v_j s) ds at Gauss nodes v_j = t/a, where
+        # R_j(s) = sum_k resolvent_jk b_k(s) belongs to the punch of radius v_j a. Gauss weights w then integrate A^-1.
         v, w = gauss(2 * self.count)
         resolvent = np.empty((v.size, self.count))
         for rows in punches.at(ratio * v):

@@ -1,4 +1,4 @@
-"""An answer as people and spreadsheets read it: tables with error bars, and CSV with every digit."""
+"""An answer as people and spreadsheets read it: tables with error estimates, and CSV with every digit."""
 
 from collections.abc import Iterable
 from typing import TYPE_CHECKING

@@ -1,4 +1,4 @@
-"""`contact-verify`: verification runs, reports, gates, and single answers with error bars, from the shell.
+"""`contact-verify`: verification runs, reports, gates, and single answers with error estimates, from the shell.
 
 Only declarations stand here; what a command needs is imported when it is called, so that help and errors come at once.
 """
@@ -142,7 +142,7 @@ def solve(
     scene: Annotated[Path, typer.Argument(help="Scene in TOML: tables layer, indenter, loading and effects.")],
     *,
     method: Annotated[
-        str, Option(help="mdr (the default), mdr_table, fem, bem, integral_equation, or a registered one.")
+        str, Option(help="mdr (the default), mdr_table, fem, bem, integral_equation, or a registered one: see above.")
     ] = "",
     accuracy: Annotated[
         float | None,
@@ -167,7 +167,7 @@ def solve(
         str, Option(metavar="RANGE", help='Vary one number: "thickness=1um..10um:20", then ":log" for equal factors.')
     ] = "",
     advise: Annotated[
-        bool, Option("--advise", help="Which effects change the answer by more than --accuracy?")
+        bool, Option("--advise", help="List effects that change the answer by more than --accuracy (default: 1 %).")
     ] = False,
     against: Annotated[str, Option(metavar="METHOD", help="Solve by a second method too, show the differences.")] = "",
     write: Annotated[
@@ -188,9 +188,11 @@ def solve(
         Option("--schema", is_eager=True, callback=_printed(_schema), help="Print the JSON Schema of scenes and stop."),
     ] = False,
 ) -> None:
-    """Solve one scene: force, depth, contact radius and stiffness, each with its error bar.
+    """Solve one scene: force, depth, contact radius and stiffness, each with its error estimate.
 
     Start from an example: contact-verify solve --example > scene.toml.
+
+    An installed package registers a method of its own by the entry point contact_verification.methods.
 
     Editors check a scene that begins with `#:schema FILE`, with FILE from contact-verify solve --schema > FILE.
     """
@@ -306,7 +308,7 @@ def run_suite(
 
     A method of an installed package, named alone, is compared with mdr. With --only stability, CASE names stress tests.
 
-    Ctrl-C leaves a valid partial report, and --resume goes on from there.
+    Ctrl-C leaves a valid partial report. The same command with --resume completes it.
     """
     from cases.run.runner import RunOptions  # noqa: PLC0415
     from reports.commands import runs  # noqa: PLC0415
@@ -356,6 +358,10 @@ def accept(
     jobs: Annotated[int, Option(help="Repetitions at a time.")] = 2,
 ) -> None:
     """Show how the numbers of a run differ from the accepted ones; with --write they become the accepted ones.
+
+    Repeats every solution twice with inputs changed by one rounding. The spread sets the tolerances.
+
+    This takes about twice as long as the run.
 
     Refused: numbers that are not finite, uncommitted changes, failing claims of closed forms or orders of convergence.
     """

@@ -42,7 +42,7 @@ WIDE = 1e-2
 PLACES = (
     ("contact_stiffness", "", "k_N, Eq. (10), and the kernel of the layer"),
     ("indentation_depth", "contact_stiffness", "g, Eq. (8)"),
-    ("normal_force", "indentation_depth", "the integral of the springs' forces, Eq. (4)"),
+    ("normal_force", "indentation_depth", "E*, or the integral of the springs' forces, Eq. (4)"),
     ("normal_force", "contact_stiffness", "g, Eq. (8), or the integral of the springs' forces, Eq. (4)"),
     ("pressure", "normal_force", "the transform from springs to pressure, Eq. (9)"),
     ("displacement", "normal_force", "the transform from springs to displacement, Eq. (13)"),
@@ -154,7 +154,7 @@ class Finding:
 
     @property
     def where(self) -> str:
-        """The scene, or how many of how many."""
+        """Name of the only scene, or "3 of 5 scenes"."""
         return self.scenes[0] if self.total == 1 else f"{len(self.scenes)} of {self.total} scenes"
 
     @property
@@ -344,7 +344,7 @@ def _cause(method: str, quantity: str, errors: Errors, right: Sequence[str]) -> 
     *others, last = errors
     against = f"{', '.join(others)} and {last} alike" if others else last
     words = f"{display_name(method)}: {quantity_words(quantity)} is off against {against}"
-    words += f", {size_text(all_errors)} in {len(all_errors)} comparisons"
+    words += f", {size_text(all_errors)} in {len(all_errors)} comparison{'s' * (len(all_errors) > 1)}"
     if len(all_errors) > 1 and size_text(all_errors).endswith("each"):
         words += f", as by one factor {1 + median(all_errors):.5g} (a modulus, a unit)"
     passing = f", while {' and '.join(map(quantity_words, right))} pass{'es'[: 2 * (len(right) == 1)]}" if right else ""

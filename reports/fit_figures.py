@@ -49,7 +49,7 @@ def _draw_curve(axes: Axes, found: CurveFit, x: FloatArray) -> None:
     shifted = found.depth - found.values.get("contact_point", 0.0)
     for one, colour in zip(found.formulas, COLOURS, strict=False):
         force = found.youngs_modulus * one.formula.per_modulus(shifted) + found.background
-        label = f"{one.formula.name}, E = {modulus}"
+        label = f"{one.formula.name} with this E"
         axes.plot(x[order], force[order] / factor, "--", color=colour, linewidth=1.0, label=label)
 
 

@@ -35,8 +35,8 @@ def shares_table(found: UncertainFit) -> Table:
         rows.append((quantity_words(name), f"{scatter / factor:.3g}", *numbers, f"{inputs / factor:.3g}", unit))
     heads = [f"{one.name} ({one.in_words()})" for one in found.inputs.inputs]
     return Table(
-        title="Standard uncertainty, one deviation each",
-        note="The interval holds scatter and inputs as the root of their squares, times Student's quantile.",
+        title="Standard uncertainties (one standard deviation)",
+        note="Interval: +- sqrt(scatter^2 + inputs^2), times Student's quantile.",
         heads=("parameter", "scatter", *heads, "all inputs", "unit"),
         rows=tuple(rows),
     )
@@ -107,5 +107,5 @@ def map_facts(found: MapFit) -> list[tuple[str, str]]:
             f"{with_prefix(middle, 'Pa')}; nine in ten from {with_prefix(low, 'Pa')} to {with_prefix(high, 'Pa')}",
         ),
         ("standard error of E", f"{100 * error:.2g} % in the median, from the scatter of each curve"),
-        ("numerical error", f"{small(error_of_computation)} of E, in the intervals"),
+        ("numerical error", f"{small(error_of_computation)} of E, included in the intervals"),
     ]

@@ -72,7 +72,7 @@ def _of_stack(layer: LayerStack) -> StackKernel:
 
 @lru_cache(maxsize=64)
 def _shared(kernel: GradedKernel) -> GradedKernel:
-    """The kernel that equal layers share, with its tables."""
+    """Return the first kernel that equals this one, so that equal layers share its cached tables."""
     return kernel
 
 

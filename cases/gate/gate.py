@@ -1,4 +1,4 @@
-"""A run against what was accepted: every number, stated error, counter and claim, nothing missing and nothing extra."""
+"""Compares a run with the accepted results: numbers, stated errors, counters, claims. Missing and new results fail."""
 
 from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Iterator

@@ -280,10 +280,10 @@ def claim(kind: type[C], name: str, quantity: str, scenes: Scenes, why: Why, /, 
     Args:
         kind: of the claim.
         name: of the claim.
-        quantity: what is compared.
-        scenes: the claim is about; empty for all, or for those that have an expected number.
-        why: it should hold.
-        words: other fields of the kind; any other word is the label of a method, with the tolerance that it needs.
+        quantity: that is compared.
+        scenes: on which it is judged; empty for all, or for those that have an expected number.
+        why: origin of the expected number and reason of the tolerance.
+        words: other fields of the kind. A word that is no field is the label of a method, its value the tolerance.
     """
     own = {field.name for field in fields(kind)}
     tolerances = {label: words.pop(label) for label in tuple(words) if label not in own}

@@ -65,7 +65,10 @@ def sneddon(scene: c.AnyScene) -> dict[str, float]:
 
 
 def punch_force(_: c.AnyScene) -> float:
-    """F = 2 E* a delta, from the numbers above: what the records of the scene make of them is judged, too."""
+    """F = 2 E* a delta [N], E* from Young's modulus and nu.
+
+    It is computed from the constants of this file, not from the scene: an error in the layer's records shows as well.
+    """
     return 2 * c.YOUNGS_MODULUS / (1 - POISSONS_RATIO**2) * RADIUS * DEPTH
 
 

@@ -122,12 +122,12 @@ def hereditary(kernel: Callable[[c.AnyScene, float], float], scene: c.AnyScene, 
 
 
 def lee_and_radok(scene: c.AnyScene) -> float:
-    """F [N] at the end."""
+    """F [N] at the end of the hold: F = 16/3 sqrt R int G(END - s) d(delta^(3/2))."""
     return float(16 / 3 * math.sqrt(impact.RADIUS_OF_CURVATURE) * hereditary(relaxation, scene, 1.5) * DEPTH**1.5)
 
 
 def creep(scene: c.AnyScene) -> float:
-    """delta [m] at the end."""
+    """delta [m] at the end of the hold: delta^(3/2) = 3/(16 sqrt R) int J(END - s) dF."""
     crept = FORCE * hereditary(compliance, scene, 1.0)
     return float((3 / 16 * crept / math.sqrt(impact.RADIUS_OF_CURVATURE)) ** (2 / 3))
 

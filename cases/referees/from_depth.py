@@ -146,7 +146,7 @@ def _depths(scene: Scene, respond: Respond) -> FloatArray:
 
 def _radius(found: Response) -> FloatArray:
     if found.contact_radius is None:
-        raise UnsupportedSceneError("this solver knows no contact radius; prescribe depths or forces")
+        raise UnsupportedSceneError("no contact radius in Response, which prescribed radii need")
     return found.contact_radius
 
 

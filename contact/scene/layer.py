@@ -144,7 +144,10 @@ class Layer(ElasticLayer):
     thickness: Annotated[
         float,
         *number(
-            "give the thickness in metres, or use Layer.half_space for an infinite one", "m", above=True, infinite=True
+            "give the thickness in metres; for an infinite one half_space = true in a file, Layer.half_space in Python",
+            "m",
+            above=True,
+            infinite=True,
         ),
     ]
     youngs_modulus: Modulus

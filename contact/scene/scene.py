@@ -160,6 +160,6 @@ def _check_moduli(scene: AnyScene) -> None:
     expected = scene.layer.shear_modulus
     if not math.isclose(modulus, expected, rel_tol=_MODULUS_AGREEMENT):
         raise ValueError(
-            f"effects: {type(model).__name__} answers at once with {modulus:.10g} Pa, but the layer's shear modulus "
-            f"E/(2(1+nu)) is {expected:.10g} Pa; make them agree (Layer.incompressible takes a shear modulus)"
+            f"effects: the instantaneous shear modulus of {type(model).__name__} is {modulus:.10g} Pa, but that of the "
+            f"layer, E/(2(1+nu)), is {expected:.10g} Pa; make them agree (Layer.incompressible takes a shear modulus)"
         )

@@ -42,7 +42,8 @@ for name in found.values:
 # %%
 # The model is exact for incompressible layers of any thickness: while the contact grows the force is a superposition of
 # elastic ones (Lee and Radok), and on withdrawal the contact is as large as at an earlier instant (Ting). For other
-# Poisson's ratios a fit is refused, and finite elements solve the history of a given material.
+# Poisson's ratios a fit is refused, and finite elements solve the history of a given material. How much the
+# elastic force depends on Poisson's ratio: ``contact-verify solve SCENE.toml --over poissons_ratio=0.49..0.5:2``.
 figure, axes = plt.subplots(1, 2, figsize=(9, 3.4), layout="constrained")
 axes[0].plot(time, 1e9 * force, ".", ms=3, label="measured")
 axes[0].plot(time, 1e9 * found.fitted, label="fit")

@@ -42,7 +42,7 @@ from mdr.curves.result import ROUNDING, CurveFit, FormulaFit, with_intervals
 DEFAULT_PARAMETERS: Final = ("youngs_modulus", "contact_point", "baseline", "tilt")
 # Relative step of central differences by u. Errors grow as its square; at a tenth of it rounding shows.
 _STEP: Final = 1e-3
-# Widening of the interval of E by a free square of the depth in the background, from which the baseline is too short.
+# A baseline is too short if a quadratic background would widen the interval of E by more than this factor.
 # At twice that shifts of several intervals are silent; at half of it curves with a baseline of half the travel warn.
 _BENT: Final = 3.0
 # Least points in contact minus parameters of the contact. With one less the interval of E may be ten times too narrow.
@@ -216,7 +216,7 @@ def _stated(scene: Scene, data: Data, fitted: Fitted, confidence: float) -> Curv
 
 
 def _bent_background(jacobian: FloatArray, names: list[str], depth: FloatArray) -> tuple[str, ...]:
-    """Warning on curves with too short a baseline, on which a square of the depth in the background is not seen."""
+    """Warning where the baseline is too short to distinguish a quadratic background from the contact."""
     if "tilt" not in names:
         return ()
     unit = jacobian / np.maximum(np.linalg.norm(jacobian, axis=0), np.finfo(float).tiny)
@@ -225,7 +225,7 @@ def _bent_background(jacobian: FloatArray, names: list[str], depth: FloatArray) 
     left, row = bend - unit @ shift, next(i for i, name in enumerate(names) if is_modulus(name))
     wider = math.hypot(1.0, float(shift[row] / np.sqrt(left @ left * inverse[row, row] + np.finfo(float).tiny)))
     text = (
-        "the baseline is too short to show whether the background is straight: with a free square of the depth the "
+        "the baseline is too short to show whether the background is straight: with a quadratic background the "
         f"interval of the modulus would be {min(wider, 999):.2g} times as wide; measure more points before contact"
     )
     return (text,) if wider > _BENT else ()

@@ -290,7 +290,8 @@ def _problem(scene: Scene, t: FloatArray, d: FloatArray, f: FloatArray, names: t
     if nu != 0.5:
         raise InvalidInput(
             f"poissons_ratio = {nu:g}: histories are fitted for incompressible layers (0.5), where all springs relax "
-            "alike; for others finite elements solve the history of a given material (solve --method fem)"
+            "alike; fit with 0.5 if --over poissons_ratio shows that it changes the elastic force little, or solve the "
+            "history of a given material by finite elements (solve --method fem)"
         )
     if ("moduli" in names) == ("scale" in names) or set(names) - {*HISTORY_PARAMETERS, "scale"}:
         others = ", ".join(HISTORY_PARAMETERS[1:])

@@ -211,7 +211,7 @@ def _radii(growth: Growth, which: int, wanted: FloatArray) -> FloatArray:
 
 
 def _first_reach(scene: Scene, tip: Tip) -> float:
-    """Radius [m] at which g_hs passes the largest depth, or 2 E* a g_hs/2 the largest force."""
+    """First guess of the largest contact radius [m], from the half-space: g_hs(a) = depth, or E* a g_hs(a) = force."""
     largest = float(_values(scene).max())
     if isinstance(scene.loading, ContactRadii):
         return largest
@@ -222,7 +222,7 @@ def _first_reach(scene: Scene, tip: Tip) -> float:
         depth = float(tip.transform(np.array([a]))[0])
         return depth - largest if isinstance(scene.loading, IndentationDepths) else modulus * a * depth - largest
 
-    # A trillionth less than the room there is: at a sphere's equator the profile is no number.
+    # Stop a share of 1e-12 before the indenter's end: at a sphere's equator the slope is infinite.
     low, high = math.log(1e-15 * min(room, 1.0)), math.log(room) - 1e-12
     found = brentq(missing, low, high, xtol=1e-3) if missing(high) > 0.0 > missing(low) else high
     return min(tip.flat + math.exp(found), tip.end)

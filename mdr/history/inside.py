@@ -122,11 +122,15 @@ class SpringDensity:
         return np.asarray(found)
 
     def _punch(self, t: FloatArray, x: FloatArray) -> FloatArray:
-        """phi_1(t; x) entry by entry, t <= x."""
+        """phi_1(t; x) at each pair t <= x [m]: Abel density at t of a flat punch of radius x at unit depth.
+
+        phi_1(t; x) = sum_n punch_n(x) b_n(t/x),  b_n = sqrt(4n + 1) P_2n,  one series per distinct radius.
+        """
         radii, which = np.unique(x, return_inverse=True)
         which, found = which.ravel(), np.empty(x.size)
         share = np.minimum((t / x).ravel(), 1.0)
         for index, punch, *_ in self.springs.punches.at(radii / self.springs.unit):
+            # Row of each distinct radius in this block of series, -1 for radii of other blocks.
             place = np.full(radii.size, -1)
             place[index] = np.arange(len(punch))
             some = np.flatnonzero(place[which] >= 0)

@@ -26,7 +26,11 @@ from mdr.impact.rules import interpolated, resampling, rule
 
 
 def history(blow: Blow, outcome: Outcome, log: StageLog, settings: Mapping[str, Setting]) -> ImpactHistory:
-    """Samples of an attempt with one impact at its touch, the nodes of all phases, its turn and its release, in SI."""
+    """History of one impact in SI units, from an attempt with that impact alone.
+
+    Its instants are the first touch, the nodes of all phases, the turn and the release. `samples` returns `rows` in
+    units of the bed, forces and energies over 2 E*.
+    """
     attempt = outcome.attempt
     rows, phases = samples(attempt.course), attempt.course.phases
     length, depth, stiffness = blow.units.length, blow.units.depth, 2 * blow.units.stiffness

@@ -70,7 +70,7 @@ def fit_file(
     for table in (fit_table(found), *shares, formula_table(found)):
         show_table(table, on=console())
     facts = [("R^2 in contact", f"{found.r_squared:.6f}")]
-    facts += [("numerical error", f"{small(found.numerical_error)} of E, in its interval")]
+    facts += [("numerical error", f"{small(found.numerical_error)} of the modulus, included in its interval")]
     facts += [("note", line) for line in (*found.notes, *curve.notes)]
     show_facts(facts, on=console())
     pictures = picture_writers(lambda: _figures().fit_figure(found), key="fit")

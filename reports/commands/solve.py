@@ -1,4 +1,4 @@
-"""`contact-verify solve`: one scene, one answer with its error bars; or a range, uncertain inputs, advice."""
+"""`contact-verify solve`: one scene, one answer with its error estimates; or a range, uncertain inputs, advice."""
 
 import inspect
 from collections.abc import Sequence

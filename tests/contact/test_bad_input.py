@@ -99,7 +99,7 @@ BAD = {
             loading=Impact(mass=1.0, velocity=1.0),
             effects=(KelvinVoigt(shear_modulus=1e5, viscosity=1.0),),
         ),
-        r"KelvinVoigt answers at once with 100000 Pa, but the layer's shear modulus .* is 344827\.5862 Pa",
+        r"instantaneous shear modulus of KelvinVoigt is 100000 Pa, but that of the layer, .* is 344827\.5862 Pa",
     ),
     "no indenter": (
         lambda: Scene(layer=LAYER, indenter="cone", loading=ContactRadii([1e-3])),

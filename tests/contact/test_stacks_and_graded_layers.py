@@ -167,7 +167,7 @@ REFUSED = {
     ),
     "a viscoelastic model at odds with the surface": (
         lambda: scene_of(STACK).replace(effects=(KelvinVoigt(shear_modulus=1.0, viscosity=1.0),)),
-        r"the layer's shear modulus .* is 333333\.3333 Pa",
+        r"that of the layer, .* is 333333\.3333 Pa",
     ),
     "an unknown kind in a file": (
         lambda: scene_from_mapping({**scene_to_mapping(scene_of(STACK)), "layer": {"kind": "foam"}}),
