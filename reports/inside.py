@@ -72,7 +72,8 @@ def draw_inside(solution: Solution, other: Solution | None) -> Figure:
     """The picture of the last state of a path; without another answer both sides show the same one.
 
     Raises:
-        InvalidInput: if the answer is no path, or its method gives no fields inside.
+        InvalidInput: if the answer is no path.
+        UnsupportedSceneError: if its method gives no fields inside.
     """
     if not isinstance(solution, ContactPath):
         raise InvalidInput(f"a {type(solution).__name__} has no picture inside; prescribe radii, depths or forces")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -85,15 +85,3 @@ def _worst(first: Stated, second: Stated) -> tuple[float, float]:
     allowed = (first.error + second.error) / scale + ROUNDING
     worst = int(np.argmax(apart - allowed))
     return float(apart[worst]), float(allowed[worst])
-
-
-def as_lists(numbers: dict[str, Stated]) -> dict[str, Any]:
-    """For a file: values with all digits, relative stated errors with three, rounded up."""
-    return {
-        name: {"values": one.values.tolist(), "error": [_up(e) for e in one.error / np.maximum(one.scale, 1e-300)]}
-        for name, one in numbers.items()
-    }
-
-
-def _up(value: float) -> float:
-    return float(f"{value * 1.005:.3g}")

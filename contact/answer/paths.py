@@ -25,7 +25,7 @@ from contact.answer.evidence import (
 from contact.answer.inside import Inside, InteriorFields, KnownContact
 from contact.answer.one_thread import one_thread
 from contact.answer.solution import Solution
-from contact.records.errors import InvalidInput
+from contact.records.errors import InvalidInput, UnsupportedSceneError
 from contact.records.validation import FloatArray
 from contact.scene.effects import Adhesion
 from contact.scene.shapes import Shape
@@ -190,11 +190,12 @@ class ContactPath(Solution):
         """Stresses and displacements inside the layer at one step: `.at(radius, depth)`, `.largest("von_mises")`.
 
         Raises:
-            InvalidInput: If the path has no such step, or the method no fields inside.
+            InvalidInput: If the path has no such step.
+            UnsupportedSceneError: If the method gives no fields inside.
         """
         inside = getattr(self.fields, "inside", None)
         if inside is None:
-            raise InvalidInput(f"{self.method} gives no fields inside the body; ask mdr or fem")
+            raise UnsupportedSceneError(f"{self.method} gives no fields inside the body; ask mdr or fem")
         self.refuse_step(step)
         if "pressure" not in self.error_estimate:
             raise InvalidInput(f"{self.method} states no error of this pressure, nor of the fields that follow inside")
@@ -366,10 +367,11 @@ class HistoryPath(Solution):
         Stresses follow from the pressure of the instant, displacements from the whole history.
 
         Raises:
-            InvalidInput: If the path has no such step, nothing touches then, or the method gives no fields inside.
+            InvalidInput: If the path has no such step, or nothing touches then.
+            UnsupportedSceneError: If the method gives no fields inside.
         """
         if self.fields is None:
-            raise InvalidInput(f"{self.method} gives no fields inside the body under a history; ask mdr")
+            raise UnsupportedSceneError(f"{self.method} gives no fields inside the body under a history; ask mdr")
         self.refuse_step(step)
         radius, instant = float(self.contact_radius[step]), float(self.time[step])
         if radius <= 0.0:

@@ -13,8 +13,6 @@ from cases.library.near_incompressible import CASE as INCOMPRESSIBLE
 from cases.verdicts import Status
 from tests.cases.fake_case import WHY, case_scene, fake_case
 
-FAST = fake_case().methods[0]
-
 
 def answer(scene, *values, name="normal_force", method="fast", error=(), **more):
     q = Values(unit="1", scale=2.0, values=values, error=error)

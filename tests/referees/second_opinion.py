@@ -27,8 +27,6 @@ from contact import (
 from contact.records.validation import FloatArray
 from tests.layer_kernel import compliance_kernel
 
-# Ratio a/h up to which one radius takes a tenth of a second; for campaigns that have to be cheap.
-CHEAP_RATIO: Final = 25.0
 QUANTITIES: Final = ("contact_radius", "indentation_depth", "normal_force", "contact_stiffness")
 
 # More nodes and wave numbers than the method takes.

@@ -13,11 +13,9 @@ import numpy as np
 
 from bem.direct import Sizes, transform
 from bem.flat_punch import IntegralEquation
-from bem.kernels.moduli import relaxation_of
-from contact import DepthHistory, FlatPunch, HistoryPath, InvalidInput, Profile, Scene
+from contact import DepthHistory, FlatPunch, InvalidInput, Profile, Scene
 from contact.records.validation import FloatArray
 from contact.scene.effects import Relaxation, Viscoelasticity
-from mdr.method import DEFAULT_ACCURACY
 from tests.bed import bed_of
 
 # Springs and steps per interval of two runs, whose difference tells the error. The numbers of springs are prime, so
@@ -80,16 +78,6 @@ def spring_by_spring(scene: Scene, radius: float) -> ForceOpinion:
     rounding = _ROUNDING * radius / (radius - flat) if radius > flat else _ROUNDING
     change, peak = float(np.abs(fine - coarse).max()), float(np.abs(fine).max())
     return ForceOpinion(fine, _CAUTION * change + _of_the_edge(beds[0], relaxation, loading) + rounding * peak)
-
-
-def stepped_in_time(scene: Scene) -> HistoryPath:
-    """The fast method's answer to a force history, every interval in steps, one digit finer than usual."""
-    from mdr.history.springs_in_time import SpringLaw
-
-    from mdr.history.solver import followed_history
-
-    law, settings = SpringLaw.of(relaxation_of(scene)), {"accuracy": 0.1 * DEFAULT_ACCURACY}
-    return followed_history(scene, scene.loading, law, IntegralEquation(), settings)  # type: ignore[arg-type]
 
 
 def _of_the_edge(springs: SpringRow, relaxation: Relaxation, loading: DepthHistory) -> float:

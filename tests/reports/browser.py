@@ -82,14 +82,6 @@ def picture(page: Path, target: Path, *, height: int = HEIGHT) -> None:
         _run(f"--screenshot={target}", f"file://{page}", folder, height=height)
 
 
-def printed_pages(page: Path) -> int:
-    """How many sheets of paper the page fills."""
-    with tempfile.TemporaryDirectory() as folder:
-        target = Path(folder) / "page.pdf"
-        _run(f"--print-to-pdf={target}", page.as_uri(), folder)
-        return len(re.findall(rb"/Type\s*/Page\b", target.read_bytes()))
-
-
 def _run(task: str, address: str, profile: str, *more: str, width: int = WIDTH, height: int = HEIGHT) -> str:
     command = [
         browser(),
