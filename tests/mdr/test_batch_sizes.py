@@ -152,7 +152,7 @@ def test_bits_do_not_depend_on_the_batch_with_blas_of_another_processor(kernel):
     """Seen to fail with Haswell's, where a product with eleven rows rounded otherwise for two lanes than for four."""
     same = f"{__file__}::{test_different_impacts_are_the_same_bits_together_and_alone.__name__}"
     done = subprocess.run(
-        [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", same],
+        [sys.executable, "-m", "pytest", "-q", "-m", "slow or not slow", "-p", "no:cacheprovider", same],
         env={**os.environ, "OPENBLAS_CORETYPE": kernel},
         capture_output=True,
         text=True,
