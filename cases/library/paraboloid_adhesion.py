@@ -32,7 +32,7 @@ def pulled(label: str, control: str) -> CaseScene:
         Detachment(control="force" if control == "force" else "displacement"),
         effects=(Adhesion(work_of_adhesion=WORK_OF_ADHESION),),
         # Adhesion takes the slope of springs along the radius. A table is too rough for it: MDR refuses it by name.
-        methods=() if label == "half-space" else (c.MDR, c.PEELING_FEM, c.DETACHING_BEM, c.EQUATION),
+        methods=() if label == "half-space" else (c.MDR, c.DETACHING_FEM, c.DETACHING_BEM, c.EQUATION),
         # Finite elements walk one and the same branch under either control, and longest on the bonded layer.
         nightly=() if control == "force" and label != "bonded nu=0.5" else ("fem",),
         layer=label,
