@@ -1,4 +1,4 @@
-"""Settings of registered methods from the command line or a file: for all scenes, for one scene, or as a ladder."""
+"""Settings of registered methods from the command line or a file, for all scenes or one, or from coarse to fine."""
 
 import re
 import tomllib
@@ -95,7 +95,7 @@ def _changed(use: MethodUse, settings: Settings, scene: str) -> MethodUse:
 
 
 def ladder(name: str, settings: Mapping[str, Any]) -> tuple[MethodUse, ...]:
-    """Return the rungs that ``cost`` times: a list stands for one value a rung, anything else for all rungs.
+    """Return the settings that ``cost`` times: a list has one value per setting, anything else belongs to all of them.
 
     Raises:
         InvalidInput: if lists differ in length, or if the method does not take a value.
@@ -104,16 +104,16 @@ def ladder(name: str, settings: Mapping[str, Any]) -> tuple[MethodUse, ...]:
     lists = {key: value for key, value in plain.items() if isinstance(value, list)}
     lengths = {len(values) for values in lists.values()}
     if len(lengths) > 1 or 0 in lengths:
-        raise InvalidInput(f"settings of {name!r}: lists of a ladder have as many entries as one another, at least one")
-    rungs = [
+        raise InvalidInput(f"settings of {name!r}: lists must have the same length, at least one entry")
+    each = [
         {key: value[i] if key in lists else value for key, value in plain.items()}
         for i in range(max(lengths, default=1))
     ]
-    return tuple(_checked(MethodUse(label=_words(rung), method=name, settings=rung)) for rung in rungs)
+    return tuple(_checked(MethodUse(label=_words(one), method=name, settings=one)) for one in each)
 
 
-def _words(rung: Mapping[str, Any]) -> str:
-    return ", ".join(f"{name}={value}" for name, value in rung.items()) or "as it comes"
+def _words(settings: Mapping[str, Any]) -> str:
+    return ", ".join(f"{name}={value}" for name, value in settings.items()) or "as it comes"
 
 
 def _checked(use: MethodUse) -> MethodUse:

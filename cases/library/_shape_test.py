@@ -1,4 +1,4 @@
-"""The shape test: the contact's pressure, put back on the body by a second kernel, presses in the indenter's shape.
+"""The shape test: the contact's pressure, applied to the layer by a second kernel, presses in the indenter's shape.
 
 Methods that share a kernel agree on a wrong one. The sampled pressure alone enters here: its transform, and the
 displacement it causes, are computed from `_second_kernel`. Inside the contact that must be delta - f(r).

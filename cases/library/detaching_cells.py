@@ -1,4 +1,4 @@
-"""Pull-off by cells that let go.
+"""Detachment cell by cell.
 
 Adhesion whose grid cells let go at a stress that depends on their size (Pohrt and Popov 2015). The paper lets boundary
 cells detach beyond tau_c = sqrt(E* Delta gamma/(0.473201 s)), s the size of a cell, so that the energy that a cell

@@ -1,4 +1,4 @@
-"""Outside referees.
+"""Outside solvers.
 
 Solvers that nobody here wrote answer the same scenes: who gets what right, and at which price. CalculiX (finite
 elements of displacements, a program of its own), ContactMechanics and Tamaas (grids with fast transforms) are asked,

@@ -4,7 +4,7 @@ Articular cartilage as three zones on bone: superficial, middle and deep, under 
 load too fast for fluid to flow each zone is nearly incompressible. The superficial tenth is soft, the middle zone is
 stiffer, the deep one stiffer still, and the bone below counts as rigid or, more honestly, as an elastic half-space a
 thousand times as stiff. The same tissue is asked for at equilibrium, when the fluid has been pressed out and the zones
-are compressible. MDR and the direct integral equation must agree; the pressure, put back on the zones by a kernel that
+are compressible. MDR and the direct integral equation must agree; the pressure, applied to the zones by a kernel that
 is written separately, must press the indenter's shape. An elastic bone is softer than a rigid one, and no zone may be
 left out: a layer of the mean modulus alone errs by a multiple of what methods differ.
 """

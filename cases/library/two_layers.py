@@ -3,7 +3,7 @@
 Two layers of equal thickness: soft on stiff, stiff on soft, incompressible, and free to slip on each other. A
 paraboloid, a truncated cone and a flat punch press two layers on a rigid base, from contacts much smaller than the
 upper layer to contacts five times as wide as both. MDR solves one equation for all radii, the direct integral equation
-one for each; they share the kernel, so the contact's pressure is also put back on the body by a kernel that is written
+one for each; they share the kernel, so the contact's pressure is also applied to the layers by a kernel that is written
 separately: inside the contact it must press the shape of the indenter into the surface. Two equal layers are one. Two
 thin incompressible ones flow between base and punch: a force of delta pi a^4/(8 C), with C the integral of s^2/G over
 the depth s. Where a stiff layer lies on a soft one, flat ends would pull and are refused; no such scene stands here.

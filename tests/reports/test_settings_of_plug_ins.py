@@ -110,6 +110,6 @@ def test_cost_climbs_a_ladder_of_them(monkeypatch, capsys):
     ]
     assert record.points[0].error > 50 * record.points[1].error
     assert run([*words, "--setting", "cell=[0.01, 0.001]", "--setting", "order=[1, 2, 3]"]) == 4
-    assert "as many entries" in capsys.readouterr().err
+    assert "lists must have the same length" in capsys.readouterr().err
     assert run([*words[:-1], "bem"]) == 4
     assert "nothing times bem" in capsys.readouterr().err
