@@ -416,7 +416,11 @@ class Agree(PerScene):
         return judge_agreement(self.distance(scene, *fields.values()), stated, tolerance=self.tolerance), stated
 
     def distance(self, scene: CaseScene, first: Values, second: Values) -> float:
-        """Return the difference of two fields in the norm: of pressures relative, of fields over their scale."""
+        """Return the difference of two fields in the norm, without unit.
+
+        "weighted L2" and "ring loads" compare pressures and divide by the norm and the load of the second one.
+        "largest" and "root mean square" compare values at points that were divided by their scale when recorded.
+        """
         a, b = np.array(first.values), np.array(second.values)
         match self.norm:
             case "weighted L2":

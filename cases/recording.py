@@ -34,7 +34,12 @@ def recorded(solution: Solution, sampling: Sampling) -> dict[str, Values]:
 
 
 def quantities(solution: Solution, sampling: Sampling) -> dict[str, Values]:
-    """Return every quantity of the answer, along its steps; of an impact what sums it up, of a history its end."""
+    """Return the quantities of the answer by name, in SI units and with their stated errors.
+
+    Equilibria and detachments: arrays along the steps, and scalars. Histories: values at the last instant. Impacts: the
+    scalars of `IMPACT_NUMBERS`, such as the restitution coefficient, and the energy residual. Residuals that a method
+    publishes among its error estimates are added without unit.
+    """
     if isinstance(solution, ImpactHistory):
         names = [*IMPACT_NUMBERS, "energy_residual"]
     else:

@@ -132,7 +132,13 @@ class Top:
         return self._matrix, -(self._modes / self._stiffness) @ (self._shear * self._memory)
 
     def accept(self, pressure: FloatArray) -> None:
-        """Advance the memory by the step begun, with these end pressures."""
+        """Ends the step of `begin`: computes amplitudes x_1 and branches s_j at its end, and adds the energy lost.
+
+        ``x_1 = (K + D G_step)^-1 (M^T p - D memory)`` and ``s_j = alpha_j s_j + beta_j (x_1 - x_0)``.
+
+        Args:
+            pressure: p / G_0 at the vertices at the end of the step, shape (n,).
+        """
         following = (self._modes.T @ pressure - self._shear * self._memory) / self._stiffness
         change = following - self._now
         self.dissipated_energy += self._dissipation(change)

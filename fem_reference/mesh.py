@@ -231,7 +231,14 @@ class Drawing:
         return expression
 
     def _grown(self, away: str, reach: float) -> str:
-        """Increase of the cell size at the distance ``away`` (a gmsh expression) from a graded point."""
+        """Increase of the cell size over that at a graded point, as a gmsh expression of the distance d from the point.
+
+        ``max(PLAIN_SHARE g d, min(NEARBY_GROWTH g^(1/2) d, g (s/d)^NEARBY_POWER d))`` with the growth g.
+
+        Args:
+            away: gmsh expression of d.
+            reach: s, distance to the next graded point, at most the thickness of the first part.
+        """
         plain, most = PLAIN_SHARE * self.growth, NEARBY_GROWTH * self.growth**0.5
         nearby = f"{self.growth * reach**NEARBY_POWER:.17g}*{away}^{1 - NEARBY_POWER:.17g}"
         return f"Max({plain:.17g}*{away},Min({most:.17g}*{away},{nearby}))"

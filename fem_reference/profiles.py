@@ -118,7 +118,11 @@ def pchip_slopes(x: FloatArray, y: FloatArray) -> FloatArray:
 
 
 def _end_slope(near: float, far: float, first: float, second: float) -> float:
-    """Slope at an end, from the widths of the two intervals next to it and their secants."""
+    """Slope of the PCHIP interpolant at an end point, by the limited three-point formula.
+
+    ``((2 h_1 + h_2) d_1 - h_1 d_2) / (h_1 + h_2)`` for interval widths h and secants d, from the end inwards. It is
+    zero where its sign differs from that of d_1, and at most 3 |d_1| where d_1 and d_2 differ in sign.
+    """
     slope = ((2.0 * near + far) * first - near * second) / (near + far)
     if slope * first <= 0.0:
         return 0.0

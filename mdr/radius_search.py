@@ -157,10 +157,17 @@ class RadiusSearch:
         return np.array(sorted({*z.tolist(), *more[(more > low) & (more < high)].tolist()}))
 
     def _fall(self, z: FloatArray, logarithm: FloatArray) -> float | None:
-        """Radius [m] at which a table of ln g stops rising, computed again by the accurate springs; None if never."""
+        """Contact radius [m] up to which the MDR profile g rises; None where it rises throughout.
+
+        Where ln g of the coarse springs falls anywhere, the accurate springs compute the whole table again.
+
+        Args:
+            z: places of the radii as in `place`, increasing, shape (n,).
+            logarithm: ln g at z by the coarse springs, shape (n,).
+        """
         radius = self.place(z)
         apart = radius > self.springs.tip.flat * (1 + 1e-12)
-        apart[1:] &= np.diff(radius) > 1e-9 * radius[1:]  # places crowd at the indenter's end
+        apart[1:] &= np.diff(radius) > 1e-9 * radius[1:]  # leaves out radii that differ by rounding, near the end
         if (np.diff(logarithm[apart]) > 0).all():
             return None
         exact = self.logarithm(self.springs, "depth", z[apart])

@@ -182,6 +182,7 @@ def shortest_times(run: Run, fast: str = "mdr") -> Table | None:
 
 
 def _shortest(points: Sequence[Point], tolerance: float) -> str:
+    """Shortest time to a relative accuracy, "T* (first solution)"; "best U" where no setting reached it."""
     found = cheapest(points, tolerance)
     if found is None:
         return f"best {small(min(map(bound_of, points)))}"

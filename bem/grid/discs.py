@@ -194,7 +194,10 @@ def _on_disc(disc: Disc, operator: GridOperator, displacement: FloatArray | floa
 
 @lru_cache(maxsize=2)
 def _operator(layer: ElasticLayer, radius: float, disc: Disc, threads: int) -> GridOperator:
-    """Of a layer under the disc of radius a [m], in free space or on a lattice that leaves a gap between images."""
+    """Operator from p/E* to the surface displacement, in cell sizes, on the cells of a disc of radius a [m] on a layer.
+
+    In free space, or on a periodic lattice with a gap of `IMAGE_GAP` thicknesses between the images of the disc.
+    """
     if layer.is_half_space:
         return disc.operator
     s = radius / disc.radius

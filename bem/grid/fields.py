@@ -37,9 +37,9 @@ class ContactFields:
 
     Attributes:
         pressing: Layer, indenter and discs.
-        state: The contact.
-        solved: The contact of nearly the same radius on a disc.
-        edge: phi [m] at the edge, zero without adhesion; None where a flat punch without adhesion has any.
+        state: Depth, force and stiffness at the contact radius a.
+        solved: Depth, force and stiffness at the radius of a disc, which differs slightly from a.
+        edge: phi(a) [m], zero without adhesion; None for a flat punch without adhesion, where it is not prescribed.
     """
 
     pressing: Pressing
@@ -104,9 +104,11 @@ class ContactFields:
 
     @cached_property
     def cells(self) -> FloatArray:
-        """p/E* on the cells, at the disc's own radius.
+        """p/E* on the cells at the radius of the disc, shape (m, m), a quadrant.
 
-        Few cells beyond a flat end resolve its heights badly; their pressure has the total that is known.
+        p = (delta/s) p_1 - c p_f superposes a flat punch (p_1 at a depth of one cell size s) and the profile f (p_f at
+        the displacement f). The factor c = M / sum(s^2 p_f/E*), over the whole disc, makes the force of the second term
+        agree with F/E* = k delta - M. Without it few cells between a flat radius and the edge resolve f badly.
         """
         punch, depth, moment = self.punch, self.solved.depth, self.solved.moment
         risen = punch.risen(self.pressing.indenter) if moment > 0.0 else np.zeros_like(punch.pressure)
@@ -115,7 +117,7 @@ class ContactFields:
 
     @cached_property
     def _scale(self) -> float:
-        """Of pressures of the disc to those of the contact, whose radius is a little different."""
+        """Ratio of F/a^2 of the contact to that of the disc, whose radius differs slightly: factor of pressures."""
         load = self.solved.load
         return self.state.load / load * (self.solved.radius / self.radius) ** 2 if self.edge == 0.0 < load else 1.0
 

@@ -56,12 +56,16 @@ def surface_kernel(layer: ElasticLayer) -> SurfaceKernel:
 
 
 def _of_stack(layer: LayerStack) -> StackKernel:
+    """Kernel of a stack: sublayers from the surface down, and an elastic half-space below where the base is one.
+
+    Thicknesses and shear moduli are over those of the first sublayer.
+    """
     unit, base = layer.surface, layer.support
     elastic = base if isinstance(base, ElasticBase) else None
     faces = (*layer.interfaces, elastic.interface if elastic else base)
 
     def sheet(thickness: float, modulus: float, nu: float, face: object = "bonded") -> Sheet:
-        """In units of the first sublayer."""
+        """One sublayer in these units: h_i/h_1, G_i/G_1 = (E_i/E_1) (1 + nu_1)/(1 + nu_i), nu_i."""
         softer = (1 + unit.poissons_ratio) / (1 + nu)
         return Sheet(thickness / unit.thickness, modulus / unit.youngs_modulus * softer, nu, face == "unbonded")
 

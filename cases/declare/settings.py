@@ -59,6 +59,7 @@ def _value(text: str) -> Any:
 
 
 def _of_file(text: str) -> dict[str, dict[str, Any]]:
+    """Settings in a TOML file, one table per method."""
     try:
         tables = tomllib.loads(Path(text).read_text(encoding="utf-8"))
     except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:

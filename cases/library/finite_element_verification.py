@@ -71,13 +71,13 @@ def punch(poissons_ratio: float) -> Scene:
 
 @cache
 def exact_stiffness(poissons_ratio: float) -> float:
-    """The same by the direct integral equation, which has no mesh."""
+    """k_N/(E* h) of the flat punch at a/h = 1, by the direct integral equation, which has no mesh."""
     scene = punch(poissons_ratio)
     return float(IntegralEquationMethod().solve(scene).contact_stiffness[0]) / scene.layer.contact_modulus
 
 
 def stiffness_error(pair: str, poissons_ratio: float) -> float:
-    """Relative error of the stiffness."""
+    """Relative error of the stiffness k_N of the flat punch at a/h = 1."""
     return abs(punch_stiffness(pair, poissons_ratio) / exact_stiffness(poissons_ratio) - 1)
 
 
@@ -149,7 +149,14 @@ Found: TypeAlias = Mapping[str, tuple[float, ...]]
 
 
 def fields(method: Method, scene: Scene, *, kind: str, place: tuple[Any, ...]) -> dict[str, Any]:
-    """The quantities of an answer."""
+    """Measures one property of an element pair and returns its values by name, as the quantities of an answer.
+
+    Args:
+        method: not used.
+        scene: not used.
+        kind: key of `MEASURED`, such as "patch test".
+        place: arguments of its function: the name of the pair, and Poisson's ratio for manufactured solutions.
+    """
     del method, scene
     measure, _ = MEASURED[kind]
     return {"quantities": {n: Values(unit="1", scale=1.0, values=tuple(v)) for n, v in measure(*place)}}

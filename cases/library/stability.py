@@ -95,13 +95,15 @@ def damped_punch(damping: float) -> c.AnyScene:
 
 
 def struck(long_term_share: float = 0.1, time: float = 1.0, speed: float = 0.1, lighter: bool = False) -> c.AnyScene:
-    """A paraboloid, R = h, hits a standard solid; a half-space contact would take about one second.
+    """A paraboloid, R = h = 1 m, hits a layer of a standard solid, nu = 1/2, E(0) = 1 Pa.
+
+    A half-space contact would last about one second.
 
     Args:
-        long_term_share: G_inf over G_inf + G_1.
-        time: tau, over about the contact time.
-        speed: of approach, in units of h per second.
-        lighter: whether a faster body is lighter, so that a/h stays below 30.
+        long_term_share: G_inf / (G_inf + G_1).
+        time: relaxation time tau = eta/G_1 [s].
+        speed: impact speed v_0 [m/s].
+        lighter: whether the mass of 0.05 kg is divided by v_0^2 for v_0 > 1 m/s, so that a/h stays below 30.
     """
     layer, mass = _layer(0.5), 0.05 * min(1.0, speed**-2) if lighter else 0.05
     maxwell = (1.0 - long_term_share) * layer.shear_modulus

@@ -265,9 +265,12 @@ def _loaded(mesh: Mesh, scene: Scene, value: float, exponents: Exponents) -> Mes
 
 
 def _at_radius(scene: Scene, radius: float, cells: int) -> Mesh:
-    """Superposes the two steps so that the force on the outermost node in contact vanishes.
+    """Depth, force and stiffness at a contact radius [m] on one mesh: superposes two linear solutions.
 
-    The deck is written in contact radii and Young's moduli: it takes tiny elements for inverted ones.
+    Solution 1 displaces all nodes in contact by one, solution 2 by the profile f. The depth delta = R_2/R_1 makes the
+    force delta R_1 - R_2 on the outermost node vanish.
+
+    The input file is in units of contact radius and Young's modulus, since CalculiX rejects tiny elements as inverted.
     """
     kinks = tuple(kink / radius for kink in scene.indenter.kinks if 0.0 < kink < radius)
     mesh = section(1.0, scene.layer.thickness / radius, cells, kinks, scene.layer.support)

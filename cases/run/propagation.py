@@ -84,16 +84,18 @@ class Propagated:
 def propagate(
     scene: Scene, uncertain: str | UncertainInputs, *, method: Method | None = None, samples: int = 0
 ) -> Propagated:
-    """Carry the uncertainty of inputs to every quantity.
+    """Propagates the standard uncertainties of inputs to every quantity of the answer.
+
+    By differences (GUM 5.2), two solutions per input, or by the scatter of quantities over scenes drawn at random.
 
     Args:
-        scene: its uncertain ranges are replaced by their middles.
-        uncertain: text as of `read_inputs`, or what that gives.
-        method: what solves; MDR by default.
-        samples: how many scenes to draw; zero takes two for each input and differences.
+        scene: its uncertain inputs are replaced by the middles of their ranges.
+        uncertain: inputs as text, e.g. "radius=5%", or as returned by `read_inputs`.
+        method: solves the scenes; MDR by default.
+        samples: number of scenes drawn at random; differences for zero.
 
     Raises:
-        InvalidInput: for what is no uncertain input of this scene, or too few samples.
+        InvalidInput: an input that the scene does not have, or fewer than `FEWEST_SAMPLES` samples.
         UnsupportedSceneError, NotConvergedError: as the method raises them.
     """
     if samples and samples < FEWEST_SAMPLES:

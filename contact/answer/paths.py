@@ -134,11 +134,16 @@ class ContactPath(Solution):
     fields: Fields | ShapedFields | None = None
 
     def scale(self, quantity: str) -> FloatArray:
-        """The quantity's own magnitude; with adhesion, where it may cross zero, its largest along the path.
+        """Magnitude to which relative errors of a quantity refer, in its SI unit, shape (n,).
 
-        That of pressure and traction is the mean pressure F/(pi a^2) under the contact, with adhesion at least that of
-        a flat punch at the same depth; that of the surface's displacement the depth, of the radius of stick the contact
-        radius, of heat the product of force and depth.
+        Without adhesion |q| of each step. With adhesion q may cross zero, and the magnitude is the largest |q| along
+        the path. Some quantities refer to another one:
+
+        - pressure and tangential traction: mean pressure |F|/(pi a^2), with adhesion the largest
+          max(|F|, k_N |delta|)/(pi a^2) along the path,
+        - surface displacement: depth,
+        - stick radius: contact radius,
+        - dissipated energy: |F delta| of each step.
         """
         quantity = _SCALED_BY.get(quantity, quantity)
         if quantity in ("pressure", "tangential_traction"):

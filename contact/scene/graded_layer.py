@@ -169,7 +169,10 @@ DEPTH_FUNCTIONS: tuple[type[DepthFunction], ...] = (ExponentialDepth, LinearDept
 
 
 def _pure(given: object, info: ValidationInfo) -> object:
-    """A table of Poisson's ratio, whose values are pure numbers."""
+    """Validates Poisson's ratios tabulated against depth: converts their values to a vector without unit, shape (n,).
+
+    `TabulatedDepth` alone would read them as moduli in pascals. Other input is returned unchanged.
+    """
     if not isinstance(given, Mapping) or "values" not in given:
         return given
     try:

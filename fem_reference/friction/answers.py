@@ -86,13 +86,18 @@ class RubbedFields:
         return at.modulus * at.at_radii(at.state.shear, radius)
 
     def slip(self, radius: FloatArray, step: int) -> FloatArray:
-        """Outward displacement of the surface since it touched [m], zero outside.
+        """Radial displacement u_r(r) of the surface since the instant of first touch [m], zero outside, shape of r.
 
-        A moment over w_i is the mean of u_r, weighted by phi_i: it stands for the value at the node.
+        At node i it is the weighted mean ``int phi_i u_r 2 pi r dr / w_i``, with w_i = ``int phi_i 2 pi r dr``. Between
+        nodes it is linear.
+
+        Args:
+            radius: r [m].
+            step: number of the state in the path.
         """
         at = self.steps[step]
         moved = (at.state.radial - at.state.touched) / at.contact.surface.resultants
-        moved[0] = 0.0
+        moved[0] = 0.0  # u_r = 0 on the axis
         return at.contact.radius * at.at_radii(np.where(at.state.pressure > 0.0, moved, 0.0), radius)
 
     def surface_displacement(self, radius: FloatArray, step: int) -> FloatArray:

@@ -285,13 +285,16 @@ def followed(contact: RubbedContact, targets: Sequence[float], *, by_depth: bool
 def _towards(
     contact: RubbedContact, state: RubbedState, active: int, target: float, by_depth: bool
 ) -> tuple[RubbedState, int]:
-    """The state at one target, and the number of nodes that are pressed just before it is reached.
+    """Equilibrium at one target, and the number of nodes pressed just before the target is reached.
+
+    The contact advances from one touching point to the next: in loading one more node touches, in unloading the last
+    one leaves. The last step ends at the target itself.
 
     Args:
         contact: layer and indenter.
-        state: the state at the last target.
-        active: number of nodes pressed just before that.
-        target: depth or force.
+        state: equilibrium at the previous target.
+        active: number of nodes pressed just before the previous target.
+        target: depth over L, or force over E* L^2.
         by_depth: whether the target is a depth.
     """
     start = state.depth if by_depth else state.force

@@ -181,7 +181,16 @@ def _gains(data: Data, phi: FloatArray) -> FloatArray:
 
 
 def trial_indentations(data: Data, rough: float, reach: float) -> FloatArray:
-    """Trial depths of indentation [m] about a rough one."""
+    """Trial values of the indentation at the largest depth, d_max - d0 [m], shape (m,).
+
+    They lie within a factor of 3 of the rough value, and at most at the reach and at `FURTHEST` travels. With a known
+    contact point the one trial is d_max.
+
+    Args:
+        data: the measured curve.
+        rough: rough indentation by power laws [m].
+        reach: largest depth of the curve of the scene [m].
+    """
     if not data.has_free_point:
         return np.array([data.deepest])
     trials = np.geomspace(rough / 3, 3 * rough, _FINER)

@@ -121,10 +121,12 @@ def curve_to(scene: Scene, reach: float) -> ForceCurve:
 
 @lru_cache(maxsize=256)
 def longest_curve(scene: Scene, reach: float, halvings: int = _HALVINGS) -> ForceCurve:
-    """The elastic curve up to a depth [m], halved until the indenter is that long.
+    """Elastic force curve up to the depth `reach` [m]; the depth is halved until the scene can be solved there.
+
+    Depths beyond the end of a short indenter are refused.
 
     Raises:
-        InvalidInput, UnsupportedSceneError: If no reach is answered.
+        InvalidInput, UnsupportedSceneError: If the scene is refused at every depth.
     """
     try:
         return curve_to(scene, reach)

@@ -259,7 +259,16 @@ class HistoryFields:
         return np.array(rows)
 
     def _springs_at(self, springs: Springs, x: FloatArray, step: int, *, moved: bool) -> FloatArray:
-        """Forces, or displacements, of springs at x [m] at one instant [m]."""
+        """q(x) [m] of the springs at one instant, shape (n,): displacements, or forces over the instantaneous modulus.
+
+        The springs at x follow the whole history of depths up to the instant.
+
+        Args:
+            springs: elastic springs of the layer, which give the MDR profile g(x).
+            x: distances from the axis [m], shape (n,).
+            step: number of the instant in the history.
+            moved: whether q is the displacement u of the spring ends; otherwise q is the force f.
+        """
         flat = springs.tip.flat
         g = np.zeros(x.size)
         above = x > flat

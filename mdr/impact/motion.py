@@ -168,9 +168,13 @@ class Phase:
         return grown + faded, change
 
     def cut(self, ended: BoolArray) -> bool:
-        """Cut durations to the first node that is beyond the end of the phase; whether there are some.
+        """Shortens durations to the first node beyond the end of the phase; returns whether any was shortened.
 
-        The equations of the end have later solutions, at which a body turns or a force vanishes again.
+        Without this Newton's method may converge to a later solution, at which the speed or the force vanishes again.
+        Nodes after the share `_ENDED` of the phase do not count.
+
+        Args:
+            ended: whether each node lies beyond the end, shape (n, k).
         """
         shares = self.rule.share[:-1]
         ended = ended & (shares < _ENDED)

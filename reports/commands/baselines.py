@@ -159,6 +159,7 @@ def change_table(proposal: Proposal) -> words.Table:
 
 
 def _row(change: Change) -> tuple[str, ...]:
+    """Row of `change_table`: the old and the new value, their difference in tolerances and in U, both tolerances."""
     (shown, *_), (old, new) = [q for q in (change.new, change.old) if q is not None], change.values
     now, was = ("" if q is None else words.small(relative_tolerance(q)) for q in (change.new, change.old))
     return (
