@@ -123,6 +123,7 @@ def history(scene: Scene, settings: Discretisation, *, written: Mapping[str, Set
     radius, _ = setups[0][0].fitted_radius(1.6 * guess, partial(_follow, setups[0][0], values, PILOT_OCTAVE))
 
     def answer(setup: HistorySetup, resolution: Resolution) -> HistoryPath:
+        """The history at one resolution of cells and steps."""
         strip = setup.strip(radius, resolution.cells)
         channels = _channels(setup, strip, _follow(setup, values, resolution.per_octave, strip), written)
         channels["contact_radius"] = np.where(channels["normal_force"] > 0, channels["contact_radius"], 0.0)

@@ -42,7 +42,7 @@ def test_pressure_in_the_middle_of_thin_layers(radius):
     """Closed forms of the film, exact but for exp(-(a - r)/h): chi(q)/q = 1/2 + O(q^4), 2 q^2/3 + O(q^4) at nu = 1/2.
 
     Unbonded p = E* (delta - f)/h. Bonded compressible p = M delta/h, M the confined modulus. Bonded incompressible
-    laplace p = -3 E* delta/(4 h^3).
+    Laplacian of p = -3 E* delta/(4 h^3).
     """
     r = radius * np.array([0.1, 0.5, 0.9])
     path = _pressed("unbonded", 0.3, INDENTERS[0], ContactRadii([radius]))
@@ -153,3 +153,20 @@ def test_more_resolution_than_needed_changes_no_pressure():
         for nodes, width in ((24, 1.0), (64, 0.1))
     )
     np.testing.assert_allclose(finer, usual, rtol=1e-11)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("layer", ["bonded 0.3", "bonded 0.5"])
+def test_pressures_next_to_a_kink_of_a_very_wide_contact_are_within_their_stated_error(layer):
+    """Two refinements change p by 4e-5 of its mean within a thickness of the kink at nu = 0.3."""
+    radius, flat = 600.0, 300.0
+    scene = Scene(
+        layer=LAYERS[layer],
+        indenter=TruncatedCone(flat_radius=flat, slope=0.01),
+        loading=ContactRadii([radius]),
+        beyond_small_strains=True,
+    )
+    path, finer = Mdr().solve(scene), Mdr().refined().refined().solve(scene)
+    r = np.append(flat + np.array([-1.0, -0.6, 0.3, 1.0]), radius * np.array([0.3, 0.48, 0.52, 0.7, 0.95]))
+    mean = path.normal_force[0] / (np.pi * radius**2)
+    assert np.abs(path.pressure(r) - finer.pressure(r)).max() <= path.error_estimate["pressure"][0] * mean
