@@ -70,7 +70,7 @@ def _gated(run: Run, baselines: Path, methods: Collection[str]) -> Run:
     return gate(run, accepted, methods=methods, watched=watched)
 
 
-def accept_cases(names: list[str], directory: Path, baselines: Path, **asked: Any) -> None:
+def accept_cases(*, names: list[str], directory: Path, baselines: Path, **asked: Any) -> None:
     """Show for each case (all of the run if none is named) what would change; write it when told to.
 
     Args:

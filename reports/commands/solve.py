@@ -103,12 +103,13 @@ class Request:
         return build_guarded(name, {key: value for key, value in asked.items() if key in known and value is not None})
 
 
-def solve(scene_file: Path, request: Request) -> None:
-    """Solve the scene of a TOML file, print what was asked for, and write the files.
+def solve(scene_file: Path, **asked: Any) -> None:
+    """Solve the scene of a TOML file, print what was asked for (see `Request`), and write the files.
 
     Raises:
         InvalidInput: for a wrong scene, method or ending; before anything is solved.
     """
+    request = Request(**asked)
     request.check()
     scene = load_scene(scene_file)
     if request.advise:
