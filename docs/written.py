@@ -22,6 +22,8 @@ from reports.style import figure_style, look_of, mark_decades, svg_text
 from reports.words import display_name
 
 ROOT = Path(__file__).resolve().parents[1]
+SOLVERS = ("contact", "bem", "mdr", "fem_reference")
+CITED = re.compile(r"Eqs?\. \((\d+)\)(?: to \((\d+)\))?(?:, \((\d+)\))?")
 # Differences below are drawn here: double precision has sixteen digits.
 SMALLEST = 1e-16
 
@@ -94,6 +96,28 @@ def _picture(file: Path, folder: Path) -> str:
         drawn = solution_figure(answer, None if finer is None else method.solve(finer))
         (folder / f"{file.stem}.svg").write_text(svg_text(drawn, key=file.stem), encoding="utf-8")
     return f"![{file.stem.replace('_', ' ')}]({file.stem}.svg)"
+
+
+def write_equations(root: Path, page: Path) -> None:
+    """Write the table of equations of the paper and the modules under `root` that cite them."""
+    page.parent.mkdir(parents=True, exist_ok=True)
+    modules: dict[int, dict[str, None]] = {}
+    for package in SOLVERS:
+        for path in sorted((root / package).rglob("*.py")):
+            for number in _cited(path.read_text(encoding="utf-8")):
+                modules.setdefault(number, {})[path.relative_to(root).as_posix()] = None
+    rows = "".join(
+        f"| ({number}) | {', '.join(f'`{file}`' for file in modules[number])} |\n" for number in sorted(modules)
+    )
+    page.write_text(f"| equation | modules |\n|---|---|\n{rows}", encoding="utf-8")
+
+
+def _cited(text: str) -> set[int]:
+    """The numbers of the equations that a text cites; "(36) to (38)" names three."""
+    numbers: set[int] = set()
+    for first, last, other in CITED.findall(text):
+        numbers |= set(range(int(first), int(last or first) + 1)) | ({int(other)} if other else set())
+    return numbers
 
 
 class Compared(NamedTuple):

@@ -85,7 +85,7 @@ def signed(value: float) -> str:
 
 def short_exponents(text: str) -> str:
     """The text with its powers of ten as `small` writes them: 1e-6 for 1e-06, 1e5 for 1e+05."""
-    return re.sub(r"(?<=\d)e(?:\+|(-))0?(\d+)\b", lambda found: f"e{found[1] or ''}{found[2]}", text)
+    return re.sub(r"(?<=\d)e(?:\+|(-))0?(\d+)\b", lambda match: f"e{match[1] or ''}{match[2]}", text)
 
 
 def quantity_words(name: str) -> str:

@@ -27,7 +27,7 @@ from reports import comparison
 from reports.book import claim_table, method_table, scene_table
 from reports.ci import annotation_lines, junit_text, summary_text
 from reports.findings import causes, findings, headline, nothing_ran, tone_of, who
-from reports.progress import RunDisplay
+from reports.progress import run_progress
 from reports.tables import matrix_table, shortest_times
 from reports.terminal import STYLES, console, progress_bar, show_table
 from reports.words import Table, display_name
@@ -87,8 +87,8 @@ def run(
 def _solved(cases: Sequence[Case], options: RunOptions, *, quiet: bool) -> Run:
     """Solve and judge cases with their progress shown, and write the pages; no other run may use the folder."""
     with locked(options.out):
-        with RunDisplay(console(), quiet=quiet) as display:
-            result = run_cases(cases, dataclasses.replace(options, progress=display))
+        with run_progress(quiet=quiet) as progress:
+            result = run_cases(cases, dataclasses.replace(options, progress=progress))
         write_pages(result, options.out)
     return result
 
@@ -112,8 +112,8 @@ def show_verdict(run: Run, page: Path, *, quiet: bool) -> None:
     terminal = console()
     if not quiet:
         show_table(matrix_table(run), on=terminal)
-    for one in [one for one in findings(run) if one.tone == "bad"][:WORST_SHOWN]:
-        terminal.print(Text.assemble((one.word, STYLES["bad"]), f" {one.sentence}: {one.message}"))
+    for finding in [finding for finding in findings(run) if finding.tone == "bad"][:WORST_SHOWN]:
+        terminal.print(Text.assemble((finding.word, STYLES["bad"]), f" {finding.sentence}: {finding.message}"))
     for sentence in causes(run):
         terminal.print(sentence)
     words, tone = headline(run)

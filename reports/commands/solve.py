@@ -144,9 +144,9 @@ def _solved(scene: Scene, request: Request) -> tuple[Solution, list[tuple[str, s
         return told_where_less(solution, request.accuracy, request.pressure_accuracy), []
     from cases.accuracy import solve as solve_to_accuracy  # noqa: PLC0415 - where it is asked for
 
-    found = solve_to_accuracy(scene, accuracy=request.accuracy, pressure_accuracy=request.pressure_accuracy)
-    stated = f"stated error {small(found.stated_error)}, asked for {small(request.accuracy)}, by {found.method}"
-    return found.answer, [("achieved", stated)]
+    reached = solve_to_accuracy(scene, accuracy=request.accuracy, pressure_accuracy=request.pressure_accuracy)
+    stated = f"stated error {small(reached.stated_error)}, asked for {small(request.accuracy)}, by {reached.method}"
+    return reached.answer, [("achieved", stated)]
 
 
 def _show_answer(solution: Solution) -> None:
@@ -159,13 +159,13 @@ def _notes(solution: Solution) -> list[tuple[str, str]]:
     """What smoothing a tip changes, and where the theory is valid."""
     from cases.advice import validity_lines  # noqa: PLC0415 - MDR only where it is asked for
 
-    told: list[tuple[str, str]] = []
+    notes: list[tuple[str, str]] = []
     indenter = solution.scene.indenter
     if isinstance(indenter, Tabulated) and indenter.smoothing and isinstance(solution, ContactPath):
-        moved = float(solution.contact_stiffness.max()) * indenter.smoothing
+        force_change = float(solution.contact_stiffness.max()) * indenter.smoothing
         tip = f"smoothing changed the tip by at most {with_prefix(indenter.smoothing, 'm')}"
-        told = [("note", f"{tip}, and so the force by at most about {with_prefix(moved, 'N')}")]
-    return told + [("validity", line) for line in validity_lines(solution.scene, solution)]
+        notes = [("note", f"{tip}, and so the force by at most about {with_prefix(force_change, 'N')}")]
+    return notes + [("validity", line) for line in validity_lines(solution.scene, solution)]
 
 
 def _refuse_less(solution: Solution, accuracy: float, pressure_accuracy: float | None) -> None:
@@ -186,12 +186,12 @@ def _uncertain(scene: Scene, scene_file: Path, request: Request) -> Solution:
 
     inputs = read_inputs(request.uncertain, scene, with_units=uses_units(scene_file))
     with progress_bar("solving"):
-        found = propagate(scene, inputs, method=request.solver(), samples=request.samples)
+        propagated = propagate(scene, inputs, method=request.solver(), samples=request.samples)
     if request.accuracy is not None:
-        _refuse_less(found.answer, request.accuracy, request.pressure_accuracy)
-    _show_answer(found.answer)
-    show_table(propagated_table(found), on=console())
-    return found.answer
+        _refuse_less(propagated.answer, request.accuracy, request.pressure_accuracy)
+    _show_answer(propagated.answer)
+    show_table(propagated_table(propagated), on=console())
+    return propagated.answer
 
 
 def _advise(scene: Scene, request: Request) -> None:
@@ -214,16 +214,16 @@ def _sweep(scene: Scene, scene_file: Path, request: Request) -> None:
 
     swept = read_range(request.over, scene, with_units=uses_units(scene_file))
     with progress_bar("solving") as progress:
-        found = sweep(scene, swept, request.solver(), progress)
-    if not found.answers:
-        raise InvalidInput(f"over {request.over}: no value was answered; the first refusal: {found.refused[0][1]}")
-    pressed = [(answer.scene, depths_of(answer)) for _, answer in found.answers]
-    note = depth_note(*max(pressed, key=lambda one: depth_share(*one)))
+        result = sweep(scene, swept, request.solver(), progress)
+    if not result.answers:
+        raise InvalidInput(f"over {request.over}: no value was answered; the first refusal: {result.refused[0][1]}")
+    pressed = [(answer.scene, depths_of(answer)) for _, answer in result.answers]
+    note = depth_note(*max(pressed, key=lambda pair: depth_share(*pair)))
     show_facts([("warning", f"at its deepest, {note}")] * bool(note), on=console())
-    show_table(sweep_table(found), on=console())
-    show_facts([("refused", f"{value:g}: {reason}") for value, reason in found.refused], on=console())
-    pictures = picture_writers(lambda: _pictures().sweep_figure(found), key="sweep")
-    write_outputs(request.outputs, {**csv_writer(found.to_csv), **pictures})
+    show_table(sweep_table(result), on=console())
+    show_facts([("refused", f"{value:g}: {reason}") for value, reason in result.refused], on=console())
+    pictures = picture_writers(lambda: _pictures().sweep_figure(result), key="sweep")
+    write_outputs(request.outputs, {**csv_writer(result.to_csv), **pictures})
 
 
 def _pictures() -> Any:

@@ -12,8 +12,8 @@ import pytest
 
 from cases.claims import Claim
 from cases.declare.registry import load_cases
-from docs.written import write_accuracy, write_case_figure, write_commands
-from reports.book import write_book, write_equations
+from docs.written import write_accuracy, write_case_figure, write_commands, write_equations
+from reports.book import write_book
 from reports.command_line import COMMANDS, command_parser
 
 ROOT = Path(__file__).parents[2]
