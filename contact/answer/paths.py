@@ -95,9 +95,14 @@ class SampledFields:
 
 @one_thread
 def sampled(
-    answer: Solution, fields: object | None, name: str, radius: ArrayLike, step: int, *angle: FloatArray
+    answer: "ContactPath | FrictionHistory",
+    fields: object | None,
+    name: str,
+    radius: ArrayLike,
+    step: int,
+    *angle: FloatArray,
 ) -> FloatArray:
-    """A surface field of one step at radii [m], of a shape in directions [rad].
+    """A surface field of one step at radii [m], of a shape in directions [rad]; zero where nothing touches.
 
     Raises:
         InvalidInput: The method gave no fields, the answer has no such step, or a radius is negative or not finite.
@@ -108,6 +113,8 @@ def sampled(
     r = np.asarray(radius, dtype=np.float64)
     if not np.all(np.isfinite(r) & (r >= 0.0)):
         raise InvalidInput(f"radius = {np.min(r) if r.size else r}: radii must be finite and not negative")
+    if answer.contact_radius[step] == 0.0:
+        return np.zeros(r.shape)
     values: FloatArray = getattr(fields, name)(np.atleast_1d(r), step % len(answer), *angle)
     return finite(name, values, answer.method).reshape(r.shape)
 
@@ -184,7 +191,7 @@ class ContactPath(Solution):
         """
         self.refuse_step(step)
         phi = np.asarray(angle, dtype=np.float64)
-        if not isinstance(self.scene.indenter, Shape):
+        if not isinstance(self.scene.indenter, Shape) or self.contact_radius[step] == 0.0:
             return np.full(phi.shape, self.contact_radius[step])
         of_fields = getattr(self.fields, "outline", None)
         if of_fields is None:
@@ -195,7 +202,7 @@ class ContactPath(Solution):
         """Stresses and displacements inside the layer at one step: `.at(radius, depth)`, `.largest("von_mises")`.
 
         Raises:
-            InvalidInput: If the path has no such step.
+            InvalidInput: If the path has no such step, or nothing touches there.
             UnsupportedSceneError: If the method gives no fields inside.
         """
         inside = getattr(self.fields, "inside", None)
@@ -205,6 +212,8 @@ class ContactPath(Solution):
         if "pressure" not in self.error_estimate:
             raise InvalidInput(f"{self.method} states no error of this pressure, nor of the fields that follow inside")
         radius = float(self.contact_radius[step])
+        if radius == 0.0:
+            raise InvalidInput(f"step = {step}: nothing touches; ask for a step that presses")
         names = ("contact_radius", "pressure")
         errors = (np.broadcast_to(self.error_estimate.get(name, 0.0), len(self))[step] for name in names)
         fields = inside(step % len(self), KnownContact(radius, *map(float, errors)))

@@ -237,7 +237,7 @@ class LayerStack(ElasticLayer):
     @property
     def thickness(self) -> float:
         """All sublayers together [m]."""
-        return math.fsum(one.thickness for one in self.sublayers)
+        return math.fsum(part.thickness for part in self.sublayers)
 
     @property
     def surface(self) -> Sublayer:
@@ -245,7 +245,7 @@ class LayerStack(ElasticLayer):
         return self.sublayers[0]
 
     def _ratios(self) -> tuple[float, ...]:
-        return tuple(one.poissons_ratio for one in self.sublayers)
+        return tuple(part.poissons_ratio for part in self.sublayers)
 
     @property
     def title(self) -> str:
@@ -262,12 +262,12 @@ class LayerStack(ElasticLayer):
         """The same stack with thickness 1 and E* = 1."""
         length, modulus, support = self.thickness, self.contact_modulus, self.support
         sublayers = tuple(
-            one.replace(thickness=one.thickness / length, youngs_modulus=one.youngs_modulus / modulus)
-            for one in self.sublayers
+            part.replace(thickness=part.thickness / length, youngs_modulus=part.youngs_modulus / modulus)
+            for part in self.sublayers
         )
         base = support.scaled(modulus) if isinstance(support, ElasticBase) else support
         return self.replace(sublayers=sublayers, support=base)
 
     def stretched(self, factor: float) -> Self:
         """The same stack with every sublayer so many times as thick."""
-        return self.replace(sublayers=tuple(one.replace(thickness=one.thickness * factor) for one in self.sublayers))
+        return self.replace(sublayers=tuple(part.replace(thickness=part.thickness * factor) for part in self.sublayers))
