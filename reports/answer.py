@@ -67,7 +67,7 @@ def solution_table(solution: Solution) -> Table:
 
 
 def _digits(rows: Iterable[tuple[str, ...]]) -> str:
-    """Which digits of a table are right."""
+    """Sentence about the digits of a table that are right."""
     return BRACKETS if any("(" in cell for row in rows for cell in row) else "All digits printed are right."
 
 
@@ -115,7 +115,7 @@ def difference_table(solution: Solution, other: Solution) -> Table:
     """The largest difference of each quantity of two answers to one scene, and the errors that both state.
 
     Raises:
-        InvalidInput: if the answers are of another kind or have other states.
+        InvalidInput: If the answers are of another kind or have other states.
     """
     if type(other) is not type(solution) or len(other) != len(solution):
         raise InvalidInput(
@@ -144,7 +144,7 @@ def critical_facts(solution: Solution) -> list[tuple[str, str]]:
 
 
 def solution_notes(solution: Solution) -> list[tuple[str, str]]:
-    """What to know before the numbers: a warning of deep contacts, and notes that no `validity` line replaces."""
+    """Notes to read before the numbers: a warning of deep contacts, and notes that no `validity` line replaces."""
     warning = depth_note(solution.scene, depths_of(solution))
     replaced: tuple[str, ...] = ()
     if isinstance(solution.scene.layer, Layer) and isinstance(solution, ContactPath):

@@ -320,7 +320,7 @@ def _curves(
 
 
 def _group(scene: str, others: Mapping[str, object]) -> str:
-    """What the scenes of a line share: the other parameters, and the words of the scene's name without its numbers."""
+    """Common description of the scenes of a line: the other parameters, and the words of their names."""
     shared = ", ".join(v if isinstance(v, str) else f"{_parameter_words(name)} = {v}" for name, v in others.items())
     words = re.sub(r"\S+=\S+( [mun]m\b)?", "", scene).replace(",", " ").split()
     return ", ".join(filter(None, (" ".join(word for word in words if word not in shared), shared)))

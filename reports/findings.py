@@ -86,7 +86,7 @@ def in_words(message: str) -> str:
 
 
 def observed_text(verdict: Verdict) -> str:
-    """What was measured, with the error that each method states; errors and residuals have two digits."""
+    """Measured error or difference, with the error that each method states; errors and residuals have two digits."""
     unit = "" if verdict.unit == "1" else f" {verdict.unit}"
     if verdict.error is None:
         return NOT_FINITE if verdict.status is Status.INVALID else "not compared"
@@ -122,17 +122,17 @@ class Finding:
     """A claim that ended alike on several scenes, or one reason why a method gave no answers.
 
     Attributes:
-        status: how it ended.
-        word: the same for readers.
-        case: name, or how many cases.
-        claim: name of the claim; "no answer" or "not modelled" of answers.
-        methods: that took part.
-        scenes: on which it ended so.
-        total: number of scenes that the claim speaks about.
-        size: the relative errors in words, "+1.0e-3 each".
-        fraction: largest error over tolerance.
-        worst: the worst verdict; None of answers.
-        message: what was seen at the worst scene, or the reason.
+        status: Status of the verdicts or answers.
+        word: Word for the status that readers see.
+        case: Name of the case, or the number of cases.
+        claim: Name of the claim; "no answer" or "not modelled" for answers.
+        methods: Methods that took part.
+        scenes: Scenes with this status.
+        total: Number of scenes that the claim speaks about.
+        size: Relative errors in words, "+1.0e-3 each".
+        fraction: Largest error over tolerance.
+        worst: Worst verdict; None for answers.
+        message: Observation at the worst scene, or the reason.
     """
 
     status: Status
@@ -200,7 +200,7 @@ def _finding(
 
 
 def _claim(verdict: Verdict) -> tuple[str, ...]:
-    """What verdicts of one finding share; an accepted number is compared in many cases."""
+    """Key that verdicts of one finding share; an accepted number is compared in many cases."""
     claim = ("",) if verdict.kind is Kind.REGRESSION else (verdict.case, verdict.claim)
     return *claim, verdict.quantity, *verdict.methods
 
@@ -226,7 +226,7 @@ def _unanswered(run: Run) -> list[Answer]:
 
 
 def _reason(answer: Answer) -> tuple[str, ...]:
-    """What answers of one finding share: status and reason; broken ones also method and case."""
+    """Key that answers of one finding share: status and reason; broken ones also method and case."""
     place = () if answer.status is Status.SKIP else (answer.case, answer.method)
     return answer.status.value, answer.reason, *place
 
@@ -243,7 +243,7 @@ def _skip_reason(verdict: Verdict) -> str:
 
 
 def counts(run: Run) -> tuple[tuple[Status, int], ...]:
-    """How many checks ended with which status, worst first; answers count where they broke down, skips per reason."""
+    """Number of checks with each status, worst first; answers count where they broke down, skips per reason."""
     tally: Counter[Status] = Counter()
     tally.update(v.status for v in run.judged.verdicts if v.status is not Status.SKIP and not v.identity)
     tally.update(answer.status for answer in _unanswered(run) if answer.status is not Status.SKIP)
@@ -289,7 +289,7 @@ def nothing_ran(run: Run) -> bool:
 
 
 def baseline_sentence(run: Run) -> str:
-    """How many of the accepted numbers changed."""
+    """Sentence with the number of accepted numbers that changed."""
     compared = [v for v in run.judged.verdicts if v.kind is Kind.REGRESSION]
     changed = sum(v.status is not Status.PASS for v in compared)
     return (

@@ -44,13 +44,13 @@ class Half:
     """The half-section by one method.
 
     Attributes:
-        path: the answer.
-        side: -1 for left of the axis, 1 for right of it.
-        radius: r of the points, shape (depths, radii).
-        depth: z.
-        enlarged: factor on displacements.
-        unit: metres of a drawn length.
-        fields: at all points.
+        path: Answer whose last state is drawn.
+        side: Side of the axis: -1 for left, 1 for right.
+        radius: Radius r [m] of the points, shape (depths, radii).
+        depth: Depth z [m] of the points.
+        enlarged: Factor on displacements.
+        unit: Length [m] of one unit of the drawing.
+        fields: Fields at all points.
     """
 
     path: ContactPath
@@ -63,7 +63,7 @@ class Half:
 
     @property
     def places(self) -> tuple[FloatArray, FloatArray]:
-        """Where the points have moved to, as they are drawn."""
+        """Places of the deformed points in units of the drawing."""
         r = self.radius + self.enlarged * self.fields.radial_displacement
         return self.side * r / self.unit, (self.depth + self.enlarged * self.fields.axial_displacement) / self.unit
 
@@ -72,8 +72,8 @@ def draw_inside(solution: Solution, other: Solution | None) -> Figure:
     """The picture of the last state of a path; without another answer both sides show the same one.
 
     Raises:
-        InvalidInput: if the answer is no path.
-        UnsupportedSceneError: if its method gives no fields inside.
+        InvalidInput: If the answer is no path.
+        UnsupportedSceneError: If its method gives no fields inside.
     """
     if not isinstance(solution, ContactPath):
         raise InvalidInput(f"a {type(solution).__name__} has no picture inside; prescribe radii, depths or forces")
@@ -109,7 +109,7 @@ def _halves(left: ContactPath, right: ContactPath) -> tuple[Half, Half]:
 
 
 def _height(half: Half) -> float:
-    """Of a map [inches]: as wide and deep as the section, but for very thin layers."""
+    """Height of a map [inches]: in proportion to the section, but for very thin layers."""
     ratio = float(half.depth.max() / (2.0 * half.radius.max()))
     return float(np.clip((WIDTH - 1.4) * ratio * (1.0 + 2.0 * DRAWN_SHARE), LEAST_HEIGHT, MOST_HEIGHT))
 
@@ -154,10 +154,10 @@ def _draw_map(axes: Axes, halves: tuple[Half, Half], name: str) -> None:
 
 
 def _draw_arrows(axes: Axes, halves: tuple[Half, Half]) -> str:
-    """Where a fluid would be driven: against the gradient, lengths by its root, since it is steep near edges.
+    """Draw arrows along the flow of a fluid, against the pressure gradient; lengths are its root, steep near edges.
 
     Returns:
-        What they show, for readers.
+        Caption of the arrows.
     """
     rows = np.linspace(0, POINTS[1] - 1, ARROWS[1] + 2).astype(int)[1:-1]
     columns = np.linspace(0, POINTS[0] - 1, 2 * ARROWS[0] + 1).astype(int)[1::2]
@@ -182,7 +182,7 @@ def _draw_differences(axes: Axes, halves: tuple[Half, Half]) -> str:
     """Distance of the two answers.
 
     Returns:
-        Its size in words.
+        Caption with the size of the differences.
     """
     pairs = [[getattr(half.fields, name) for half in halves] for name in ("von_mises", "hydrostatic_pressure")]
     values = [np.abs(left - right) for left, right in pairs]

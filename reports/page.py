@@ -39,9 +39,9 @@ def write_report(run: Run, directory: Path, *, single_file: bool = False) -> Pat
     """Write report.html, a page per case in cases/, figures/*.svg and answers.csv into `directory`.
 
     Args:
-        run: what was found.
-        directory: of the run.
-        single_file: whether the cases stand on report.html instead; a single case always does.
+        run: Answers, verdicts and studies.
+        directory: Folder of the run.
+        single_file: Whether the cases stand on report.html instead; a single case always does.
 
     Returns:
         The path of report.html.
@@ -147,7 +147,7 @@ def _breakdown(run: Run) -> list[str]:
 
 
 def stamp_lines(run: Run) -> list[tuple[str, str]]:
-    """Where and with what the run was made, one line per fact."""
+    """Facts about machine, revision and versions of the run, one line per fact."""
     stamp = run.judged.stamp
     return [
         ("started", f"{stamp.started}, took {duration(stamp.wall_seconds)}"),

@@ -38,7 +38,7 @@ def _ignore(completed: int, total: int, words: str = "") -> None:
 
 
 def _line(event: ProgressEvent) -> tuple[str, str]:
-    """What an event prints, and its tone."""
+    """Line that an event prints, and its tone."""
     if event.kind in LOUD:
         words, tone = LOUD[event.kind]
         return f"{words}: {event.reason}", tone

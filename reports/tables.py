@@ -63,7 +63,7 @@ def cell_of(verdicts: Iterable[Verdict]) -> Cell:
 
 
 def _solved_cell(answers: Sequence[Answer], silent: Sequence[str]) -> Cell:
-    """Of the solutions of a case; a chosen method that was skipped everywhere is not hidden behind the others."""
+    """Cell for the solutions of a case; a chosen method that was skipped everywhere is not hidden behind the others."""
     hidden = [answer for answer in answers if answer.status is Status.SKIP and answer.method in silent]
     ran = hidden or [answer for answer in answers if answer.status is not Status.SKIP] or answers
     worst = max(ran, key=lambda answer: (answer.status.is_failure, answer.status is Status.SKIP))
@@ -128,7 +128,7 @@ def pairs(run: Run) -> Table | None:
 
 
 def shared_things(run: Run) -> Table | None:
-    """What two methods share, if the run compares any methods."""
+    """Table of the code and data that two methods share, if the run compares any methods."""
     if not any(len(verdict.methods) > 1 for verdict in run.judged.verdicts):
         return None
     return tabulated(
@@ -252,7 +252,7 @@ def orders(run: Run) -> Table | None:
 
 
 def observed_order(study: Convergence) -> str:
-    """How fast the errors fell, in a few words."""
+    """Observed order of convergence, or digits per refinement, in a few words."""
     if study.digits is not None:
         return f"{study.digits:.1f} digits per refinement"
     return study.kind if study.observed_order is None else f"{study.observed_order:.2f}"
@@ -269,7 +269,7 @@ def completed(test: StressTest) -> int:
 
 
 def end_of(test: StressTest) -> str:
-    """Where a stress test ended: "completed to 1e-7", "refused at 1e-7", "fails at 1e-7"."""
+    """End of a stress test in words: "completed to 1e-7", "refused at 1e-7", "fails at 1e-7"."""
     number, unit = completed(test), "" if test.unit == "1" else f" {test.unit}"
     if number == len(test.steps):
         return f"completed to {small(test.steps[-1].value)}{unit}"
@@ -309,7 +309,7 @@ def _why_stopped(test: StressTest) -> str:
 
 
 def effects(parts: Sequence[Effect]) -> Table | None:
-    """What each effect and the finite thickness cost and change, and at which accuracies they may be left out."""
+    """Table of the cost and influence of each effect and of the finite thickness."""
     return tabulated(
         parts,
         {

@@ -186,11 +186,11 @@ def tabulated(
     """A table of one row a record; None without records.
 
     Args:
-        records: in the order of the rows.
-        columns: what each column shows of a record, by its head.
-        title: over the table.
-        note: below it.
-        words: how many of the first columns are words.
+        records: Records in the order of the rows.
+        columns: Text of each column for a record, by its head.
+        title: Line above the table.
+        note: Text below the table.
+        words: Number of the first columns that are words.
     """
     rows = tuple(tuple(cell(record) for cell in columns.values()) for record in records)
     return Table(title=title, note=note, heads=tuple(columns), rows=rows, words=words) if rows else None

@@ -42,9 +42,9 @@ class Extreme:
     """The largest value of a field.
 
     Attributes:
-        radius: r [m].
-        depth: z [m].
-        value: [Pa].
+        radius: Radius r [m].
+        depth: Depth z [m].
+        value: Value of the field [Pa].
     """
 
     radius: float
@@ -57,15 +57,15 @@ class InsideFields:
     """Fields at points, each of the points' shape; tension positive, depth and axial displacement into the body.
 
     Attributes:
-        radial_displacement: u_r [m].
-        axial_displacement: u_z [m].
-        radial_stress: sigma_rr [Pa].
-        hoop_stress: sigma_tt [Pa].
-        axial_stress: sigma_zz [Pa].
-        shear_stress: sigma_rz [Pa].
-        hydrostatic_pressure: -(sigma_rr + sigma_tt + sigma_zz)/3 [Pa].
-        pressure_gradient_radial: Its derivative along r [Pa/m].
-        pressure_gradient_axial: Its derivative along z [Pa/m].
+        radial_displacement: Displacement u_r [m].
+        axial_displacement: Displacement u_z [m].
+        radial_stress: Stress sigma_rr [Pa].
+        hoop_stress: Stress sigma_tt [Pa].
+        axial_stress: Stress sigma_zz [Pa].
+        shear_stress: Stress sigma_rz [Pa].
+        hydrostatic_pressure: Pressure -(sigma_rr + sigma_tt + sigma_zz)/3 [Pa].
+        pressure_gradient_radial: Derivative of the hydrostatic pressure along r [Pa/m].
+        pressure_gradient_axial: Derivative of the hydrostatic pressure along z [Pa/m].
         error_estimate: Error of each field over its scale: the largest stress of these points; for gradients the
             largest of them, or that stress over the smaller of contact radius and thickness; the depth for
             displacements.
@@ -106,8 +106,8 @@ class KnownContact(NamedTuple):
     """Contact radius of one equilibrium, with errors of radius and pressure.
 
     Attributes:
-        radius: a [m], with all digits of what was prescribed.
-        radius_error: Its relative error.
+        radius: Contact radius a [m], with all digits of a prescribed one.
+        radius_error: Relative error of the contact radius.
         density_error: Relative error of the Abel density of its pressure, by default of the pressure itself.
         edge_error: Error of that density's value at the edge, over E* [m].
     """
@@ -130,9 +130,9 @@ class Inside:
     """The body under one equilibrium of a path.
 
     Attributes:
-        fields: Of the method that solved it.
+        fields: Fields of the method that solved the equilibrium.
         scene: The problem that was solved.
-        contact_radius: a [m] of the equilibrium.
+        contact_radius: Contact radius a [m] of the equilibrium.
         singular_edge: Whether its pressure is infinite at the edge though the scene does not say so.
     """
 

@@ -43,9 +43,9 @@ class Circle:
     """One circle of contact and the surface outside it.
 
     Attributes:
-        contact_radius: a [m].
-        indentation_depth: delta [m].
-        displacement: w [m] at radii [m] beyond a, shape (n,).
+        contact_radius: Contact radius a [m].
+        indentation_depth: Depth delta [m].
+        displacement: Surface displacement w [m] at radii [m] beyond a, shape (n,).
         tolerance: Overlap [m] that is still an error of the displacement.
     """
 

@@ -66,9 +66,9 @@ class SampledFields:
     """Surface fields at stored radii; other radii are refused, never interpolated.
 
     Attributes:
-        radius: r [m], shape (m,) or (n, m): m radii for each of n steps, increasing.
-        pressures: p [Pa], shape (n, m).
-        displacements: w [m], shape (n, m).
+        radius: Stored radii r [m], shape (m,) or (n, m): m radii for each of n steps, increasing.
+        pressures: Pressure p [Pa], shape (n, m).
+        displacements: Surface displacement w [m], shape (n, m).
     """
 
     radius: FloatArray
@@ -124,10 +124,10 @@ class ContactPath(Solution):
     """Equilibria at the prescribed radii, depths or forces, in their order.
 
     Attributes:
-        contact_radius: a [m], shape (n,).
-        indentation_depth: delta [m], shape (n,).
-        normal_force: F_N [N], shape (n,).
-        contact_stiffness: k_N = dF/d(delta) at fixed radius [N/m], shape (n,).
+        contact_radius: Contact radius a [m], shape (n,).
+        indentation_depth: Depth delta [m], shape (n,).
+        normal_force: Normal force F_N [N], shape (n,).
+        contact_stiffness: Stiffness k_N = dF/d(delta) at fixed radius [N/m], shape (n,).
         fields: Pressure and displacement at the surface, where the method gives them.
     """
 
@@ -251,7 +251,7 @@ class FrictionPath(ContactPath):
 
     Attributes:
         stick_radius: Radius of the outermost point that sticks [m], shape (n,); the contact's own under full stick.
-        dissipated_energy: Turned into heat since the first touch [J], shape (n,).
+        dissipated_energy: Energy turned into heat since the first touch [J], shape (n,).
     """
 
     OFFERS: ClassVar[tuple[str, ...]] = (
@@ -268,7 +268,7 @@ class FrictionPath(ContactPath):
         return sampled(self, self.fields, "tangential_traction", radius, step)
 
     def slip(self, radius: ArrayLike, step: int = 0) -> FloatArray:
-        """How far the surface has slid outward at radii [m] since it touched there [m], zero outside."""
+        """Slip [m] at radii [m]: outward sliding of the surface since it touched there, zero outside."""
         return sampled(self, self.fields, "slip", radius, step)
 
 
@@ -277,9 +277,9 @@ class ForcePath(Solution):
     """Equilibria of a solver that gives no contact radius.
 
     Attributes:
-        indentation_depth: delta [m], shape (n,).
-        normal_force: F_N [N], shape (n,).
-        contact_stiffness: dF/d(delta) [N/m], shape (n,).
+        indentation_depth: Depth delta [m], shape (n,).
+        normal_force: Normal force F_N [N], shape (n,).
+        contact_stiffness: Stiffness dF/d(delta) [N/m], shape (n,).
     """
 
     ASKED: ClassVar[tuple[str, ...]] = ("indentation_depth", "normal_force", "contact_stiffness")
@@ -300,9 +300,9 @@ class CriticalPoint:
     Attributes:
         control: "displacement", "force" or "machine" (the displacement of one that gives way).
         kind: "pull-off", "snap-in" or "start" (detachment begins at a punch's edge).
-        contact_radius: a [m].
-        indentation_depth: delta [m].
-        normal_force: F_N [N].
+        contact_radius: Contact radius a [m].
+        indentation_depth: Depth delta [m].
+        normal_force: Normal force F_N [N].
     """
 
     control: str
@@ -317,15 +317,15 @@ class DetachmentPath(Solution):
     """The equilibrium branch of an adhering indenter, in order of decreasing contact radius.
 
     Attributes:
-        contact_radius: a [m], shape (n,).
-        indentation_depth: delta [m], shape (n,).
-        normal_force: F_N [N], shape (n,).
+        contact_radius: Contact radius a [m], shape (n,).
+        indentation_depth: Depth delta [m], shape (n,).
+        normal_force: Normal force F_N [N], shape (n,).
         stable_displacement_control: Whether the state is stable at prescribed depth, shape (n,).
         stable_force_control: Whether it is stable at prescribed force, shape (n,).
         pull_off_force: Largest tensile force on the way, as a (negative) F_N [N], under the scene's control.
-        pull_off_depth: delta [m] where contact is lost under the scene's control.
-        pull_off_contact_radius: a [m] where contact is lost.
-        force_at_loss: F_N [N] just before contact is lost, often a smaller tension than the largest on the way.
+        pull_off_depth: Depth delta [m] where contact is lost under the scene's control.
+        pull_off_contact_radius: Contact radius a [m] where contact is lost.
+        force_at_loss: Normal force F_N [N] just before contact is lost; the tension is often less than the largest.
         critical_points: All changes of stability under either control, and under that of a machine that gives way.
     """
 
@@ -360,10 +360,10 @@ class HistoryPath(Solution):
     """Response to a prescribed depth or force history.
 
     Attributes:
-        time: t [s], shape (n,).
-        indentation_depth: delta [m], shape (n,).
-        normal_force: F_N [N], shape (n,).
-        contact_radius: a [m], shape (n,); zero where the indenter is free.
+        time: Time t [s], shape (n,).
+        indentation_depth: Depth delta [m], shape (n,).
+        normal_force: Normal force F_N [N], shape (n,).
+        contact_radius: Contact radius a [m], shape (n,); zero where the indenter is free.
         fields: Fields inside the body at the instants, where the method gives them.
     """
 
@@ -401,7 +401,7 @@ class FrictionHistory(HistoryPath):
 
     Attributes:
         stick_radius: Radius of the outermost point that sticks [m], shape (n,).
-        dissipated_energy: Turned into heat since the first touch [J], shape (n,).
+        dissipated_energy: Energy turned into heat since the first touch [J], shape (n,).
         surface: Tractions at the surface at each instant, where the method gives them.
     """
 
@@ -425,19 +425,19 @@ class ImpactHistory(Solution):
     """An impact from first touch (first sample) to the loss of contact (last sample).
 
     Attributes:
-        time: t [s] since first touch, shape (n,).
-        indentation_depth: delta [m], shape (n,).
-        velocity: d(delta)/dt [m/s], shape (n,).
-        normal_force: F_N [N], shape (n,).
-        contact_radius: a [m], shape (n,).
-        kinetic_energy: [J], shape (n,).
+        time: Time t [s] since first touch, shape (n,).
+        indentation_depth: Depth delta [m], shape (n,).
+        velocity: Velocity d(delta)/dt [m/s], shape (n,).
+        normal_force: Normal force F_N [N], shape (n,).
+        contact_radius: Contact radius a [m], shape (n,).
+        kinetic_energy: Kinetic energy [J], shape (n,).
         stored_energy: Recoverable energy in the layer [J], shape (n,).
-        dissipated_energy: [J], shape (n,). Energy that is stored below a point of the surface when the contact leaves
-            it does no more work on the indenter. MDR counts it as dissipated at once, finite elements as stored until
-            it has relaxed.
-        peak_force: max F_N [N], between samples too.
-        peak_depth: max delta [m].
-        peak_contact_radius: max a [m].
+        dissipated_energy: Dissipated energy [J], shape (n,). Energy stored below a point of the surface when the
+            contact leaves it does no more work on the indenter. MDR counts it as dissipated at once, finite elements
+            as stored until it has relaxed.
+        peak_force: Largest force max F_N [N], between samples too.
+        peak_depth: Largest depth max delta [m].
+        peak_contact_radius: Largest contact radius max a [m].
     """
 
     CURVE_ALONE: ClassVar[bool] = True

@@ -50,7 +50,7 @@ class Solution(Evidence):
     Attributes:
         scene: The problem that was solved.
         method: Name of the method.
-        settings: Its numerical settings.
+        settings: Numerical settings of the method.
         error_estimate: Own estimate of each quantity's relative error, shape (n,) or scalar; relative to `scale`.
         cost: Seconds, memory, unknowns, counters.
         stages: Which computations ran.

@@ -226,7 +226,7 @@ def describe(error: pydantic.ValidationError, cls: type[Record], place: str, top
     """One line for each problem: path of the field below a place, its value, what is required and the remedy.
 
     Args:
-        error: Of pydantic.
+        error: Error that pydantic raised.
         cls: The record that was to be made.
         place: Beginning of every path.
         top: Name of the whole in a message that is not about one field; by default the place.

@@ -40,7 +40,7 @@ class Column:
 
     Attributes:
         name: Head without its unit, empty without a head.
-        unit: As written, with "u" for micro; empty where there is none.
+        unit: Unit as written, with "u" for micro; empty where there is none.
         values: Shape (n,).
     """
 

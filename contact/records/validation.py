@@ -58,7 +58,7 @@ class Derived(float):
 
 @dataclass
 class Reading:
-    """How the numbers of one scene are read, and whether they have units.
+    """Settings for reading the numbers of one scene, and a record of whether they have units.
 
     Attributes:
         folder: CSV files are named relative to it; None where no file may be named.

@@ -22,9 +22,9 @@ class Sublayer(Record):
     """One uniform layer of a stack.
 
     Attributes:
-        thickness: h_i [m].
-        youngs_modulus: E_i [Pa].
-        poissons_ratio: nu_i in [0, 0.5]; 0.5 is exactly incompressible.
+        thickness: Thickness h_i [m].
+        youngs_modulus: Young's modulus E_i [Pa].
+        poissons_ratio: Poisson's ratio nu_i in [0, 0.5]; 0.5 is exactly incompressible.
     """
 
     thickness: PositiveLength
@@ -36,8 +36,8 @@ class ElasticBase(Record):
     """An elastic half-space below a layer.
 
     Attributes:
-        youngs_modulus: E [Pa].
-        poissons_ratio: nu in [0, 0.5].
+        youngs_modulus: Young's modulus E [Pa].
+        poissons_ratio: Poisson's ratio nu in [0, 0.5].
         interface: "bonded", or "unbonded" (frictionless, no lift-off), between base and layer.
     """
 
@@ -130,9 +130,9 @@ class Layer(ElasticLayer):
     """An elastic layer on a rigid base.
 
     Attributes:
-        thickness: h [m]; infinite for a half-space (see `Layer.half_space`).
-        youngs_modulus: E [Pa]; for a viscoelastic layer the instantaneous (glassy) value.
-        poissons_ratio: nu in [0, 0.5]; 0.5 is exactly incompressible.
+        thickness: Thickness h [m]; infinite for a half-space (see `Layer.half_space`).
+        youngs_modulus: Young's modulus E [Pa]; for a viscoelastic layer the instantaneous (glassy) value.
+        poissons_ratio: Poisson's ratio nu in [0, 0.5]; 0.5 is exactly incompressible.
         support: "bonded" (no displacement at the base) or "unbonded" (frictionless base, no lift-off).
     """
 
@@ -184,7 +184,7 @@ class Layer(ElasticLayer):
 
     @property
     def title(self) -> str:
-        """As in: bonded layer, nu = 0.45."""
+        """Short name of the layer for titles, such as "bonded layer, nu = 0.45"."""
         below = "half-space" if self.is_half_space else f"{self.support} layer"
         return f"{below}, nu = {self.poissons_ratio:g}"
 
@@ -211,8 +211,8 @@ class LayerStack(ElasticLayer):
     """Uniform layers on top of each other. A scene takes a stack of one on a rigid base as that `Layer`.
 
     Attributes:
-        sublayers: From the top; the first touches the indenter.
-        interfaces: One fewer than sublayers: "bonded", or "unbonded" (frictionless, no lift-off).
+        sublayers: Layers from the top; the first touches the indenter.
+        interfaces: Interfaces, one fewer than sublayers: "bonded", or "unbonded" (frictionless, no lift-off).
         support: "bonded" or "unbonded" to a rigid base, or an `ElasticBase`.
     """
 

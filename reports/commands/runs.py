@@ -128,7 +128,7 @@ def list_cases(names: list[str], suite: str) -> int:
     """Print the cases of a suite, or all; a single named one in full. Returns the exit code.
 
     Raises:
-        InvalidInput: naming the case and what is wrong with it.
+        InvalidInput: With the name of the case and the mistake in it.
     """
     library = {name: with_registered(case) for name, case in load_cases().items()}
     cases = select(library, names=names, suite=suite)
@@ -173,7 +173,7 @@ def cost(names: list[str], options: RunOptions, *, methods: list[str], settings:
     A setting that is a list is a ladder of an installed package's method.
 
     Raises:
-        InvalidInput: if no study times such a method.
+        InvalidInput: If no study times such a method.
     """
     for method in methods:
         check_known(method)
@@ -204,7 +204,7 @@ def stress(names: list[str], methods: list[str], options: RunOptions, *, quiet: 
     """Carry out stress tests (all if none is named) by these methods, MDR if none is named; 1 if one failed.
 
     Raises:
-        InvalidInput: if no test has such a name.
+        InvalidInput: If no test has such a name.
     """
     case = load_cases()["stability"].only_methods(methods or ["mdr"])
     chosen = tuple(test for test in case.claims if not names or any(name in test.name for name in names))
@@ -262,7 +262,7 @@ def write_summaries(run: Run, directory: Path) -> None:
 
 
 def page_of(directory: Path) -> Path:
-    """Where a reader begins: the report, or the summary where no pages could be drawn."""
+    """First page for a reader: the report, or the summary where no pages could be drawn."""
     report = directory / "report.html"
     return report if report.is_file() else directory / "summary.md"
 

@@ -48,18 +48,18 @@ ADVISED_AT = 1e-2
 
 @dataclass(frozen=True, kw_only=True)
 class Request:
-    """What the command line asks of a scene.
+    """Options of `contact-verify solve`.
 
     Attributes:
-        method: name, empty for the default.
-        accuracy: relative accuracy of the numbers, or None.
-        pressure_accuracy: relative accuracy of the pressure, or None.
-        uncertain: uncertain inputs in words, or empty.
-        samples: scenes to draw for them, 0 for differences.
-        over: number and range in words, or empty.
-        advise: whether effects are left out in turn.
-        against: second method, or empty.
-        outputs: files to write.
+        method: Name of the method, empty for the default.
+        accuracy: Relative accuracy of the numbers, or None.
+        pressure_accuracy: Relative accuracy of the pressure, or None.
+        uncertain: Uncertain inputs in words, or empty.
+        samples: Number of scenes to draw for uncertain inputs, 0 for differences.
+        over: Number that is varied and its range in words, or empty.
+        advise: Whether effects are left out in turn.
+        against: Name of a second method, or empty.
+        outputs: Files to write.
     """
 
     method: str = ""
@@ -76,7 +76,7 @@ class Request:
         """Refuse what cannot be asked, before anything is solved.
 
         Raises:
-            InvalidInput: for a wrong accuracy, file or combination.
+            InvalidInput: For a wrong accuracy, file or combination.
         """
         check_outputs(self.outputs, {".csv": "CSV", **PICTURES} if self.over else ENDINGS)
         for name, wanted in (("accuracy", self.accuracy), ("pressure-accuracy", self.pressure_accuracy)):
@@ -107,7 +107,7 @@ def solve(scene_file: Path, **asked: Any) -> None:
     """Solve the scene of a TOML file, print what was asked for (see `Request`), and write the files.
 
     Raises:
-        InvalidInput: for a wrong scene, method or ending; before anything is solved.
+        InvalidInput: For a wrong scene, method or ending; before anything is solved.
     """
     request = Request(**asked)
     request.check()
@@ -156,7 +156,7 @@ def _show_answer(solution: Solution) -> None:
 
 
 def _notes(solution: Solution) -> list[tuple[str, str]]:
-    """What smoothing a tip changes, and where the theory is valid."""
+    """Notes on the effect of a smoothed tip, and on the validity of the theory."""
     from cases.advice import validity_lines  # noqa: PLC0415 - MDR only where it is asked for
 
     notes: list[tuple[str, str]] = []
@@ -208,7 +208,7 @@ def _sweep(scene: Scene, scene_file: Path, request: Request) -> None:
     """Solve the scene over a range of one of its numbers, print the table and write the files.
 
     Raises:
-        InvalidInput: if every value is refused.
+        InvalidInput: If every value is refused.
     """
     from cases.sweep import read_range, sweep  # noqa: PLC0415 - only where it is asked for
 
