@@ -43,6 +43,8 @@ class Profile(Record, ABC):
     """Base of all indenters of revolution. Radii r [m] may be arrays of any shape."""
 
     NAMED = True
+    UPRIGHT_END: ClassVar[str] = "the indenter is upright there"
+    """Reason of the message for a radius where the profile is upright."""
 
     @abstractmethod
     def height(self, radius: ArrayLike) -> FloatArray:
@@ -71,11 +73,6 @@ class Profile(Record, ABC):
     def ends_upright(self) -> bool:
         """Whether the slope is infinite where the profile ends: a contact up to there would be infinitely deep."""
         return math.isfinite(self.max_radius) and not np.isfinite(self.slope_at(self.max_radius))
-
-    @property
-    def upright_end(self) -> str:
-        """Reason of the message for a radius where the profile is upright."""
-        return "the indenter is upright there"
 
     @property
     def is_convex(self) -> bool:
@@ -179,6 +176,8 @@ class Sphere(Pointed):
         radius: Radius R [m].
     """
 
+    UPRIGHT_END = "the sphere has sunk to its equator"
+
     radius: PositiveLength
 
     def height(self, radius: ArrayLike) -> FloatArray:
@@ -197,10 +196,6 @@ class Sphere(Pointed):
     @property
     def max_radius(self) -> float:
         return self.radius
-
-    @property
-    def upright_end(self) -> str:
-        return "the sphere has sunk to its equator"
 
 
 class Cone(Sloped, Pointed):

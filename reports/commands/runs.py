@@ -18,7 +18,6 @@ from cases.run.executors import by_name
 from cases.run.lock import locked
 from cases.run.runner import RunOptions, plan, run_cases
 from cases.runs import Run, read_run
-from cases.stress import summary
 from cases.verdicts import ExitCode, Status, exit_code
 from contact import InvalidInput
 from contact.files.whole import write_whole
@@ -28,7 +27,7 @@ from reports.book import claim_table, method_table, scene_table
 from reports.ci import annotation_lines, junit_text, summary_text
 from reports.findings import causes, findings, headline, nothing_ran, tone_of, who
 from reports.progress import run_progress
-from reports.tables import matrix_table, shortest_times
+from reports.tables import matrix_table, shortest_times, stress_tests
 from reports.terminal import STYLES, console, progress_bar, show_table
 from reports.words import Table, display_name
 
@@ -212,10 +211,8 @@ def stress(names: list[str], methods: list[str], options: RunOptions, *, quiet: 
         raise InvalidInput(f"no stress test {names[0]!r}; there are {', '.join(test.name for test in case.claims)}")
     result = _solved([dataclasses.replace(case, claims=chosen)], options, quiet=quiet)
     terminal = console()
-    for test in result.judged.stress_tests:
-        stopped = (step for step in test.steps if step.status is not Status.PASS)
-        refusals = (f"  {test.parameter} = {step.value:g}: {step.status}: {step.reason}" for step in stopped)
-        terminal.print("\n".join((summary(test), *refusals)), soft_wrap=True)
+    if (table := stress_tests(result.judged.stress_tests)) is not None:
+        show_table(table, on=terminal)
     terminal.print(f"report: {page_of(options.out)}")
     return exit_code(result.statuses)
 
