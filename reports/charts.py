@@ -25,8 +25,6 @@ Place = tuple[float, float]
 
 # Errors below this are roundings and are drawn at it.
 SMALLEST: Final = 1e-17
-# Panels on one figure: a page.
-MOST_PANELS: Final = 6
 # Comparisons that the picture of a case shows, the worst first. Its table has all of them.
 WORST_DRAWN: Final = 12
 # Width and height of a front picture [inches]: a third of a desk's width, or a phone's whole one.
@@ -80,23 +78,21 @@ def of_case(run: Run, case: CaseText) -> list[Picture]:
     return [
         *([agreement] if differences else []),
         *_over_parameter(run, case),
-        *_in_panels(file_name(name, "convergence"), orders, list(studies.values()), _draw_convergence),
+        *_panels(file_name(name, "convergence"), orders, studies.values(), _draw_convergence),
         *(_cost(cost) for cost in judged.costs if cost.case == name and len(cost.points) > 1),
-        *_in_panels(file_name(name, "stress-tests"), digits, list(tests.values()), _draw_stress_test),
+        *_panels(file_name(name, "stress-tests"), digits, tests.values(), _draw_stress_test),
     ]
 
 
-def _in_panels(name: str, title: str, groups: Sequence[Any], draw: Callable[[Axes, Any], None]) -> Iterable[Picture]:
-    """One panel per group, several panels per picture."""
-    for number, start in enumerate(range(0, len(groups), MOST_PANELS), 1):
-        part = groups[start : start + MOST_PANELS]
-        yield Picture(f"{name}-{number}", title, partial(_panels, part, draw))
+def _panels(name: str, title: str, groups: Iterable[Any], draw: Callable[[Axes, Any], None]) -> Iterable[Picture]:
+    """One picture per group, as wide as a telephone's screen."""
+    for number, group in enumerate(groups, 1):
+        yield Picture(f"{name}-{number}", title, partial(_panel, group, draw))
 
 
-def _panels(groups: Sequence[Any], draw: Callable[[Axes, Any], None]) -> Figure:
-    drawing, all_axes = panels(len(groups), size=(5.0, 3.1), columns=2)
-    for axes, group in zip(all_axes, groups, strict=True):
-        draw(axes, group)
+def _panel(group: Any, draw: Callable[[Axes, Any], None]) -> Figure:
+    drawing, (axes,) = panels(1, size=(5.0, 3.1))
+    draw(axes, group)
     return drawing
 
 

@@ -53,9 +53,11 @@ def write_report(run: Run, directory: Path, *, single_file: bool = False) -> Pat
     for stale in (*(directory / CASES).glob("*.html"), *(directory / FIGURES).glob("*.svg")):
         stale.unlink()
     with figure_style():
-        pictures = {case.name: [_placed(picture, directory) for picture in of_case(run, case)] for case in cases}
+        pictures = {case.name: _placed(of_case(run, case), directory) for case in cases}
         answered = zip(QUESTIONS, (_agreement(run), _cost(run), _breakdown(run)), front(run), strict=True)
-        questions = [(asked, words, picture and _placed(picture, directory)) for asked, words, picture in answered]
+        questions = [
+            (asked, words, _placed([picture] if picture else [], directory)) for asked, words, picture in answered
+        ]
     judged = grouped(run.judged.verdicts, lambda verdict: verdict.case)
     common = {"run": run, "pictures": pictures, "names": set(pictures), "judged_of": judged}
     for case in () if single_file else cases:
@@ -77,11 +79,14 @@ def _page_name(case: str) -> str:
     return f"{file_name(case)}.html"
 
 
-def _placed(picture: Picture, directory: Path) -> dict[str, Any]:
-    """The picture written to its file, and as part of a page."""
-    svg = svg_text(picture.draw(), key=picture.name)
-    write_whole(directory / FIGURES / f"{picture.name}.svg", svg)
-    return {"picture": picture, "svg": Markup(svg)}
+def _placed(pictures: Iterable[Picture], directory: Path) -> list[list[dict[str, Any]]]:
+    """Pictures written to their files, and as parts of a page: one list for all pictures of one title."""
+    drawn: list[dict[str, Any]] = [
+        {"picture": picture, "svg": svg_text(picture.draw(), key=picture.name)} for picture in pictures
+    ]
+    for part in drawn:
+        write_whole(directory / FIGURES / f"{part['picture'].name}.svg", part["svg"])
+    return list(grouped(drawn, lambda part: part["picture"].title).values())
 
 
 def status_of(run: Run, case: str) -> Status:
@@ -167,7 +172,7 @@ def write_comparison(changes: Sequence[Verdict], title: tuple[str, str], runs: S
 def _rendered(template: str, **values: Any) -> str:
     """The page as text, without the end tags of rows and cells, which HTML lets out: a tenth of many tables."""
     page = _environment().get_template(template).render(**values)
-    return page.replace("</td>", "").replace("</tr>", "").replace("</th>", "")
+    return re.sub(r"</t[dhr]>\s*", "", page)
 
 
 def unbroken(text: str) -> Markup:

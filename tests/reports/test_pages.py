@@ -173,6 +173,12 @@ def test_pages_of_cases_that_are_gone_are_removed(tmp_path):
     assert not list((tmp_path / CASES).glob("*.html"))
 
 
+def test_cells_without_a_number_are_empty(page):
+    """Style sheets hide empty cells on a telephone. A line end after a cell was part of it."""
+    assert "<td class=n><td>" in page
+    assert not re.search(r"<t[dh][^>]*>\s+<t", page)
+
+
 def test_page_is_far_below_its_size_limit(page):
     assert len(page.encode()) < LARGEST_PAGE
 

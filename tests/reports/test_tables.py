@@ -58,7 +58,7 @@ def test_a_case_has_a_picture_of_each_study_and_failed_settings_spoil_none():
     run = example()
     pictures = of_case(run, run.judged.cases[0])
     assert [picture.name.removeprefix("example_cone-").split("-")[0] for picture in pictures] == [
-        "differences", "convergence", "cost", "stress",
+        "differences", "convergence", "convergence", "cost", "stress",
     ]  # fmt: skip
     with figure_style():
         drawings = [picture.draw() for picture in pictures]
