@@ -197,7 +197,7 @@ def propagated_table(propagated: "Propagated") -> Table:
     """Value, numerical error, uncertainty by the inputs and what each input contributes, of the last step."""
     names = list(propagated.quantities[0].by_input) if propagated.quantities else []
     words = [quantity_words(quantity.name) for quantity in propagated.quantities]
-    note = "Standard uncertainty by the inputs at the last step, beside the error of the method; "
+    note = "Standard uncertainty by the inputs at the last step, and the error of the method; "
     note += f"{propagated.solved} scenes solved{'' if names else ', by samples'}."
     if bent := [word for word, quantity in zip(words, propagated.quantities, strict=True) if quantity.bends]:
         note += f" Not linear over these uncertainties: {', '.join(bent)}; --samples takes the whole of it."

@@ -6,7 +6,7 @@ from pathlib import Path
 from cases.case import Case, CaseScene
 from cases.claims import Claim, Study
 from contact.files.whole import write_whole
-from reports.words import Table, display_name, file_name, small
+from reports.words import Table, display_name, file_name, markdown_table, small
 
 HEAD = """\
 # Verification book
@@ -39,8 +39,7 @@ def case_page(case: Case) -> str:
 
 def _section(table: Table) -> str:
     """A table under its heading."""
-    lines = [table.heads, ["---"] * len(table.heads), *table.rows]
-    body = "".join(f"| {' | '.join(cell.replace('|', '&#124;') for cell in line)} |\n" for line in lines)
+    body = markdown_table(table.heads, ([cell.replace("|", "&#124;") for cell in row] for row in table.rows))
     return f"## {table.title}\n\n{body}\n{table.note}".rstrip()
 
 

@@ -22,7 +22,7 @@ from reports.findings import (
     word_of,
 )
 from reports.tables import matrix_table
-from reports.words import Table, duration, small
+from reports.words import duration, markdown_table, small
 
 # Bytes of a summary: what a reader scrolls through. GitHub refuses a job summary above 1 MiB.
 LARGEST = 64_000
@@ -46,27 +46,18 @@ def summary_text(run: Run, *, largest: int = LARGEST) -> str:
     taken = f"{suite}, revision {judged.stamp.revision[:12]}, {duration(judged.stamp.wall_seconds)}."
     text = f"# {_escaped(headline(run)[0])}\n\n{tally}. {_escaped(taken)} {_escaped(baseline_sentence(run))}\n\n"
     text += "".join(f"{_escaped(sentence)}\n\n" for sentence in causes(run))
-    matrix = _markdown(matrix_table(run)) if run.statuses else ""
-    text += matrix * (2 * len(matrix.encode()) <= largest)
+    table = matrix_table(run)
+    matrix = markdown_table(table.heads, (map(_escaped, row) for row in table.rows)) if run.statuses else ""
+    text += f"{matrix}\n" * (0 < 2 * len(matrix.encode()) <= largest)
     rows = findings(run)
     if not rows:
         return text + "Every check ran and passed.\n"
-    text += _head(HEADS)
+    text += markdown_table(HEADS, ())
     for number, row in enumerate(map(_row, rows)):
         if len((text + row).encode()) > largest - 200:
             return text + f"\n{len(rows) - number} further rows are on the page of the report.\n"
         text += row
     return text
-
-
-def _head(heads: Iterable[str]) -> str:
-    cells = list(heads)
-    return f"| {' | '.join(cells)} |\n|{'---|' * len(cells)}\n"
-
-
-def _markdown(table: Table) -> str:
-    rows = (f"| {' | '.join(map(_escaped, row))} |\n" for row in table.rows)
-    return f"{_head(table.heads)}{''.join(rows)}\n"
 
 
 def _row(finding: Finding) -> str:

@@ -24,7 +24,7 @@ from reports.words import display_name, with_article, with_prefix
 # Points along r and z of the half-section: half as many show corners in the contours.
 POINTS = (200, 100)
 # Width of the picture and height of a map [inches]: narrow enough for a telephone.
-WIDTH, LEAST_HEIGHT, MOST_HEIGHT, BESIDE_MAP = 5.6, 0.95, 2.4, 0.85
+WIDTH, LEAST_HEIGHT, MOST_HEIGHT, AROUND_MAP = 5.6, 0.95, 2.4, 0.85
 # The largest displacement is drawn as about this share of the section's depth.
 DRAWN_SHARE = 0.12
 # Colours leave out the rest of all values, at either end, since stresses may be infinite at edges.
@@ -81,7 +81,7 @@ def draw_inside(solution: Solution, other: Solution | None) -> Figure:
     halves = _halves(*sorted(pair, key=lambda path: path.method != "mdr"))
     compared = pair[1] is not solution
     height, rows = _height(halves[0]), 3 if compared else 2
-    drawing = Figure(figsize=(WIDTH, rows * (height + BESIDE_MAP) + 0.4), layout="constrained")
+    drawing = Figure(figsize=(WIDTH, rows * (height + AROUND_MAP) + 0.4), layout="constrained")
     maps = list(drawing.subplots(rows, 1, squeeze=False).flat)
     for axes, name in zip(maps, ("von_mises", "hydrostatic_pressure"), strict=False):
         _draw_map(axes, halves, name)

@@ -180,6 +180,13 @@ class Table:
     words: int = 1
 
 
+def markdown_table(heads: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
+    """A table in Markdown, from cells whose text Markdown shows as it stands."""
+    names = list(heads)
+    lines = (names, ["---"] * len(names), *rows)
+    return "".join(f"| {' | '.join(line)} |\n" for line in lines)
+
+
 def tabulated(
     records: Iterable[R], columns: Mapping[str, Callable[[R], str]], *, title: str, note: str = "", words: int = 1
 ) -> Table | None:

@@ -14,7 +14,7 @@ from contact.scene.profiles import Profile
 # Radii [m] between which is looked; magnitudes of scenes lie well within.
 _RADII: Final = (1e-15, 1e15)
 # Least guess over the radius of a flat end: searches begin with a - b, which closer radii leave without digits.
-_BESIDE_FLAT: Final = 1.0 + 1e-12
+_NEXT_TO_FLAT: Final = 1.0 + 1e-12
 
 
 def first_radius(indenter: Profile, reached: Callable[[float], bool]) -> float:
@@ -22,7 +22,7 @@ def first_radius(indenter: Profile, reached: Callable[[float], bool]) -> float:
 
     Bisection in the logarithm to the last digit, so that every unit system takes the same steps to within rounding.
     """
-    low, high = max(_RADII[0], _BESIDE_FLAT * indenter.flat_radius), min(indenter.max_radius, _RADII[1])
+    low, high = max(_RADII[0], _NEXT_TO_FLAT * indenter.flat_radius), min(indenter.max_radius, _RADII[1])
     while low < (middle := math.sqrt(low * high)) < high:
         low, high = (low, middle) if reached(middle) else (middle, high)
     return high

@@ -265,7 +265,7 @@ def page_of(directory: Path) -> Path:
 
 
 def compare_runs(first: Path, second: Path) -> int:
-    """Compare the run in `second` with that in `first`; the page lands beside the second; 5 if nothing ran in one."""
+    """Compare the second run with the first, write the page into its folder, and return 5 if nothing ran in one."""
     from reports.page import write_comparison  # noqa: PLC0415 - an extra brings what it draws with
 
     runs = read_run(first), read_run(second)

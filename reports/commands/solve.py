@@ -41,7 +41,7 @@ MESHES = {".vtu": "VTU for ParaView", ".xdmf": "XDMF for ParaView"}
 ENDINGS = {".csv": "CSV", ".h5": "HDF5", **PICTURES, **MESHES}
 # A picture of that name shows the layer inside, by these two methods where both model the scene.
 INSIDE = "inside"
-SHOWN_BESIDE = {"fem": "mdr"}
+OTHER_METHOD = {"fem": "mdr"}
 # Advice without an accuracy: effects below one per cent are called small.
 ADVISED_AT = 1e-2
 
@@ -122,7 +122,7 @@ def solve(scene_file: Path, **asked: Any) -> None:
 
 
 def _answer(scene: Scene, request: Request) -> Solution:
-    """Solve and print the answer, beside that of a second method where one is asked for."""
+    """Solve and print the answer, and its differences from a second method where one is named."""
     with progress_bar("solving"):
         solution, facts = _solved(scene, request)
         other = build_guarded(request.against, {}).solve(scene) if request.against else None
@@ -249,7 +249,7 @@ def _writers(solution: Solution) -> Writers:
         if path.stem.startswith(INSIDE):
             from reports.inside import draw_inside  # noqa: PLC0415 - as above
 
-            other = _answer_or_none(SHOWN_BESIDE.get(solution.method, "fem"), solution.scene)
+            other = _answer_or_none(OTHER_METHOD.get(solution.method, "fem"), solution.scene)
             return write_picture(path, lambda: draw_inside(solution, other), key=INSIDE)
         # Other methods than MDR would take longer for states between than for the answer.
         finer = _pictures().between(solution.scene) if solution.method == "mdr" else None
