@@ -1,6 +1,5 @@
 """The curve of an answer: one of its arrays over another, with units and the stated error."""
 
-from io import StringIO
 from typing import Final
 
 import numpy as np
@@ -10,7 +9,7 @@ from matplotlib.figure import Figure
 from contact import UNITS, ForceHistory, Solution
 from contact.answer.evidence import SYMBOLS
 from contact.records.units import prefix_for
-from reports.style import BLACK, look_of
+from reports.style import BLACK, look_of, svg_text
 from reports.words import display_name
 
 # More prescribed states than these are drawn as a line, fewer as symbols.
@@ -96,7 +95,6 @@ def axis_label(answer: Solution, name: str) -> str:
 
 def inline_svg(answer: Solution) -> str:
     """The curve of `plot` as SVG within HTML."""
-    figure, text = Figure(figsize=(5.0, 3.2), layout="constrained"), StringIO()
+    figure = Figure(figsize=(5.0, 3.2), layout="constrained")
     plot(answer, axes=figure.subplots())
-    figure.savefig(text, format="svg")
-    return text.getvalue()[text.getvalue().index("<svg") :]
+    return svg_text(figure, key="answer")

@@ -2,7 +2,7 @@
 
 from collections import Counter
 from collections.abc import Iterator
-from contextlib import contextmanager, nullcontext
+from contextlib import contextmanager
 
 from rich.text import Text
 
@@ -20,7 +20,7 @@ def run_progress(*, quiet: bool) -> Iterator[Progress]:
     """A bar on a terminal and a line for each failure; a quiet user sees damaged answers and a lost cluster alone."""
     counts: Counter[str] = Counter()
     terminal = console()
-    with nullcontext(_ignore) if quiet else progress_bar("solving", on=terminal) as update:
+    with progress_bar("solving", on=terminal, hidden=quiet) as update:
 
         def show(event: ProgressEvent) -> None:
             line, tone = _line(event)
@@ -31,10 +31,6 @@ def run_progress(*, quiet: bool) -> Iterator[Progress]:
             update(event.done, event.total, words)
 
         yield show
-
-
-def _ignore(completed: int, total: int, words: str = "") -> None:
-    """Show no bar."""
 
 
 def _line(event: ProgressEvent) -> tuple[str, str]:

@@ -64,19 +64,19 @@ def show_facts(facts: Iterable[tuple[str, str]], *, on: Console) -> None:
 
 
 @contextmanager
-def progress_bar(what: str, on: Terminal | None = None) -> Iterator[Callable[..., None]]:
-    """A bar with the time spent, on a terminal after two seconds; yields a function that moves it.
+def progress_bar(what: str, on: Terminal | None = None, *, hidden: bool = False) -> Iterator[Callable[..., None]]:
+    """A bar with the time spent and left, on a terminal after two seconds; yields a function that moves it.
 
     The function takes the completed number, the total, and optionally words in place of those given. Inside, nothing
     but the terminal of the bar may print.
     """
     terminal = on or console(stderr=True)
-    if not terminal.is_terminal:
+    if hidden or not terminal.is_terminal:
         yield lambda *_: None
         return
-    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn  # noqa: PLC0415
+    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn  # noqa: PLC0415
 
-    columns = TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn()
+    columns = TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn(), TimeRemainingColumn()
     bar = Progress(*columns, console=terminal, transient=True)
     task = bar.add_task(what, total=None)
     patience = Timer(PATIENCE, bar.start)
