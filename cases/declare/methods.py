@@ -60,8 +60,8 @@ REFEREES: Mapping[str, EntryPoint] = {
     name: EntryPoint(name, f"cases.referees.{place}", ENTRY_POINT_GROUP)
     for name, place in {
         "calculix": "calculix:CalculiX",
-        "contact_mechanics": "contact_mechanics:ContactMechanics",
-        "tamaas": "tamaas:Tamaas",
+        "contact_mechanics": "grids:ContactMechanics",
+        "tamaas": "grids:Tamaas",
     }.items()
 }
 

@@ -64,9 +64,14 @@ def lacks(package: str) -> str:
     return f"{package} {NOT_INSTALLED}: pip install 'contact-verification[referees]'"
 
 
-def support(reason: str) -> Supported | Unsupported:
-    """`Unsupported` with the reason, or `Supported` if there is none."""
-    return Unsupported(reason) if reason else Supported()
+def support(*reasons: str | Unsupported | None) -> Supported | Unsupported:
+    """`Unsupported` with the first of the reasons that is not empty, or `Supported` if there is none."""
+    for reason in reasons:
+        if isinstance(reason, Unsupported):
+            return reason
+        if reason:
+            return Unsupported(reason)
+    return Supported()
 
 
 def insist(method: Method, scene: Scene) -> None:
