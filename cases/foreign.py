@@ -196,7 +196,9 @@ def with_restated(case: Case, names: Iterable[str]) -> Case:
         for claim in case.claims
     )
     new = tuple(twin for claim in case.claims for twin in _on_twins(case, claim, twins))
-    return replace(case, scenes=(*case.scenes, *twins.values()), claims=(*own, *new))
+    compared = {name for claim in new for name in claim.scenes}
+    restated = (twin for twin in twins.values() if twin.name in compared)
+    return replace(case, scenes=(*case.scenes, *restated), claims=(*own, *new))
 
 
 def _twin(scene: CaseScene, names: tuple[str, ...]) -> CaseScene | None:
@@ -282,7 +284,7 @@ def _use(case: Case, scene: CaseScene, label: str) -> MethodUse:
 def beside(case: Case, methods: Collection[str], reference: str) -> Case:
     """Return the case with what is claimed of ``methods``, and ``reference`` on the scenes that one of them supports.
 
-    Nothing is claimed of the reference alone. Where no method supports any scene, all are compared: skipped by reason.
+    Nothing is claimed of the reference alone. A scene that no method supports is skipped with their reason.
 
     Args:
         case: with all these methods.
@@ -290,8 +292,7 @@ def beside(case: Case, methods: Collection[str], reference: str) -> Case:
         reference: label of the method that they are compared with.
     """
     supported = {scene.name for scene in case.scenes if any(_supports(scene, label) for label in methods)}
-    compared = supported or {scene.name for scene in case.scenes}
-    left = case.only(lambda scene, use: use.label in methods or (use.label == reference and scene.name in compared))
+    left = case.only(lambda scene, use: use.label in methods or (use.label == reference and scene.name in supported))
     uses = tuple(use for use in case.methods if use.label in (*methods, reference))
     claims = tuple(own for claim in case.claims for own in _about(claim, methods))
     return replace(left, methods=uses, claims=claims)
