@@ -38,9 +38,7 @@ class RunDisplay:
 
     def __call__(self, event: ProgressEvent) -> None:
         """Show an event."""
-        if event.kind == "refused":
-            self._console.print(Text(f"solved again: {event.reason}", style=STYLES["warn"]))
-        elif event.kind == "stopped":
+        if event.kind == "stopped":
             self._console.print(Text(f"stopped: {event.reason}", style=STYLES["bad"]))
         elif event.status is None:
             self._say(f"{event.total} solutions in {event.label}")

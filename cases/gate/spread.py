@@ -18,7 +18,7 @@ import numpy as np
 from cases.answers import Answer, Table
 from cases.case import Case, Task
 from cases.rules import relative_spread
-from cases.run.executors import ahead, closing, completed, process_pool
+from cases.run.executors import ahead, closing, completed, died, process_pool
 from cases.run.solve_task import job_of, solve
 from cases.units import changed
 from contact import DepthFunction, InvalidInput, Scene
@@ -51,15 +51,15 @@ def measured_spreads(case: Case, answers: Table, *, jobs: int = 2) -> Spreads:
 def _repeated(tasks: list[Task], towards: float, jobs: int) -> Iterator[tuple[Task, Answer]]:
     """Solve each task's nudged scene, in fresh processes."""
     with closing(process_pool(jobs)) as executor:
-        broken: list[Task] = []
-        for task, answer in completed(partial(_submit, executor, towards), tasks, ahead(executor, jobs), broken):
+        for task, future in completed(partial(_submit, executor, towards), tasks, ahead(executor, jobs)):
+            if died(future):
+                raise InvalidInput(f"{task.label}: the process that repeated it died; accept nothing from such a run")
+            answer = future.result()
             if not answer.solved:
                 raise InvalidInput(
                     f"{task.label}: this repetition should change nothing, but {answer.status}: {answer.reason}"
                 )
             yield task, answer
-    for task in broken:
-        raise InvalidInput(f"{task.label}: the process that repeated it died; accept nothing from such a run")
 
 
 def _submit(executor: Executor, towards: float, task: Task) -> Future[Answer]:
