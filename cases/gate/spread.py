@@ -36,7 +36,7 @@ def measured_spreads(case: Case, answers: Table, *, jobs: int = 2) -> Spreads:
     """Return the relative spread of every quantity of the case's ``answers``, measured by repeating them.
 
     Raises:
-        InvalidInput: if a repetition breaks down or gives another number of steps: such an answer cannot be accepted.
+        InvalidInput: If a repetition breaks down or gives another number of steps: such an answer cannot be accepted.
     """
     tasks = [case.task(scene, use) for scene in case.scenes for use in case.methods_of(scene)]
     solved = [(task, answer) for task in tasks if (answer := answers.get(task.identity)) is not None and answer.solved]
@@ -95,8 +95,8 @@ def _nudged(towards: float, record: Record, name: str, value: Any) -> Any:
     """The number one unit in the last place away; a zero means that nothing is pressed, and stays."""
     if name not in NUDGED or isinstance(value, DepthFunction):
         return value
-    moved = np.where((value == 0.0) | np.isinf(value), value, np.nextafter(value, towards))
-    return moved if isinstance(value, np.ndarray) else float(moved)
+    neighbour = np.where((value == 0.0) | np.isinf(value), value, np.nextafter(value, towards))
+    return neighbour if isinstance(value, np.ndarray) else float(neighbour)
 
 
 @contextmanager

@@ -94,10 +94,10 @@ class CalculiX:
     """Axisymmetric quadratic displacement elements on a layer of finite thickness; nu = 1/2 by extrapolation in nu.
 
     Attributes:
-        cells: number of cells of the coarsest of three meshes, on the contact and over the thickness; even.
+        cells: Number of cells of the coarsest of three meshes, on the contact and over the thickness; even.
 
     Raises:
-        InvalidInput: if the meshes would not be nested.
+        InvalidInput: If the meshes would not be nested.
     """
 
     name: ClassVar[str] = "calculix"
@@ -190,7 +190,7 @@ def _place(scene: Scene, value: float, cells: int) -> tuple[float, Exponents]:
     For a prescribed depth: secant steps on the logarithms, from the radius at which the profile is half as high.
 
     Raises:
-        NotConvergedError: if no radius has the depth.
+        NotConvergedError: If no radius has the depth.
     """
     free = Exponents(depth=math.inf, stiffness=0.0)
     if isinstance(scene.indenter, FlatPunch):
@@ -270,9 +270,9 @@ def at_zero(places: FloatArray, values: FloatArray, errors: FloatArray) -> tuple
     """Return the polynomial through values at its zero, with an error.
 
     Args:
-        places: arguments of the values, falling towards zero, shape (n,).
-        values: shape (n, m).
-        errors: of the values, shape (n, m).
+        places: Arguments of the values, falling towards zero, shape (n,).
+        values: Shape (n, m).
+        errors: Errors of the values, shape (n, m).
 
     Returns:
         Values and errors, shape (m,): the distance to the polynomial without the first place plus the errors of the
@@ -292,9 +292,9 @@ class Mesh(NamedTuple):
     """Rectangle of quadratic elements.
 
     Attributes:
-        radius: radii of the columns of nodes, shape (n,).
-        height: heights of the rows of nodes, the surface at zero last, shape (m,).
-        number: number of the node in each column and row, from one; zero in the middle of an element, shape (n, m).
+        radius: Radii of the columns of nodes, shape (n,).
+        height: Heights of the rows of nodes, the surface at zero last, shape (m,).
+        number: Number of the node in each column and row, from one; zero in the middle of an element, shape (n, m).
     """
 
     radius: FloatArray
@@ -307,9 +307,9 @@ def mesh(thickness: float, cells: int, kinks: tuple[float, ...] = (), support: s
 
     Args:
         thickness: h over the contact radius.
-        cells: on the contact and over the thickness; half as many again beyond it where the layer slides.
-        kinks: radii inside the contact where the profile has a corner: cells are small there, too.
-        support: of the layer, which says how far the mesh must reach.
+        cells: Number of cells on the contact and over the thickness; 1.5 times as many outside where the layer slides.
+        kinks: Radii inside the contact where the profile has a corner: cells are small there, too.
+        support: Support of the layer, which decides how far the mesh must reach.
     """
     farther = OUTER_DISTANCE[support] / OUTER_DISTANCE["bonded"]
     beyond = cells if farther == 1.0 else cells * 3 // 2
@@ -343,9 +343,9 @@ def deck(section: Mesh, layer: Layer, heights: FloatArray) -> str:
     """Return the input file: axisymmetric 8-node elements, two steps, reactions of surface, base and contact edge.
 
     Args:
-        section: mesh whose nodes out to radius one move with the indenter and slide freely along it.
-        layer: bonded or unbonded, nu < 1/2; close to 1/2 the elements are those that do not lock.
-        heights: of the profile at the mesh's radii.
+        section: Mesh whose nodes out to radius one move with the indenter and slide freely along it.
+        layer: Bonded or unbonded, nu < 1/2; close to 1/2 the elements are those that do not lock.
+        heights: Heights of the profile at the mesh's radii.
     """
     radius, height, number = section
     contact = number[radius <= 1.0 + 1e-12, -1].tolist()
@@ -410,13 +410,13 @@ def reactions(text: str) -> tuple[FloatArray, FloatArray]:
     """Return the vertical forces on contact and contact edge of the whole layer, of unit displacement and profile.
 
     Args:
-        text: input file.
+        text: Input file.
 
     Returns:
         Two arrays of shape (2,), pressing positive, in units of the input file.
 
     Raises:
-        NotConvergedError: if CalculiX fails, or if the base does not carry what presses on top.
+        NotConvergedError: If CalculiX fails, or if the base does not carry what presses on top.
     """
     with TemporaryDirectory(prefix="calculix-") as folder:
         Path(folder, "layer.inp").write_text(text, encoding="ascii")

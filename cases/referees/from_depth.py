@@ -67,17 +67,17 @@ def answer_from_depths(
     A stiffness by difference quotients states their error, besides what ``error_estimate`` states of it.
 
     Args:
-        scene: prescribes depths, forces, or (where the solver knows radii) contact radii.
-        respond: the solver: returns its response at depths [m], shape (n,).
-        log: of the solver's stages.
-        method: name of the solver.
-        settings: of the solver.
-        unknowns: of its largest system.
-        further: fields of the answer, such as ``error_estimate`` and ``notes``.
+        scene: Prescribes depths, forces, or (where the solver knows radii) contact radii.
+        respond: The solver: returns its response at depths [m], shape (n,).
+        log: Log of the solver's stages.
+        method: Name of the solver.
+        settings: Settings of the solver.
+        unknowns: Number of unknowns of its largest system.
+        further: Fields of the answer, such as ``error_estimate`` and ``notes``.
 
     Raises:
-        UnsupportedSceneError: if radii are prescribed and the solver knows none, or for any other loading.
-        NotConvergedError: if no depth gives what is prescribed.
+        UnsupportedSceneError: If radii are prescribed and the solver knows none, or for any other loading.
+        NotConvergedError: If no depth gives what is prescribed.
     """
     depths = _depths(scene, respond)
     response = respond(depths)
@@ -107,12 +107,12 @@ def inverted(function: Callable[[FloatArray], FloatArray], wanted: FloatArray, f
     """Return where an increasing positive function has the wanted values: secant steps on the logarithms.
 
     Args:
-        function: of arrays, shape (n,), entry by entry.
-        wanted: positive, shape (n,).
+        function: Function of arrays, shape (n,), entry by entry.
+        wanted: Positive, shape (n,).
         first: a first guess, shape (n,); any positive one.
 
     Raises:
-        NotConvergedError: if no argument gives what is wanted.
+        NotConvergedError: If no argument gives what is wanted.
     """
     old, new = np.log(first), np.log(first) + np.log(2.0)
     target, before, now = np.log(wanted), np.log(function(np.exp(old))), np.log(function(np.exp(new)))

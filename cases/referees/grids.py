@@ -44,8 +44,8 @@ class GridCode:
     """A square grid in a process of its own.
 
     Attributes:
-        points: of the grid, each way.
-        tolerance: of the solver's own iteration, relative.
+        points: Number of points of the grid, each way.
+        tolerance: Tolerance of the solver's own iteration, relative.
     """
 
     name: ClassVar[str]

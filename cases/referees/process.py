@@ -27,11 +27,11 @@ def ask(worker: str, question: Mapping[str, Any]) -> dict[str, FloatArray]:
     """Return the arrays that a script of `workers` answers by name.
 
     Args:
-        worker: name of the script, without the ending.
-        question: numbers, words and lists.
+        worker: Name of the script, without the ending.
+        question: Numbers, words and lists.
 
     Raises:
-        NotConvergedError: if the process fails or answers no arrays; with its last words.
+        NotConvergedError: If the process fails or answers no arrays; with its last words.
     """
     done = subprocess.run(
         [interpreter(), str(WORKERS / f"{worker}.py")],
@@ -78,7 +78,7 @@ def insist(method: Method, scene: Scene) -> None:
     """Refuse what a method does not support.
 
     Raises:
-        UnsupportedSceneError: with its reason.
+        UnsupportedSceneError: With the reason.
     """
     answer = method.supports(scene)
     if isinstance(answer, Unsupported):

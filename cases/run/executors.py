@@ -45,7 +45,7 @@ def process_pool(jobs: int) -> Executor:
     """Return ``jobs`` fresh processes (spawned: no state of this one leaks in).
 
     Raises:
-        InvalidInput: unless there is at least one job.
+        InvalidInput: Unless there is at least one job.
     """
     if jobs < 1:
         raise InvalidInput(f"jobs must be at least 1, got {jobs}")
@@ -77,7 +77,7 @@ class DaskExecutor(Executor):
     """Runs each call on a Dask cluster; a call whose worker dies is repeated on another one.
 
     Raises:
-        InvalidInput: if Dask is not installed or no scheduler answers at the address.
+        InvalidInput: If Dask is not installed or no scheduler answers at the address.
     """
 
     def __init__(self, address: str) -> None:
@@ -146,7 +146,7 @@ def by_name(name: str) -> ExecutorFactory:
     """Return the executor factory called ``processes``, ``serial`` or ``tcp://host:port`` (a Dask scheduler).
 
     Raises:
-        InvalidInput: for any other name.
+        InvalidInput: For any other name.
     """
     if name == "processes":
         return process_pool
@@ -177,9 +177,9 @@ def completed(submit: Callable[[A], Future[T]], arguments: Iterable[A], ahead: i
     After a process died no more arguments are submitted.
 
     Args:
-        submit: hands one argument over and returns the future of its result.
-        arguments: taken when there is room for them.
-        ahead: how many may be under way.
+        submit: Hands one argument over and returns the future of its result.
+        arguments: Taken when there is room for them.
+        ahead: Number of calls that may be under way.
     """
     waiting, under_way, is_broken = iter(arguments), dict[Future[T], A](), False
     # Finished calls are delivered by a queue, without a search through all calls under way.

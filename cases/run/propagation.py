@@ -32,13 +32,13 @@ class PropagatedQuantity:
     """A quantity of the answer with both of its uncertainties, along its steps.
 
     Attributes:
-        name: of the quantity.
-        unit: SI.
-        values: at the middle of the inputs, shape (n,).
-        numerical: error that the method states, absolute, shape (n,); None where it states none.
-        inputs: standard uncertainty by the inputs, absolute, shape (n,).
-        by_input: change per standard deviation of each input, absolute, by its name; empty for samples.
-        bends: whether moving an input up and down changes it by different amounts; never for samples.
+        name: Name of the quantity.
+        unit: SI unit.
+        values: Values at the middle of the inputs, shape (n,).
+        numerical: Error that the method states, absolute, shape (n,); None where it states none.
+        inputs: Standard uncertainty by the inputs, absolute, shape (n,).
+        by_input: Change per standard deviation of each input, absolute, by its name; empty for samples.
+        bends: Whether an input changed up and down changes it by different amounts; never for samples.
     """
 
     name: str
@@ -55,11 +55,11 @@ class Propagated:
     """An answer at the middle of uncertain inputs, and the uncertainty that they cause.
 
     Attributes:
-        scene: with the inputs at their middle.
-        answer: of this scene.
-        quantities: each with its uncertainties.
-        correlation: of the last steps of the quantities, in their order; zero where a quantity does not vary.
-        solved: number of scenes.
+        scene: Scene with the inputs at their middle.
+        answer: Answer to this scene.
+        quantities: Quantities with their uncertainties.
+        correlation: Correlation of the last steps of the quantities, in their order; zero where one does not vary.
+        solved: Number of scenes solved.
     """
 
     scene: Scene
@@ -72,12 +72,12 @@ class Propagated:
         """The quantity called ``name``.
 
         Raises:
-            InvalidInput: if the answer has none.
+            InvalidInput: If the answer has none.
         """
-        for one in self.quantities:
-            if one.name == name:
-                return one
-        raise InvalidInput(f"no quantity {name!r}; there are {', '.join(one.name for one in self.quantities)}")
+        for q in self.quantities:
+            if q.name == name:
+                return q
+        raise InvalidInput(f"no quantity {name!r}; there are {', '.join(q.name for q in self.quantities)}")
 
 
 def propagate(
@@ -88,29 +88,29 @@ def propagate(
     By differences (GUM 5.2), two solutions per input, or by the scatter of quantities over scenes drawn at random.
 
     Args:
-        scene: its uncertain inputs are replaced by the middles of their ranges.
-        uncertain: inputs as text, e.g. "radius=5%", or as returned by `read_inputs`.
-        method: solves the scenes; MDR by default.
-        samples: number of scenes drawn at random; differences for zero.
+        scene: Scene whose uncertain inputs are replaced by the middles of their ranges.
+        uncertain: Inputs as text, e.g. "radius=5%", or as returned by `read_inputs`.
+        method: Solves the scenes; MDR by default.
+        samples: Number of scenes drawn at random; differences for zero.
 
     Raises:
-        InvalidInput: an input that the scene does not have, or fewer than `FEWEST_SAMPLES` samples.
-        UnsupportedSceneError, NotConvergedError: as the method raises them.
+        InvalidInput: An input that the scene does not have, or fewer than `FEWEST_SAMPLES` samples.
+        UnsupportedSceneError, NotConvergedError: As the method raises them.
     """
     if samples and samples < FEWEST_SAMPLES:
         raise InvalidInput(f"samples = {samples}: take at least {FEWEST_SAMPLES}, or none for differences")
     inputs = read_inputs(uncertain, scene) if isinstance(uncertain, str) else uncertain
     solver, count = method or Mdr(), len(inputs.inputs)
     root = _root(inputs.correlation)
-    middle = inputs.moved(scene, np.zeros(count))
+    middle = inputs.scene_at(scene, np.zeros(count))
     answer = solver.solve(middle)
     at_middle = _physical(answer)
     if samples:
         deviations = np.random.default_rng(SEED).standard_normal((samples, count)) @ root.T
     else:
         deviations = np.concatenate([np.eye(count), -np.eye(count)])
-    scenes = (inputs.moved(scene, numbers, drawn=bool(samples)) for numbers in deviations)
-    solved = [_values(_physical(solver.solve(one)), at_middle) for one in scenes]
+    scenes = (inputs.scene_at(scene, numbers, drawn=bool(samples)) for numbers in deviations)
+    solved = [_values(_physical(solver.solve(changed_scene)), at_middle) for changed_scene in scenes]
     quantities, factors = [], []
     for name, values in at_middle.items():
         changed = np.array([numbers[name] for numbers in solved])
@@ -136,7 +136,7 @@ def _values(answer: dict[str, Values], middle: dict[str, Values]) -> dict[str, F
     """Values of each quantity along the steps.
 
     Raises:
-        InvalidInput: if the number of steps changes with the inputs.
+        InvalidInput: If the number of steps changes with the inputs.
     """
     for name, q in middle.items():
         if len(answer[name].values) != len(q.values):

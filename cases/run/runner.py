@@ -44,11 +44,11 @@ class ProgressEvent:
     Attributes:
         kind: "planned" once, then "finished" or "reused" for each task, "judged" for each case; "stopped" when the
             cluster that solves is lost.
-        label: the task or case in words.
-        done: tasks behind.
-        total: tasks in all.
-        status: how the task or case ended; None for "planned" and "stopped".
-        reason: of a status other than PASS, or why the run stopped.
+        label: The task or case in words.
+        done: Tasks behind.
+        total: Tasks in all.
+        status: End of the task or case; None for "planned" and "stopped".
+        reason: Reason of a status other than PASS, or of the end of a run that stopped.
     """
 
     kind: Literal["planned", "finished", "reused", "judged", "stopped"]
@@ -76,16 +76,16 @@ class RunOptions:
     """How a run is carried out.
 
     Attributes:
-        out: folder of results.
-        suite: name of the suite, for the record.
-        methods: that were chosen, for the record; empty for those of the cases.
-        jobs: tasks at a time; a cluster takes as many as it has threads.
-        executor: where they run.
-        resume: use answers of an earlier run of the same code in the same folder.
-        time_limit: seconds a task may take, zero for no limit; by default only methods of installed packages have one.
-        timing: whether timed tasks run; without them there are no studies of cost.
-        only_costs: whether only the tasks of studies of cost run; no claim is then judged.
-        progress: called with every event.
+        out: Folder of results.
+        suite: Name of the suite, for the record.
+        methods: Labels of chosen methods, for the record; empty for those of the cases.
+        jobs: Tasks at a time; a cluster takes as many as it has threads.
+        executor: Factory of the executor that runs them.
+        resume: Use answers of an earlier run of the same code in the same folder.
+        time_limit: Seconds a task may take, zero for no limit; by default only methods of installed packages have one.
+        timing: Whether timed tasks run; without them there are no studies of cost.
+        only_costs: Whether only the tasks of studies of cost run; no claim is then judged.
+        progress: Called with every event.
     """
 
     out: Path
@@ -138,7 +138,7 @@ def run_cases(cases: Sequence[Case], options: RunOptions) -> Run:
     An interrupt (Ctrl-C) and a lost cluster end the run early with ``complete`` False; every finished task is kept.
 
     Raises:
-        InvalidInput: if another run works in the folder, its disk is full, or a kept answer is damaged.
+        InvalidInput: If another run works in the folder, its disk is full, or a kept answer is damaged.
     """
     with locked(options.out):
         return _run(cases, options)
@@ -186,9 +186,9 @@ def judge(cases: Iterable[Case], answers: Table, made: Stamp) -> Judged:
     """Return the verdicts and records of cases from the answers present.
 
     Args:
-        cases: as they were run.
-        answers: of their tasks; a claim or study without all its answers is left out.
-        made: where and when.
+        cases: Cases as they were run.
+        answers: Answers to their tasks; a claim or study without all its answers is left out.
+        made: Stamp of the run.
     """
     cases = tuple(cases)
     records = [record for case in cases for claim in case.claims for record in claim.records(case, answers)]
