@@ -20,11 +20,11 @@ class Cost(Study):
     """Error against seconds of one quantity's last step, for settings that are timed alone on the machine.
 
     Attributes:
-        scene: name of the scene.
-        quantity: what the error is of.
-        ladder: settings to try; the label of each names the setting, ``method`` the method.
-        reference: the settings errors are measured against; its own stated error is u_ref.
-        cheap: the settings that the ci suite times; empty for all.
+        scene: Name of the scene.
+        quantity: Quantity whose error is measured.
+        ladder: Settings to try; the label of each names the setting, ``method`` the method.
+        reference: The settings errors are measured against; its own stated error is u_ref.
+        cheap: The settings that the ci suite times; empty for all.
     """
 
     kind: ClassVar[str] = "cost"
@@ -42,8 +42,8 @@ class Cost(Study):
 
     def of_methods(self, methods: Collection[str], foreign: Iterable[MethodUse]) -> "Cost":
         """Return the study of these methods' settings, and of those of ``foreign`` ones."""
-        own = tuple(use for use in self.ladder if use.method in methods)
-        return replace(self, ladder=(*own, *foreign), cheap=())
+        settings = tuple(use for use in self.ladder if use.method in methods)
+        return replace(self, ladder=(*settings, *foreign), cheap=())
 
     def tasks(self, case: Case) -> Iterator[Task]:
         """Yield the reference and every timed setting."""
@@ -54,10 +54,10 @@ class Cost(Study):
 
     def records(self, case: Case, answers: Table) -> Iterator[CostOfAccuracy]:
         """Yield the finished study; nothing when an answer is missing or the reference itself has no numbers."""
-        own = [answers.get(task.identity) for task in self.tasks(case)]
-        if not own or None in own:
+        found_answers = [answers.get(task.identity) for task in self.tasks(case)]
+        if not found_answers or None in found_answers:
             return
-        reference, *timed = [one for one in own if one is not None]
+        reference, *timed = [answer for answer in found_answers if answer is not None]
         if not reference.solved or not reference.quantities[self.quantity].error:
             return
         exact = reference.quantities[self.quantity]
@@ -126,7 +126,7 @@ def price_of_a_digit(cheap: Point, accurate: Point) -> float:
     """Return d log10(T) / d DoA between neighbours on the front: decades of time per digit of accuracy.
 
     Raises:
-        InvalidInput: unless the second setting is the more accurate one.
+        InvalidInput: Unless the second setting is the more accurate one.
     """
     if not bound_of(accurate) < bound_of(cheap):
         raise InvalidInput(f"{accurate.method} is not more accurate than {cheap.method}")
@@ -187,11 +187,11 @@ def elastic_costs(
     """What depth and force cost on an elastic scene, with every method that solves it.
 
     Args:
-        scene: its name within the case.
-        quantities: whose error is measured; all share the same timed solutions.
-        in_ci: whether the ci suite times finite elements too, and all settings of the fast method, not one alone.
-        as_published: whether the table of the paper, 400 rows by 500 radii, is timed too; it takes many seconds.
-        periodic: whether boundary elements are tried without padding too: the contact is as wide as the layer is thick.
+        scene: Name of the scene within the case.
+        quantities: Quantities whose error is measured; all share the same timed solutions.
+        in_ci: Whether the ci suite times finite elements too, and all settings of the fast method, not one alone.
+        as_published: Whether the table of the paper, 400 rows by 500 radii, is timed too; it takes many seconds.
+        periodic: Whether boundary elements are tried without padding too: the contact is as wide as the layer is thick.
     """
     cheap = (*MDR[1:], *FEM[5:7]) if in_ci else MDR[2:3]
     ladder = (*MDR, *EQUATION, *FEM, *BEM, *PERIODIC[:periodic], *TABLE, *PUBLISHED_TABLE[:as_published])
