@@ -3,7 +3,7 @@
 import math
 import os
 import subprocess
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -139,7 +139,14 @@ class Proposal:
 
 
 def propose(
-    run: Run, case: str, *, suites: tuple[str, ...], before: Baseline | None, spreads: Spreads, reason: str
+    run: Run,
+    case: str,
+    *,
+    suites: tuple[str, ...],
+    before: Baseline | None,
+    spreads: Spreads,
+    reason: str,
+    unsolved: Collection[tuple[str, str]] = (),
 ) -> Proposal:
     """Return what accepting a case as it ran would change.
 
@@ -150,13 +157,16 @@ def propose(
         before: what was accepted so far.
         spreads: measured relative spread by method, scene and quantity.
         reason: why, in the user's words.
+        unsolved: scenes and methods that the run need not solve; what was accepted of them stays.
 
     Raises:
         InvalidInput: if the spread of a quantity was not measured.
     """
     old = {(a.scene, a.method): a for a in before.answers} if before else {}
     solved = sorted((one for one in run.answers.of_case(case) if one.solved), key=lambda one: one.identity)
-    answers = tuple(_with_spreads(one, old.get((one.scene, one.method)), spreads) for one in solved)
+    new = {(one.scene, one.method): _with_spreads(one, old.get((one.scene, one.method)), spreads) for one in solved}
+    kept_rows = {place: one for place, one in old.items() if place in unsolved}
+    answers = tuple(sorted((kept_rows | new).values(), key=lambda one: one.identity))
     judged = run.judged
     accepted = Accepted(
         case=case,
