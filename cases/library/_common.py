@@ -34,21 +34,22 @@ Points: TypeAlias = tuple[tuple[float, float], ...]
 Ratios: TypeAlias = tuple[float, ...] | list[float] | FloatArray
 
 
-def _table(name: str) -> dict[str, Any]:
+def table(name: str) -> dict[str, Any]:
+    """Return a table of numbers or words of this folder."""
     return tomllib.loads(Path(__file__).with_name(name).read_text(encoding="utf-8"))
 
 
 # Reference numbers of `benchmarks.references`, by kind and name; what each list holds stands in its ``table``.
-NUMBERS: dict[str, dict[str, list[float]]] = _table("reference_numbers.toml")
+NUMBERS: dict[str, dict[str, list[float]]] = table("reference_numbers.toml")
 # kbar of the bonded layer by a/h as Hayes et al. (1972) printed it, by label of the layer.
 HAYES: dict[str, dict[float, float]] = {
-    label: dict(zip(column["a_over_h"], column["kbar"], strict=True)) for label, column in _table("hayes.toml").items()
+    label: dict(zip(column["a_over_h"], column["kbar"], strict=True)) for label, column in table("hayes.toml").items()
 }
 
 # Fits as printed, and loads that are prescribed.
-FURTHER = _table("further_numbers.toml")
+FURTHER = table("further_numbers.toml")
 # Scenes that the suite ci solves, by case and method.
-IN_CI: dict[str, dict[str, list[str]]] = _table("suite_ci.toml")
+IN_CI: dict[str, dict[str, list[str]]] = table("suite_ci.toml")
 
 # -- papers -----------------------------------------------------------------------------------------------------------
 HEAD = re.compile(
@@ -108,7 +109,7 @@ def _in_ci(case: str, label: str, scene: str) -> bool:
 
 # -- reasons ----------------------------------------------------------------------------------------------------------
 # Why claims hold, by case and name.
-REASONS = _table("reasons.toml")
+REASONS = table("reasons.toml")
 
 
 def reasons(case: str) -> dict[str, Why]:

@@ -84,9 +84,9 @@ CLAIMS = (
     c.scaling_law(HALVES, SYMMETRIC, one_body_on_its_plane, (0.5, 1.0, 2.0), WHY["symmetry"], fem=1e-9, bem=1e-7),
     c.approach(SERIES, "contact_stiffness", THIN, beds_in_series, WHY["series"], largest=0.05),
     *c.agreements(SYMMETRIC, c.required("fem", "bem", "integral_equation", "mdr_table")),
-    *r.studies(SYMMETRIC[1:2], r.NODES, FORCE_AND_DEPTH, against="integral_equation"),
-    *r.studies(SYMMETRIC[:1], r.EDGE_CELL, {"normal_force": 1.0}, against="integral_equation"),
-    *r.studies(SYMMETRIC[:1], r.fem_cells(3), dict.fromkeys(FORCE_AND_DEPTH, 6.0), against="mdr", nightly=True),
+    *r.studies(SYMMETRIC[1:2], "nodes", FORCE_AND_DEPTH, against="integral_equation"),
+    *r.studies(SYMMETRIC[:1], "edge cell", {"normal_force": 1.0}, against="integral_equation"),
+    *r.studies(SYMMETRIC[:1], "P3 cells", dict.fromkeys(FORCE_AND_DEPTH, 6.0), against="mdr", nightly=True),
     *elastic_costs(SYMMETRIC[0].name),
 )
 CASE = c.paper(__name__, __doc__, (*SYMMETRIC, *THIN), c.EVERY, CLAIMS)

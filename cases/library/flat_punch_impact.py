@@ -107,9 +107,9 @@ CLAIMS = (
     c.energy_balance(ON_LAYERS, 500, fem=1e-4),
     *c.agreements(ON_LAYERS, {"fem": 1e-4}, ON_THE_WAY, derived_from=SUMS_UP),
     *c.agreements(ON_LAYERS, {"mdr_table": 3e-4}, ON_THE_WAY, derived_from=ON_TABLES),
-    *r.studies(STRUCK, r.TIME_ACCURACY, (*IN_TIME, "energy_residual"), against=r.FINEST_MDR),
-    *r.studies(STRUCK, r.TIME_STEP, dict.fromkeys(IN_TIME, 2.0), against=r.FINEST_MDR, nightly=True),
-    *r.studies(STRUCK, r.TIME_STEP, {"energy_residual": 2.0}, nightly=True),
+    *r.studies(STRUCK, "accuracy in time", (*IN_TIME, "energy_residual"), against=r.FINEST_MDR),
+    *r.studies(STRUCK, "time step", dict.fromkeys(IN_TIME, 2.0), against=r.FINEST_MDR, nightly=True),
+    *r.studies(STRUCK, "time step", {"energy_residual": 2.0}, nightly=True),
     Ablation(scene=ON_LAYERS[0].name, slow=("fem",)),
     *impact_costs(ON_LAYERS[0].name),
 )

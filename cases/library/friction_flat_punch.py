@@ -89,7 +89,7 @@ CLAIMS = (
         for label, pair in THIN.items()
     ),
     *STIFFER,
-    *r.studies(INCOMPRESSIBLE, r.EDGE_CELL, {STIFFNESS: 1.0}, **LATE),
-    *r.studies(COMPRESSIBLE, r.fem_cells(3), {STIFFNESS: 6.0}, **LATE),
+    *r.studies(INCOMPRESSIBLE, "edge cell", {STIFFNESS: 1.0}, **LATE),
+    *r.studies(COMPRESSIBLE, "P3 cells", {STIFFNESS: 6.0}, **LATE),
 )
 CASE = c.paper(__name__, __doc__, SCENES, (c.MDR, FINER_FEM), CLAIMS)

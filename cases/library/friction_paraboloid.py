@@ -143,9 +143,6 @@ LAWS = {
 }
 UNDER_STICK = {"radius under stick": "contact_radius", "force under stick": FORCE}
 CLOSED: c.Words = {"tolerance": 1e-8, "fem": 1e-5}
-# Unknowns of growth are these over 24 times the usual ones: 10 to 20 of 30.
-NODES, SIXTH = r.in_turn("nodes", (8, 12, 16)), "unknowns of growth, a sixth a step"
-STICK_NODES = r.refinement(SIXTH, "mdr", NODES, r.WHY["nodes"], least_digits=1.0, floor=1e-12)
 GRIDS = {FORCE: 2e-4, "contact_radius": 1e-3, "dissipated_energy": 2e-2}
 TWO_GRIDS: c.Words = {"fast": "fem", "why": WHY["two grids"], "name": "{}: two grids", "nightly": True}
 TIMED = MethodUse(label="full stick", method="mdr")
@@ -161,7 +158,7 @@ CLAIMS = (
         for name, (quantity, on, tolerance) in SPENCES.items()
     ),
     *c.equals(UNDER_STICK, stuck_on_half_space, HALF_SPACES, WHY["stick on the half-space"], **CLOSED),
-    *r.studies(STUCK[:3], STICK_NODES, (FORCE,), against=r.FINEST_MDR, nightly=True),
+    *r.studies(STUCK[:3], "nodes of growth", (FORCE,), against=r.FINEST_MDR, nightly=True),
     *c.agreements(REFINED, {MORE_CELLS.label: GRIDS}, GRIDS, **TWO_GRIDS),
     *(
         c.zero(name, quantity, on, WHY[name], tolerance=tolerance, methods=("fem",))

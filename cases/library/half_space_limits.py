@@ -99,9 +99,9 @@ CLAIMS = (
         for label, pair in THICK.items()
     ),
     # At a given radius a base far away costs no force to first and second order of a/h.
-    *r.studies(CURVED[1:2], r.HALF_SPACE, {"indentation_depth": 1.0, STIFFNESS: 1.0}, against="mdr"),
-    *r.studies(CURVED[1:2], r.HALF_SPACE_FORCE, {FORCE: 3.0}, **LATE),
-    *r.studies(CURVED[:1], r.EDGE_CELL, {FORCE: 1.0}, **LATE),
+    *r.studies(CURVED[1:2], "half-space", {"indentation_depth": 1.0, STIFFNESS: 1.0}, against="mdr"),
+    *r.studies(CURVED[1:2], "half-space, force", {FORCE: 3.0}, **LATE),
+    *r.studies(CURVED[:1], "edge cell", {FORCE: 1.0}, **LATE),
     Ablation(scene="bonded nu=0.3 a/h=0.01"),
     *elastic_costs("half-space, paraboloid"),
 )

@@ -146,8 +146,8 @@ CLAIMS = (
     *c.agreements(LAYERS, {"fem": 2e-3}, BY_FORCE, derived_from=THREE_TIMES, suffix=", creep"),
     *c.agreements(OTHERS, {"fem": 2e-3}, BY_DEPTH, derived_from=THREE_TIMES),
     *c.agreements(FINITE, {"fem": 1e-2}, BY_DEPTH, derived_from=ONE_PERCENT, suffix=", dashpot"),
-    *r.studies(EASED, r.RECEDING_ACCURACY, BY_FORCE, **LATE),
-    *r.studies((ELASTIC,), r.CELLS_AND_STEPS, {"normal_force": 2.0}, **LATE),
+    *r.studies(EASED, "accuracy of receding fronts", BY_FORCE, **LATE),
+    *r.studies((ELASTIC,), "cells and time steps", {"normal_force": 2.0}, **LATE),
 )
 CASE = c.paper(
     __name__,

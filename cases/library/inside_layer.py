@@ -16,7 +16,6 @@ wide. In a thin incompressible layer the pressure reaches from top to base as in
 in the middle.
 """
 
-import math
 from dataclasses import replace
 
 import numpy as np
@@ -71,10 +70,6 @@ REFINED = tuple(
     for one in COMPARED
     if one.name in ("paraboloid, bonded nu=0.3 a/h=1", "paraboloid, bonded nu=0.5 a/h=1")
 )
-# Two neighbouring meshes count by their root mean square: where points lie in their triangles scatters errors.
-GROWTHS = ([math.expm1(0.35 * r.ROOT_TWO**-level * near) for near in (0.97, 1.03)] for level in range(4))
-MESHES = r.neighbours("growth", GROWTHS, order=3, edge_cell=1e-9, truncation=1e-12)
-CELLS = r.refinement("P3 cells inside, two meshes a refinement", "fem", MESHES, WHY["order"], r.ROOT_TWO)
 ORDERS = {"displacement_inside": 4.0, "stress_inside": 3.0, "pressure_inside": 3.0, "gradient_inside": 2.0}
 
 
@@ -108,7 +103,7 @@ CLAIMS = (
         c.zero(name, quantity, COMPARED, WHY["laws"], tolerance=2e-10, fem=of_mesh)
         for name, (quantity, of_mesh) in LAWS.items()
     ),
-    *r.studies(REFINED, CELLS, ORDERS, against="mdr", nightly=True),
+    *r.studies(REFINED, "cells inside", ORDERS, against="mdr", nightly=True),
     c.approach(*FILM_LIMIT, THIN, film_pressure, WHY["film"], largest=0.15, methods=("mdr",)),
     *inside_costs(REFINED[0].name),
 )

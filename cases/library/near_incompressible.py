@@ -93,10 +93,10 @@ CLAIMS = (
     c.equal("stiffness to ten digits", STIFFNESS, KNOWN, (), WHY["twelve digits"], **TEN_DIGITS),
     c.claim(EvenAccuracy, EVEN, STIFFNESS, (), WHY["no locking"], **ON_ONE_MESH),
     c.approach("first order in 1/2 - nu", STIFFNESS, NEAR, incompressible_stiffness, WHY["regular limit"], **FIRST),
-    *r.studies(ALMOST, r.NODES, (STIFFNESS,), against=EQUATION),
-    *r.studies(ALMOST, r.EDGE_CELL, {STIFFNESS: 1.0}, against=EQUATION),
-    *r.studies(ALMOST, r.OUTER_RADIUS, (STIFFNESS,), **LATE),
-    *r.studies(ALMOST, r.fem_cells(3), {STIFFNESS: 6.0}, **LATE),
+    *r.studies(ALMOST, "nodes", (STIFFNESS,), against=EQUATION),
+    *r.studies(ALMOST, "edge cell", {STIFFNESS: 1.0}, against=EQUATION),
+    *r.studies(ALMOST, "outer radius", (STIFFNESS,), **LATE),
+    *r.studies(ALMOST, "P3 cells", {STIFFNESS: 6.0}, **LATE),
     *elastic_costs("bonded nu=0.4999 a/h=1", ("normal_force",)),
 )
 CASE = c.paper(__name__, __doc__, SCENES, (c.MDR, c.FEM, ONE_MESH, c.BEM, c.EQUATION, c.TABLE), CLAIMS)

@@ -82,9 +82,6 @@ FORCE, FORCE_AND_DEPTH = ("pull_off_force",), ("pull_off_force", "pull_off_depth
 ALL = (*HALF_SPACE, *ON_LAYERS)
 SMALL_DIFFERENCE = "a requirement: 2e-3 of the pull-off, the small difference of profile and elongation"
 THOUSANDTH = "a requirement: a thousandth of the pull-off"
-# Three grids a refinement: the edge of the contact moves by whole cells, and single errors scatter by a quarter.
-GRIDS = r.neighbours("points", ([n * m for m in (24, 28, 32)] for n in (4, 6, 9)), adhesion="cells")
-SIZES = r.refinement("cells that let go, three grids a refinement", CELLS.label, GRIDS, WHY["order of cells"], 1.5)
 CLOSED: c.Words = {"fem": 1e-3, "bem": 1e-3, "methods": ("mdr", "fem", "bem", "integral_equation", "mdr_table")}
 CLAIMS = (
     *(
@@ -93,12 +90,12 @@ CLAIMS = (
     ),
     c.equal("JKR's force", *FORCE, jkr, HALF_SPACE, WHY["cells"], tolerance=5e-2, methods=(CELLS.label,)),
     *c.agreements(BONDED, {CELLS.label: 0.15}, FORCE, why=WHY["cells on a layer"]),
-    *r.studies(HALF_SPACE[:1], SIZES, dict.fromkeys(FORCE, 1.0), against="mdr", nightly=True),
+    *r.studies(HALF_SPACE[:1], "cells that let go", dict.fromkeys(FORCE, 1.0), against="mdr", nightly=True),
     *c.agreements(ALL, {"fem": 2e-3}, FORCE_AND_DEPTH, derived_from=SMALL_DIFFERENCE),
     *c.agreements(ALL, {"bem": 1e-3}, CRITICAL, derived_from=THOUSANDTH),
-    *r.studies(BONDED, r.NODES, CRITICAL.keys(), against=r.FINEST_MDR),
-    *r.studies(BONDED, r.DISCS, dict.fromkeys(CRITICAL, 2.0), against=r.FINEST_MDR, nightly=True),
-    *r.studies(BONDED, r.FEM_ACCURACY, CRITICAL.keys(), against=r.FINEST_MDR, nightly=True),
+    *r.studies(BONDED, "nodes", CRITICAL.keys(), against=r.FINEST_MDR),
+    *r.studies(BONDED, "discs", dict.fromkeys(CRITICAL, 2.0), against=r.FINEST_MDR, nightly=True),
+    *r.studies(BONDED, "accuracy", CRITICAL.keys(), against=r.FINEST_MDR, nightly=True),
     Ablation(scene=BONDED[0].name, slow=("fem",)),
     *detachment_costs(BONDED[0].name),
 )

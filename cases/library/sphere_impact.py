@@ -93,9 +93,9 @@ CLAIMS = (
         for claim in c.agreements(ON_LAYERS, {"fem": tolerance}, quantities, derived_from=f"a requirement: {words}")
     ),
     *c.agreements(ON_LAYERS, {"mdr_table": 8e-3}, (RESTITUTION, FORCE, "peak_depth"), **ON_TABLES),
-    *r.studies(STRUCK, r.TIME_ACCURACY, (*IN_TIME, "energy_residual"), against=r.FINEST_MDR),
-    *r.studies(STRUCK, r.NODES, IN_TIME, against=r.FINEST_MDR),
-    *r.studies(STRUCK, r.CELLS_AND_STEPS, {"energy_residual": 2.0}, nightly=True),
+    *r.studies(STRUCK, "accuracy in time", (*IN_TIME, "energy_residual"), against=r.FINEST_MDR),
+    *r.studies(STRUCK, "nodes", IN_TIME, against=r.FINEST_MDR),
+    *r.studies(STRUCK, "cells and time steps", {"energy_residual": 2.0}, nightly=True),
     Ablation(scene=STRUCK[0].name, slow=("fem",)),
     *impact_costs(STRUCK[0].name),
 )

@@ -99,9 +99,9 @@ CLAIMS = (
     *c.agreements(CHECKED, c.required("fem", "integral_equation")),
     *c.agreements(CHECKED, c.COARSEST, why=WHY["coarse grids"]),
     *c.agreements(FAR, c.required("fem"), suffix=", far"),
-    *r.studies(THIN, r.NODES, QUANTITIES, against="integral_equation"),
-    *r.studies(THIN, r.EQUATION_NODES, ("normal_force",), against=r.FINEST_MDR),
-    *r.studies(THIN, r.fem_cells(3, thin=True), dict.fromkeys(QUANTITIES, 6.0), **LATE),
+    *r.studies(THIN, "nodes", QUANTITIES, against="integral_equation"),
+    *r.studies(THIN, "nodes of the direct equation", ("normal_force",), against=r.FINEST_MDR),
+    *r.studies(THIN, "P3 largest cells", dict.fromkeys(QUANTITIES, 6.0), **LATE),
     *elastic_costs("bonded nu=0.45 a/h=40, paraboloid"),
 )
 CASE = c.paper(__name__, __doc__, SCENES, (c.MDR, c.FEM, c.BEM, c.EQUATION, FINER_TABLE), CLAIMS)

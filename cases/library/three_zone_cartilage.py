@@ -61,7 +61,7 @@ CLAIMS = (
     *s.two_methods(SCENES),
     s.pressed_shape(SCENES),
     c.bound(SOFTER, "contact_stiffness", RIGID, on_elastic_bone, s.WHY["a stiffer base"], **LATE),
-    *r.studies(ONE, r.EQUATION_NODES, ("normal_force",), against=r.FINEST_MDR),
+    *r.studies(ONE, "nodes of the direct equation", ("normal_force",), against=r.FINEST_MDR),
     *elastic_costs(ONE[0].name),
 )
 CASE = c.paper(__name__, __doc__, SCENES, s.METHODS, CLAIMS)

@@ -90,11 +90,6 @@ ENERGY = "energy stiffness equals reaction stiffness", "energy_defect", MESHED
 NO_NU = "unbonded layers do not see nu", c.having((*AT_ONE, *AT_FIVE), layer="unbonded")
 KERNELS = dict.fromkeys(("mdr", "bem", "integral_equation", "mdr_table"), "its kernel, Eq. (29), has no nu")
 UNBONDED: c.Words = {"identities": KERNELS, "fem": 3e-6, "bem": 1e-7}
-# Wider cells, of a tenth of the radius, are not halved when half as wide ones are asked for.
-HALVED = tuple({"order": 3, "growth": 0.35, "edge_cell": 0.05 / 2**n, "truncation": 1e-7} for n in range(4))
-EDGE = r.refinement("cell at the contact edge halved, the rest fixed", "fem", HALVED, WHY["edge cell"])
-NODES, PANELS = r.in_turn("nodes", (8, 12, 16, 24)), "Gauss nodes on panels as wide as the layer"
-GAUSS = r.refinement(PANELS, "mdr", NODES, WHY["gauss panels"], least_digits=1.0, floor=1e-13)
 TO_EQUATION: c.Words = {"against": "integral_equation", "name": "finite elements: first order in the edge cell"}
 TO_FINEST: c.Words = {"against": r.FINEST_MDR, "name": "MDR: exponential in the Gauss nodes"}
 TIMED = c.scene_name("bonded nu=0.45", 2.0)
@@ -114,8 +109,8 @@ CLAIMS = (
     c.scaling_law("doubling E doubles F", AT_ONE, c.doubled_modulus, (1.0, 2.0, 2.0), WHY["linearity"]),
     c.same_in_millimetres(AT_ONE),
     c.scaling_law(*NO_NU, c.other_poissons_ratio, (1.0, 1.0, 1.0), WHY["unbonded kernel"], **UNBONDED),
-    *r.studies(ENDS[1.0], EDGE, {"normal_force": 1.0}, **TO_EQUATION),
-    *r.studies(ENDS[5.0], GAUSS, ("normal_force",), **TO_FINEST),
+    *r.studies(ENDS[1.0], "halved edge cell", {"normal_force": 1.0}, **TO_EQUATION),
+    *r.studies(ENDS[5.0], "nodes on panels", ("normal_force",), **TO_FINEST),
     Ablation(scene=TIMED, slow=("fem",)),
     *elastic_costs(TIMED, in_ci=True, as_published=True),
 )

@@ -97,7 +97,7 @@ CLAIMS = (
     *c.equals(NAMES, published, ON_THEM, s.WHY["published digits"], tolerance=1e-11, methods=s.FAST),
     c.scaling_law(ALIKE, EQUAL, merged, (1.0, 1.0, 1.0), s.WHY["equal layers"], **SAME_ANSWER),
     s.stiffness_limit(FLOW, THIN, flowing, "flow", largest=0.1),
-    *r.studies(ONE, r.EQUATION_NODES, ("normal_force",), against=r.FINEST_MDR),
+    *r.studies(ONE, "nodes of the direct equation", ("normal_force",), against=r.FINEST_MDR),
     *elastic_costs(ONE[0].name),
 )
 CASE = c.paper(__name__, __doc__, (*SCENES, *EQUAL, *THIN), s.METHODS, CLAIMS)
