@@ -11,8 +11,8 @@ from contact import ContactPath, DetachmentPath, HistoryPath, ImpactHistory, Sol
 
 Array = NDArray[np.float64]
 
-# Radii of pressures and displacements over the contact radius of the last state. The last two are next to the
-# edge, where errors of displacements are largest.
+# Radii of pressures and displacements over the contact radius of the last state. The last two are next to the edge,
+# where errors of displacements are largest.
 PRESSED, MOVED = (0.23, 0.57, 0.88), (0.5, 1.7, 1.002, 1.02)
 # Paths with more states are represented by so many.
 _MOST_STATES = 4
@@ -33,7 +33,7 @@ def stated_numbers(answer: Solution, radius: float | None = None) -> dict[str, S
 
     Args:
         answer: Answer of one method.
-        radius: Contact radius [m] of the last state, whose shares are the places of fields; the answer's own by default.
+        radius: Length [m] whose shares are the places of fields; the last contact radius by default.
     """
     if isinstance(answer, ImpactHistory | DetachmentPath):
         names = ("coefficient_of_restitution", "contact_time", *answer.SCALARS)
