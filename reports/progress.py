@@ -11,20 +11,18 @@ from reports.findings import in_words, tone_of
 from reports.terminal import STYLES, console, progress_bar
 
 WORDS = {"good": "solved", "skip": "skipped", "warn": "open", "bad": "failed"}
-# Events that are shown even to a quiet user: a stored answer that is damaged, a run that stopped.
-LOUD = {"refused": ("solved again", "warn"), "stopped": ("stopped", "bad")}
 
 
 @contextmanager
 def run_progress(*, quiet: bool) -> Iterator[Progress]:
-    """A bar on a terminal and a line for each failure; a quiet user sees damaged answers and a lost cluster alone."""
+    """A bar on a terminal and a line for each failure; a quiet user sees only that a run stopped."""
     counts: Counter[str] = Counter()
     terminal = console()
     with progress_bar("solving", on=terminal, hidden=quiet) as update:
 
         def show(event: ProgressEvent) -> None:
             line, tone = _line(event)
-            if line and (not quiet or event.kind in LOUD):
+            if line and (not quiet or event.kind == "stopped"):
                 terminal.print(Text(line, style=STYLES.get(tone, "")))
             counts[tone] += event.kind in ("finished", "reused")
             words = ", ".join(f"{counts[tone]} {word}" for tone, word in WORDS.items() if counts[tone])
@@ -35,9 +33,8 @@ def run_progress(*, quiet: bool) -> Iterator[Progress]:
 
 def _line(event: ProgressEvent) -> tuple[str, str]:
     """Line that an event prints, and its tone."""
-    if event.kind in LOUD:
-        words, tone = LOUD[event.kind]
-        return f"{words}: {event.reason}", tone
+    if event.kind == "stopped":
+        return f"stopped: {event.reason}", "bad"
     if event.status is None:
         return f"{event.total} solutions in {event.label}", ""
     tone = tone_of(event.status)

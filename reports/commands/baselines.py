@@ -61,8 +61,9 @@ def _gated(run: Run, baselines: Path, methods: Collection[str]) -> Run:
     accepted = read_baselines(baselines)
     if not accepted:
         raise InvalidInput(f"no baselines in {baselines}; name their folder, or accept a case first")
-    library = load_cases() if run.judged.suite != "ci" else {}
-    unwatched = {(case.name, *place) for case in library.values() for place in case.nightly_only()}
+    unwatched = {(case.name, *place) for case in load_cases().values() for place in case.nightly_only()}
+    if run.judged.suite == "nightly":
+        unwatched -= {(a.case, a.scene, a.method) for baseline in accepted for a in baseline.answers}
 
     def watched(answer: Answer) -> bool:
         return (answer.case, answer.scene, answer.method) not in unwatched
@@ -121,7 +122,8 @@ def _accept(case: Case, run: Run, baselines: Path, *, reason: str, loosen: bool,
     with progress_bar("repeating"):
         spreads = measured_spreads(case, watched.answers, jobs=jobs)
     before = accepted_before(baselines, name)
-    proposal = propose(watched, name, suites=suites, before=before, spreads=spreads, reason=reason)
+    unsolved = case.nightly_only()
+    proposal = propose(watched, name, suites=suites, before=before, spreads=spreads, reason=reason, unsolved=unsolved)
     show_table(change_table(proposal), on=terminal)
     for refusal in refusals(proposal, run, now, loosen=loosen):
         terminal.print(f"refused: {refusal}", style=STYLES["bad"])

@@ -112,7 +112,7 @@ def read_limit(until: str) -> Limit | None:
         if text.endswith("%"):
             return Limit("fraction", float(text[:-1]) / 100)
         kind: Literal["depth", "force"] = "force" if text.endswith("N") else "depth"
-        return Limit(kind, read_quantity(text, "N" if kind == "force" else "m", "--until"))
+        return Limit(kind, float(read_quantity(text, "N" if kind == "force" else "m", "--until")))
     except ValueError as error:
         raise InvalidInput(f"--until {text}: write a depth, a force or a share, 300nm, 2nN or 60% ({error})") from None
 
