@@ -119,7 +119,8 @@ def layered(*layers: tuple[float, float], nu: float = 0.3, ratio: float = 1.0) -
         contact.Sublayer(thickness=h, youngs_modulus=E, poissons_ratio=own)
         for (h, E), own in zip(layers, ratios, strict=True)
     ]
-    stack = contact.LayerStack(sublayers=tuple(parts), interfaces=("bonded",) * (len(parts) - 1))
+    bonds: Any = ("bonded",) * (len(parts) - 1)
+    stack = contact.LayerStack(sublayers=tuple(parts), interfaces=bonds)
     return under_paraboloid(stack, ratio)
 
 
