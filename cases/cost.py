@@ -20,11 +20,11 @@ class Cost(Study):
     """Error against seconds of one quantity's last step, for settings that are timed alone on the machine.
 
     Attributes:
-        scene: name of the scene.
-        quantity: what the error is of.
-        ladder: settings to try; the label of each names the setting, ``method`` the method.
-        reference: the settings errors are measured against; its own stated error is u_ref.
-        cheap: the settings that are timed outside of the suite nightly; empty for all.
+        scene: Name of the scene.
+        quantity: Quantity whose error is measured.
+        ladder: Settings to try; the label of each names the setting, ``method`` the method.
+        reference: The settings errors are measured against; its own stated error is u_ref.
+        cheap: The settings that are timed outside of the suite nightly; empty for all.
     """
 
     kind: ClassVar[str] = "cost"
@@ -189,11 +189,11 @@ def elastic_costs(
     """What depth and force cost on an elastic scene, with every method that solves it.
 
     Args:
-        scene: its name within the case.
-        quantities: whose error is measured; all share the same timed solutions.
-        in_ci: whether the suite ci carries the study out, and which then times finite elements too.
-        as_published: whether the table of the paper, 400 rows by 500 radii, is timed too; it takes many seconds.
-        periodic: whether boundary elements are tried without padding too: the contact is as wide as the layer is thick.
+        scene: Name of the scene within the case.
+        quantities: Quantities whose error is measured; all share the same timed solutions.
+        in_ci: Whether the suite ci carries out the study, with finite elements too.
+        as_published: Whether the table of the paper, 400 rows by 500 radii, is timed too; it takes many seconds.
+        periodic: Whether boundary elements are tried without padding too: the contact is as wide as the layer is thick.
     """
     cheap = (*MDR[1:3], FEM[5]) if in_ci else MDR[2:3]
     ladder = (*MDR, *EQUATION, *FEM, *BEM, *PERIODIC[:periodic], *TABLE, *PUBLISHED_TABLE[:as_published])
