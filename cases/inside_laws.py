@@ -8,8 +8,8 @@ from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
-from numpy.polynomial.legendre import leggauss
 
+from cases.norms import gauss_panels
 from contact import ContactPath
 from contact.answer.inside import Inside
 from contact.records.validation import FloatArray
@@ -45,10 +45,7 @@ def residuals(path: ContactPath) -> dict[str, FloatArray]:
 
 def _rule(ends: Sequence[float], panels: int = PANELS) -> tuple[FloatArray, FloatArray]:
     """Nodes and weights on equal panels between two ends."""
-    x, w = leggauss(NODES)
-    edges = np.linspace(ends[0], ends[1], panels + 1)
-    half = np.diff(edges)[:, None] / 2
-    return (edges[:-1, None] + half * (x + 1)).ravel(), (half * w).ravel()
+    return gauss_panels(np.linspace(ends[0], ends[1], panels + 1), NODES)
 
 
 def _disc(radius: float, shallowest: float) -> tuple[FloatArray, FloatArray]:

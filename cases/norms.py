@@ -62,6 +62,13 @@ def ring_quadrature(edges: Sequence[float], nodes: int = 8) -> RingQuadrature:
     return RingQuadrature(edges=radii, radius=radius, weight=weight)
 
 
+def gauss_panels(edges: FloatArray, nodes: int) -> tuple[FloatArray, FloatArray]:
+    """Return Gauss-Legendre points and weights of the panels between increasing ``edges``, shapes (k nodes,)."""
+    x, w = leggauss(nodes)
+    half = np.diff(edges)[:, None] / 2
+    return (edges[:-1, None] + half * (x + 1)).ravel(), (half * w).ravel()
+
+
 def relative_difference(first: FloatArray, second: FloatArray, rings: RingQuadrature) -> float:
     """Return the weighted L2 norm of the difference over that of the second field."""
     return rings.norm(np.asarray(first) - np.asarray(second)) / _positive(rings.norm(second), "the reference field")

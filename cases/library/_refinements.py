@@ -10,6 +10,10 @@ from cases.library._common import Scenes, Words, names_of, reasons, table
 TABLE = table("refinements.toml")
 # A finest answer of the fast method itself, where nothing independent is as exact as its coarser ones.
 FINEST_MDR = MethodUse(label="mdr, 32 nodes", method="mdr", settings={"nodes": 32, "accuracy": 1e-12})
+# Errors against the direct equation, or MDR; late ones in the suite nightly alone.
+TO_EQUATION: Words = {"against": "integral_equation"}
+LATE: Words = TO_EQUATION | {"nightly": True}
+TO_MDR_LATE: Words = {"against": "mdr", "nightly": True}
 
 
 def _many(what: str, number: int, **fixed: int) -> MethodUse:

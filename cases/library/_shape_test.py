@@ -9,12 +9,13 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.polynomial.legendre import leggauss
+from scipy.interpolate import BarycentricInterpolator
 from scipy.special import j0
 
 from cases.answers import Answer
 from cases.case import CaseScene
 from cases.library._second_kernel import surface_compliance
-from cases.norms import RingQuadrature
+from cases.norms import RingQuadrature, gauss_panels
 from contact import ElasticLayer, FlatPunch
 from contact.records.validation import FloatArray
 
@@ -107,33 +108,18 @@ class Pressed:
         root = np.sqrt((a - nodes) * (a + nodes))
         p = self.pressure.reshape(self.rings.radius.shape)[ring]
         values = p * root if self.singular else p / root
-        return _interpolated(nodes, values, r)
+        return np.asarray(BarycentricInterpolator(nodes, values)(r))
 
     def _positions(self, largest: float) -> tuple[FloatArray, FloatArray]:
         """Gauss nodes of [0, a] on the rings, cut so that cos(k t) is resolved."""
-        x, w = leggauss(NODES)
         parts = np.maximum(np.ceil(np.diff(self.rings.edges) * largest / 12), 1).astype(int)
         pairs = zip(self.rings.edges, self.rings.edges[1:], parts, strict=False)
         ends = np.concatenate([np.linspace(a, b, n + 1)[:-1] for a, b, n in pairs] + [self.rings.edges[-1:]])
-        half = np.diff(ends)[:, None] / 2
-        return (ends[:-1, None] + half * (x + 1)).ravel(), (half * w).ravel()
+        return gauss_panels(ends, NODES)
 
     def _wavenumbers(self, largest: float) -> tuple[FloatArray, FloatArray]:
         """Gauss nodes and weights on panels that double from small ones, up to what resolves J0(k r) cos(k t)."""
-        x, w = leggauss(NODES)
         widest = 6 / self.rings.edges[-1]
         doubling = min(widest, largest) * 2.0 ** np.arange(-16, 1)
         ends = np.concatenate([[0.0], doubling, np.arange(widest * 2, largest, widest), [largest]])
-        half = np.diff(np.unique(ends))[:, None] / 2
-        return (np.unique(ends)[:-1, None] + half * (x + 1)).ravel(), (half * w).ravel()
-
-
-def _interpolated(nodes: FloatArray, values: FloatArray, points: FloatArray) -> FloatArray:
-    """The polynomial through values at nodes, by the barycentric formula; points have any shape."""
-    centred = (nodes - nodes.mean()) * 4 / np.ptp(nodes)
-    weights = 1 / np.prod(centred[:, None] - centred + np.eye(nodes.size), axis=1)
-    distance = points[..., None] - nodes
-    exact = distance == 0.0
-    shares = weights / np.where(exact, 1.0, distance)
-    total = np.where(exact.any(axis=-1), np.where(exact, values, 0.0).sum(axis=-1), 0.0)
-    return np.where(exact.any(axis=-1), total, shares @ values / shares.sum(axis=-1))
+        return gauss_panels(np.unique(ends), NODES)

@@ -86,7 +86,7 @@ CLAIMS = (
     *c.agreements(SYMMETRIC, c.required("fem", "bem", "integral_equation", "mdr_table")),
     *r.studies(SYMMETRIC[1:2], "nodes", FORCE_AND_DEPTH, against="integral_equation"),
     *r.studies(SYMMETRIC[:1], "edge cell", {"normal_force": 1.0}, against="integral_equation"),
-    *r.studies(SYMMETRIC[:1], "P3 cells", dict.fromkeys(FORCE_AND_DEPTH, 6.0), against="mdr", nightly=True),
+    *r.studies(SYMMETRIC[:1], "P3 cells", dict.fromkeys(FORCE_AND_DEPTH, 6.0), **r.TO_MDR_LATE),
     *elastic_costs(SYMMETRIC[0].name),
 )
 CASE = c.paper(__name__, __doc__, (*SYMMETRIC, *THIN), c.EVERY, CLAIMS)

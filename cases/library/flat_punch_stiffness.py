@@ -93,8 +93,6 @@ ACCURACY = "a requirement: 1e-4, the accuracy finite elements are asked for"
 M_AND_KAPPA: c.Words = {"derived_from": ACCURACY, "suffix": ", m and kappa"}
 AT_ONE, AT_TWO = ((punch("bonded nu=0.5", ratio),) for ratio in (1.0, 2.0))
 COMPRESSIBLE = (punch("bonded nu=0.3", 1.0),)
-TO_EQUATION: c.Words = {"against": "integral_equation"}
-LATE = TO_EQUATION | {"nightly": True}
 TO_ROWS: c.Words = {"against": r.MANY_ROWS, "reference_uncertainty": 1e-13, "nightly": True}
 CLAIMS = (
     c.equal("stiffness to ten digits", STIFFNESS, KNOWN, (), c.SHARED["reference"], **TEN_DIGITS),
@@ -108,13 +106,13 @@ CLAIMS = (
     c.equal("depth by the exponent m, Eq. (34)", "indentation_depth", BY_EXPONENT, (), WHY["exponent"], **M_KAPPA),
     c.equal("stiffness by m and kappa, Eq. (33)", STIFFNESS, BY_FACTOR, (), WHY["exponent"], **M_KAPPA),
     *c.agreements(EXPONENTS, {"fem": 1e-4}, ("indentation_depth", STIFFNESS), **M_AND_KAPPA),
-    *r.studies(AT_ONE, "points under a punch", {STIFFNESS: 2.5}, **LATE),
-    *r.studies(AT_ONE, "cells of tables", {STIFFNESS: 2.5}, **LATE),
+    *r.studies(AT_ONE, "points under a punch", {STIFFNESS: 2.5}, **r.LATE),
+    *r.studies(AT_ONE, "cells of tables", {STIFFNESS: 2.5}, **r.LATE),
     *r.studies(AT_TWO, "rows", {STIFFNESS: 6.0}, **TO_ROWS),
-    *r.studies(AT_TWO, "nodes", (STIFFNESS,), **TO_EQUATION),
+    *r.studies(AT_TWO, "nodes", (STIFFNESS,), **r.TO_EQUATION),
     *r.studies(AT_TWO, "nodes of the direct equation", (STIFFNESS,), against=r.FINEST_MDR),
-    *r.studies(COMPRESSIBLE, "P2 cells", {STIFFNESS: 4.0}, **LATE),
-    *r.studies(COMPRESSIBLE, "P3 cells", {STIFFNESS: 6.0}, **LATE),
+    *r.studies(COMPRESSIBLE, "P2 cells", {STIFFNESS: 4.0}, **r.LATE),
+    *r.studies(COMPRESSIBLE, "P3 cells", {STIFFNESS: 6.0}, **r.LATE),
     *elastic_costs("bonded nu=0.5 a/h=2", (STIFFNESS,)),
 )
 CASE = c.paper(__name__, __doc__, (*PUNCHES, *HAYES_WALKS, *FITTED, *EXPONENTS), c.EVERY, CLAIMS)

@@ -79,7 +79,6 @@ STIFFER = (
     c.bound("stick never softens, fem", STIFFNESS, (), *SOFTER, tolerance=1e-6, methods=("fem",), nightly=True),
 )
 CLOSED: c.Words = {"tolerance": 1e-12, "fem": 1e-6}
-LATE: c.Words = {"against": "mdr", "nightly": True}
 COMPRESSIBLE, INCOMPRESSIBLE = ((on_layer(f"bonded nu={nu:g}", 1.0),) for nu in (0.3, 0.5))
 CLAIMS = (
     *c.agreements(SCENES, {"fem": 1e-6}, ("normal_force", STIFFNESS), why=WHY["two methods"]),
@@ -89,7 +88,7 @@ CLAIMS = (
         for label, pair in THIN.items()
     ),
     *STIFFER,
-    *r.studies(INCOMPRESSIBLE, "edge cell", {STIFFNESS: 1.0}, **LATE),
-    *r.studies(COMPRESSIBLE, "P3 cells", {STIFFNESS: 6.0}, **LATE),
+    *r.studies(INCOMPRESSIBLE, "edge cell", {STIFFNESS: 1.0}, **r.TO_MDR_LATE),
+    *r.studies(COMPRESSIBLE, "P3 cells", {STIFFNESS: 6.0}, **r.TO_MDR_LATE),
 )
 CASE = c.paper(__name__, __doc__, SCENES, (c.MDR, FINER_FEM), CLAIMS)

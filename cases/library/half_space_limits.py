@@ -90,7 +90,6 @@ NAMES = {"Sneddon's indentation depth": "indentation_depth", "Sneddon's normal f
 CLOSED: c.Words = {"tolerance": 1e-10, "fem": 3e-6}
 CALIBRATED: c.Words = {"identities": {"bem": "the disc of cells is calibrated by this very force"}}
 FIRST: c.Words = {"largest": 1e-3, "parameter": confinement, "formal_order": 2.0}
-LATE: c.Words = {"against": "mdr", "nightly": True}
 CLAIMS = (
     *c.equals(NAMES, sneddon, CURVED, WHY["sneddon"], **CLOSED, bem=1e-3),
     c.equal("force of the flat punch", FORCE, punch_force, (PUNCH,), WHY["sneddon"], **CLOSED, **CALIBRATED),
@@ -100,8 +99,8 @@ CLAIMS = (
     ),
     # At a given radius a base far away costs no force to first and second order of a/h.
     *r.studies(CURVED[1:2], "half-space", {"indentation_depth": 1.0, STIFFNESS: 1.0}, against="mdr"),
-    *r.studies(CURVED[1:2], "half-space, force", {FORCE: 3.0}, **LATE),
-    *r.studies(CURVED[:1], "edge cell", {FORCE: 1.0}, **LATE),
+    *r.studies(CURVED[1:2], "half-space, force", {FORCE: 3.0}, **r.TO_MDR_LATE),
+    *r.studies(CURVED[:1], "edge cell", {FORCE: 1.0}, **r.TO_MDR_LATE),
     Ablation(scene="bonded nu=0.3 a/h=0.01"),
     *elastic_costs("half-space, paraboloid"),
 )

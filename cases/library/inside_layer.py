@@ -103,7 +103,7 @@ CLAIMS = (
         c.zero(name, quantity, COMPARED, WHY["laws"], tolerance=2e-10, fem=of_mesh)
         for name, (quantity, of_mesh) in LAWS.items()
     ),
-    *r.studies(REFINED, "cells inside", ORDERS, against="mdr", nightly=True),
+    *r.studies(REFINED, "cells inside", ORDERS, **r.TO_MDR_LATE),
     c.approach(*FILM_LIMIT, THIN, film_pressure, WHY["film"], largest=0.15, methods=("mdr",)),
     *inside_costs(REFINED[0].name),
 )

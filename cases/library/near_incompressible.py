@@ -86,7 +86,6 @@ TEN_DIGITS: c.Words = {"tolerance": 1e-10, "fem": 3e-6, "fem one mesh": 1e-5, "b
 ON_ONE_MESH: c.Words = {"methods": (ONE_MESH.label,), "tolerance": 1.0}
 ALMOST, NEAR, EQUATION = (punch(0.4999999),), (punch(0.499), punch(0.4999)), "integral_equation"
 FIRST: c.Words = {"largest": 1e-2, "parameter": compressibility, "methods": ("mdr", "fem", EQUATION)}
-LATE: c.Words = {"against": EQUATION, "nightly": True}
 CLAIMS = (
     *c.agreements(SCENES, {"fem": 3e-6, EQUATION: 1e-9, "mdr_table": 3e-4}, (STIFFNESS,)),
     *c.agreements(SCENES, {"bem": 1e-5}, (STIFFNESS,), why=c.SHARED["bem, flat punches"]),
@@ -95,8 +94,8 @@ CLAIMS = (
     c.approach("first order in 1/2 - nu", STIFFNESS, NEAR, incompressible_stiffness, WHY["regular limit"], **FIRST),
     *r.studies(ALMOST, "nodes", (STIFFNESS,), against=EQUATION),
     *r.studies(ALMOST, "edge cell", {STIFFNESS: 1.0}, against=EQUATION),
-    *r.studies(ALMOST, "outer radius", (STIFFNESS,), **LATE),
-    *r.studies(ALMOST, "P3 cells", {STIFFNESS: 6.0}, **LATE),
+    *r.studies(ALMOST, "outer radius", (STIFFNESS,), **r.LATE),
+    *r.studies(ALMOST, "P3 cells", {STIFFNESS: 6.0}, **r.LATE),
     *elastic_costs("bonded nu=0.4999 a/h=1", ("normal_force",)),
 )
 CASE = c.paper(__name__, __doc__, SCENES, (c.MDR, c.FEM, ONE_MESH, c.BEM, c.EQUATION, c.TABLE), CLAIMS)

@@ -88,8 +88,6 @@ COARSE_TABLE = "a requirement: depth 1e-2, force 5e-2, stiffness 5e-3 where a ce
 RADIUS, OF_A_RADIUS = ("contact_radius",), "a requirement: 2e-5 of a radius"
 AT_ONE, AT_FIVE, PRESSED = (at("bonded nu=0.5", 1.0),), (at("bonded nu=0.5", 5.0),), (by_depth("bonded nu=0.5", 1.0),)
 TABULATED = ("normal_force", "indentation_depth")
-TO_EQUATION: c.Words = {"against": "integral_equation"}
-LATE = TO_EQUATION | {"nightly": True}
 TO_ROWS: c.Words = {"against": r.MANY_ROWS, "reference_uncertainty": 1e-10, "nightly": True}
 TO_COLUMNS: c.Words = {"against": r.MANY_COLUMNS, "reference_uncertainty": 1e-12, "nightly": True}
 CLAIMS = (
@@ -105,14 +103,14 @@ CLAIMS = (
     *c.agreements(SEARCHED, c.required("fem"), RADIUS, derived_from=OF_A_RADIUS),
     *c.pressure_agreements(BY_RADIUS, {"pressure: MDR and fem": "weighted L2"}, "the root at r = a limits"),
     c.same_in_millimetres([at("bonded nu=0.5", 1.0), at("unbonded", 1.0)], (1e3, 1.0)),
-    *r.studies(AT_ONE, "P2 cells", dict.fromkeys(c.PATH, 4.0), **LATE),
-    *r.studies(AT_ONE, "P3 cells", dict.fromkeys(c.PATH, 6.0), **LATE),
+    *r.studies(AT_ONE, "P2 cells", dict.fromkeys(c.PATH, 4.0), **r.LATE),
+    *r.studies(AT_ONE, "P3 cells", dict.fromkeys(c.PATH, 6.0), **r.LATE),
     # Depth and force reach the rounding of such meshes, 3e-11, on the finest one.
-    *r.studies(AT_ONE, "P4 cells", {"contact_stiffness": 8.0}, **LATE),
-    *r.studies(AT_ONE, "edge cell", {"normal_force": 1.0, "contact_stiffness": 1.0}, **TO_EQUATION),
-    *r.studies(AT_ONE, "outer radius", ("contact_stiffness",), **TO_EQUATION),
-    *r.studies(PRESSED, "points", {"normal_force": 2.0}, **LATE),
-    *r.studies(AT_FIVE, "nodes", c.PATH, **TO_EQUATION),
+    *r.studies(AT_ONE, "P4 cells", {"contact_stiffness": 8.0}, **r.LATE),
+    *r.studies(AT_ONE, "edge cell", {"normal_force": 1.0, "contact_stiffness": 1.0}, **r.TO_EQUATION),
+    *r.studies(AT_ONE, "outer radius", ("contact_stiffness",), **r.TO_EQUATION),
+    *r.studies(PRESSED, "points", {"normal_force": 2.0}, **r.LATE),
+    *r.studies(AT_FIVE, "nodes", c.PATH, **r.TO_EQUATION),
     *r.studies(AT_FIVE, "nodes of the direct equation", ("normal_force",), against=r.FINEST_MDR),
     *r.studies(AT_ONE, "all rows", TABULATED, **TO_ROWS),
     *r.studies(AT_ONE, "columns", TABULATED, **TO_COLUMNS),

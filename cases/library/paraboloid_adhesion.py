@@ -90,7 +90,7 @@ CLAIMS = (
     ),
     c.equal("JKR's force", *FORCE, jkr, HALF_SPACE, WHY["cells"], tolerance=5e-2, methods=(CELLS.label,)),
     *c.agreements(BONDED, {CELLS.label: 0.15}, FORCE, why=WHY["cells on a layer"]),
-    *r.studies(HALF_SPACE[:1], "cells that let go", dict.fromkeys(FORCE, 1.0), against="mdr", nightly=True),
+    *r.studies(HALF_SPACE[:1], "cells that let go", dict.fromkeys(FORCE, 1.0), **r.TO_MDR_LATE),
     *c.agreements(ALL, {"fem": 2e-3}, FORCE_AND_DEPTH, derived_from=SMALL_DIFFERENCE),
     *c.agreements(ALL, {"bem": 1e-3}, CRITICAL, derived_from=THOUSANDTH),
     *r.studies(BONDED, "nodes", CRITICAL.keys(), against=r.FINEST_MDR),

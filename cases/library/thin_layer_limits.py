@@ -87,7 +87,6 @@ SCENES = tuple(
 CHECKED, FAR = (tuple(s for s in SCENES if bool(s.methods) is far) for far in (False, True))
 THIN, QUANTITIES = (pressed("bonded nu=0.5", CHECKED_RATIO, PARABOLOID),), ("normal_force", "indentation_depth")
 NEAR: c.Words = {"largest": 0.1, "methods": ("mdr", "fem")}
-LATE: c.Words = {"against": "integral_equation", "nightly": True}
 CLAIMS = (
     *(
         c.approach(
@@ -101,7 +100,7 @@ CLAIMS = (
     *c.agreements(FAR, c.required("fem"), suffix=", far"),
     *r.studies(THIN, "nodes", QUANTITIES, against="integral_equation"),
     *r.studies(THIN, "nodes of the direct equation", ("normal_force",), against=r.FINEST_MDR),
-    *r.studies(THIN, "P3 largest cells", dict.fromkeys(QUANTITIES, 6.0), **LATE),
+    *r.studies(THIN, "P3 largest cells", dict.fromkeys(QUANTITIES, 6.0), **r.LATE),
     *elastic_costs("bonded nu=0.45 a/h=40, paraboloid"),
 )
 CASE = c.paper(__name__, __doc__, SCENES, (c.MDR, c.FEM, c.BEM, c.EQUATION, FINER_TABLE), CLAIMS)
