@@ -32,7 +32,7 @@ from contact.answer.solution import Setting
 from contact.records.validation import FloatArray
 from contact.scene.extent import first_radius
 from fem_reference.materials import contact_modulus
-from fem_reference.prescribed_contact import ContactSolver, PrescribedContact, quick_solution
+from fem_reference.prescribed_contact import QUICK, ContactSolver, Neighbours, PrescribedContact, quick_solution
 from fem_reference.profiles import height
 from fem_reference.settings import NARROWEST, narrowest_radius
 
@@ -201,9 +201,10 @@ def searched_radius(scene: Scene, log: StageLog, target: float) -> float:
         NotConvergedError: the radius does not settle.
     """
     indenter, flat, by_depth = scene.indenter, scene.indenter.flat_radius, targets_of(scene)[1]
+    solve = Neighbours(scene, QUICK, log)
 
     def load_at(radius: float) -> tuple[float, float]:
-        contact = quick_solution(scene, radius, log)
+        contact = solve(radius)
         load = _load(contact, by_depth) * radius ** (1 if by_depth else 2)
         return load / target, grows_like(contact, flat / radius, by_depth=by_depth)
 
