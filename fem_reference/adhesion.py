@@ -41,7 +41,7 @@ from contact.records.validation import FloatArray
 from contact.scene.extent import first_radius
 from contact.scene.loading import Controlled
 from contact.stated import stated_error
-from fem_reference.equilibria import FemEquilibrium, circle_of, held_equilibrium, targets_of
+from fem_reference.equilibria import FemEquilibrium, circle_of, equilibrium_at_depth, targets_of
 from fem_reference.materials import contact_modulus
 from fem_reference.prescribed_contact import ContactSolver, Neighbours, PrescribedContact
 from fem_reference.profiles import height
@@ -208,7 +208,7 @@ def work_of_adhesion(scene: Scene) -> float:
 def adhesive_equilibrium(contact: PrescribedContact, work: float) -> FemEquilibrium:
     """The state in which the energy release rate equals the work of adhesion dgamma / E* [m]."""
     elongation = float(np.sqrt(4 * np.pi * work / contact.contact_radius / contact.stiffness_slope))
-    return held_equilibrium(contact, contact.smooth_depth - elongation)
+    return equilibrium_at_depth(contact, contact.smooth_depth - elongation)
 
 
 def adhesive_equilibria(
@@ -243,7 +243,7 @@ def adhesive_equilibria(
         if is_punch and target >= branch.load(control, np.array([end]))[0]:
             contact = branch.contacts[-1]
             depth = target / end if by_depth else target / end**2 / contact.stiffness
-            states.append(held_equilibrium(contact, depth))
+            states.append(equilibrium_at_depth(contact, depth))
         else:
             states.append(adhesive_equilibrium(solve(stable_radius(branch, control, target)), work))
     return states
@@ -437,12 +437,17 @@ def detachment_path(
             refuse_touching(scene, (circle_of(state, tolerance) for state in states))
     (depth, force), numbers, coarser = loads, found.numbers, companion.numbers
     floor = float(np.max(along)) if branch.is_rough else FLOOR
-    own = {name: stated_error(v, coarser[name], scale=v, floor=floor) for name, v in numbers.items()}
+    number_errors = {name: stated_error(v, coarser[name], scale=v, floor=floor) for name, v in numbers.items()}
     return DetachmentPath(
         scene=scene,
         method="fem",
         settings=written,
-        error_estimate={"contact_radius": 0.0 * radius, "indentation_depth": along[0], "normal_force": along[1], **own},
+        error_estimate={
+            "contact_radius": 0.0 * radius,
+            "indentation_depth": along[0],
+            "normal_force": along[1],
+            **number_errors,
+        },
         cost=log.cost(unknowns=max(c.unknowns for c in branch.contacts)),
         stages=log.records,
         notes=_notes(branch.contacts),

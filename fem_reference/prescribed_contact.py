@@ -222,7 +222,7 @@ def solve_prescribed_contact(
     radii, pressed = layer.space.positions[0, contact], 2 * contact + 1
     solver = solver or factorised_contact(layer, log)
     with log.stage("solve"):
-        values = np.zeros((len(solver.held), 2))
+        values = np.zeros((len(solver.prescribed), 2))
         values[-len(pressed) :] = np.column_stack([np.ones_like(radii), -indenter.height(radii)])
         solutions = solver.solve_displaced(values)
         forces = solver.reactions(solutions, pressed)
