@@ -41,9 +41,9 @@ from contact.records.validation import FloatArray
 from contact.scene.extent import first_radius
 from contact.scene.loading import Controlled
 from contact.stated import stated_error
-from fem_reference.equilibria import FemEquilibrium, circle_of, held_equilibrium, targets_of
+from fem_reference.equilibria import FemEquilibrium, circle_of, equilibrium_at_depth, targets_of
 from fem_reference.materials import contact_modulus
-from fem_reference.prescribed_contact import ContactSolver, PrescribedContact
+from fem_reference.prescribed_contact import ContactSolver, Neighbours, PrescribedContact
 from fem_reference.profiles import height
 from fem_reference.settings import Discretisation
 from fem_reference.stated import FLOOR
@@ -55,7 +55,7 @@ CAVITATION = (
 # Chebyshev points of a piece at a growth of 1/2, and the power of the growth by which they become more.
 NODES, NODE_POWER = 12, 0.75
 # Largest ratio of the radii at the ends of a piece.
-WIDEST_PIECE = 6.0
+WIDEST_PIECE = 4.0
 # Most breakpoints of a profile that end pieces: tables have many, and their quantities are nearly smooth.
 MOST_BREAKPOINTS = 3
 # First over last radius of a branch, tried in turn until it becomes unstable. From the radius where height and
@@ -74,30 +74,41 @@ class BranchPiece:
         high: largest contact radius [m].
         graded: whether radii are ``low + (high - low) s^2`` (next to a kink) or ``low (high / low)^s``.
         contacts: solved contacts at the Chebyshev points of s in [0, 1], in increasing s.
+        solve: solves further contacts on the same mesh.
     """
 
     low: float
     high: float
     graded: bool
     contacts: tuple[PrescribedContact, ...]
+    solve: ContactSolver
 
     @classmethod
     def solved(cls, low: float, high: float, solve: ContactSolver, nodes: int, *, graded: bool = False) -> Self:
-        """The piece between two radii [m], interpolated from ``nodes`` contacts."""
+        """The piece between two radii [m], interpolated from ``nodes`` contacts, the middle ones solved first."""
         s = (1 + chebyshev.chebpts2(nodes)) / 2
         radii = low + (high - low) * s**2 if graded else low * (high / low) ** s
         radii[0], radii[-1] = low, high
-        return cls(low, high, graded, tuple(solve(float(a)) for a in radii))
+        contacts = {a: solve(a) for a in map(float, radii[np.argsort(np.abs(s - 0.5))])}
+        return cls(low, high, graded, tuple(contacts[a] for a in map(float, radii)), solve)
+
+    @cached_property
+    def _powers(self) -> FloatArray:
+        """Powers of the radius that delta_0 and F_2 follow between the ends, shape (2,); zero where a sign changes."""
+        ends = np.array([[c.smooth_depth, c.profile_force] for c in (self.contacts[0], self.contacts[-1])])
+        ratios = ends[1] / np.where(ends[0] == 0, np.inf, ends[0])
+        return np.asarray(np.log(np.where(ratios > 0, ratios, 1.0)) / np.log(self.high / self.low))
 
     @cached_property
     def _series(self) -> FloatArray:
-        """Chebyshev coefficients of log(k_N / (E* a)), log(k_N' / E*), delta_0 and F_2 / E*, shape (node, 4)."""
-        rows = [
-            (np.log(c.stiffness), np.log(c.stiffness_slope), a * c.smooth_depth, a**2 * c.profile_force)
-            for c in self.contacts
-            for a in (c.contact_radius,)
-        ]
-        return chebyshev.chebfit(chebyshev.chebpts2(len(rows)), np.array(rows), len(rows) - 1)
+        """Chebyshev coefficients of k_N / (E* a), k_N' / E*, delta_0 / a and F_2 / (E* a^2), shape (node, 4).
+
+        The logarithms of the first two are expanded, and the last two over their `_powers` of the radius.
+        """
+        radii = np.array([c.contact_radius for c in self.contacts]) / self.high
+        rows = np.array([(c.stiffness, c.stiffness_slope, c.smooth_depth, c.profile_force) for c in self.contacts])
+        rows[:, :2], rows[:, 2:] = np.log(rows[:, :2]), rows[:, 2:] / radii[:, None] ** self._powers
+        return chebyshev.chebfit(chebyshev.chebpts2(len(rows)), rows, len(rows) - 1)
 
     def evaluate(self, radius: FloatArray) -> FloatArray:
         """k_N / E* [m], k_N' / E*, delta_0 [m] and F_2 / E* [m^2] at radii [m] within the piece, shape (4, n)."""
@@ -105,8 +116,9 @@ class BranchPiece:
             s = np.sqrt((radius - self.low) / (self.high - self.low))
         else:
             s = np.log(radius / self.low) / np.log(self.high / self.low)
-        stiffness, slope, smooth, profile = chebyshev.chebval(2 * s - 1, self._series)
-        return np.array([radius * np.exp(stiffness), np.exp(slope), smooth, profile])
+        stiffness, slope, *others = chebyshev.chebval(2 * s - 1, self._series)
+        smooth, profile = np.array(others) * (radius / self.high) ** self._powers[:, None]
+        return np.array([radius * np.exp(stiffness), np.exp(slope), radius * smooth, radius**2 * profile])
 
 
 @dataclass(frozen=True)
@@ -145,11 +157,15 @@ class Branch:
 
     def load(self, control: Controlled, radius: FloatArray) -> FloatArray:
         """The controlled load at radii [m]: delta by Eq. (40), F / E*, or delta + F/K of the machine."""
-        values = np.full((4, len(radius)), np.nan)  # beyond the ends
+        loads = np.full(len(radius), np.nan)  # beyond the ends
         for piece in self.pieces:
             inside = (radius >= piece.low * (1 - 1e-14)) & (radius <= piece.high * (1 + 1e-14))
-            values[:, inside] = piece.evaluate(np.clip(radius[inside], piece.low, piece.high))
-        stiffness, slope, smooth, profile = values
+            loads[inside] = self._load_within(piece, control, np.clip(radius[inside], piece.low, piece.high))
+        return loads
+
+    def _load_within(self, piece: BranchPiece, control: Controlled, radius: FloatArray) -> FloatArray:
+        """The controlled load at radii [m] of one piece."""
+        stiffness, slope, smooth, profile = piece.evaluate(radius)
         depth = smooth - np.sqrt(4 * np.pi * radius * self.work / slope)
         force = stiffness * depth + profile
         return np.asarray({"displacement": depth, "force": force, "machine": depth + self.machine * force}[control])
@@ -161,7 +177,8 @@ class Branch:
             inside = (radius >= piece.low) & (radius <= piece.high)
             step = 1e-5 * (piece.high - piece.low)
             up, down = np.minimum(radius[inside] + step, piece.high), np.maximum(radius[inside] - step, piece.low)
-            slopes[inside] = (self.load(control, up) - self.load(control, down)) / (up - down)
+            high, low = (self._load_within(piece, control, each) for each in (up, down))
+            slopes[inside] = (high - low) / (up - down)
         return slopes
 
     def slope_root(self, control: Controlled, low: float, high: float) -> float:
@@ -191,16 +208,19 @@ def work_of_adhesion(scene: Scene) -> float:
 def adhesive_equilibrium(contact: PrescribedContact, work: float) -> FemEquilibrium:
     """The state in which the energy release rate equals the work of adhesion dgamma / E* [m]."""
     elongation = float(np.sqrt(4 * np.pi * work / contact.contact_radius / contact.stiffness_slope))
-    return held_equilibrium(contact, contact.smooth_depth - elongation)
+    return equilibrium_at_depth(contact, contact.smooth_depth - elongation)
 
 
-def adhesive_equilibria(scene: Scene, solve: ContactSolver, growth: float) -> list[FemEquilibrium]:
+def adhesive_equilibria(
+    scene: Scene, solve: ContactSolver, settings: Discretisation, log: StageLog
+) -> list[FemEquilibrium]:
     """States at prescribed radii, depths or forces; of several states at one load, the stable one.
 
     Args:
         scene: the scene.
         solve: contact of a given radius.
-        growth: of cells, which decides how many radii are solved along a branch.
+        settings: numerical settings, whose growth decides how many radii are solved along a branch.
+        log: of the stages.
 
     Raises:
         InvalidInput: no stable state carries the load: the indenter has detached.
@@ -217,13 +237,13 @@ def adhesive_equilibria(scene: Scene, solve: ContactSolver, growth: float) -> li
         alone = height(profile, r) - 2 * np.sqrt(2 * np.pi * r * work)
         return bool(alone >= (1.5 * largest if by_depth else largest / r))
 
-    branch = branch_of(scene, None if is_punch else first_radius(profile, reached), solve, growth)
+    branch = branch_of(scene, None if is_punch else first_radius(profile, reached), settings, log)
     end, states = branch.pieces[-1].high, []
     for target in map(float, targets):
         if is_punch and target >= branch.load(control, np.array([end]))[0]:
             contact = branch.contacts[-1]
             depth = target / end if by_depth else target / end**2 / contact.stiffness
-            states.append(held_equilibrium(contact, depth))
+            states.append(equilibrium_at_depth(contact, depth))
         else:
             states.append(adhesive_equilibrium(solve(stable_radius(branch, control, target)), work))
     return states
@@ -248,7 +268,9 @@ def stable_radius(branch: Branch, control: Controlled, target: float) -> float:
     return float(radii[i]) if values[i] == target else branch.radius_at(control, target, radii[i], radii[i - 1])
 
 
-def branch_of(scene: Scene, start: float | None, solve: ContactSolver, growth: float, span: float = SPANS[0]) -> Branch:
+def branch_of(
+    scene: Scene, start: float | None, settings: Discretisation, log: StageLog, span: float = SPANS[0]
+) -> Branch:
     """The branch from a radius [m] (by default one where the contact is pressed) down to one ``span`` times smaller."""
     indenter, work = scene.indenter, work_of_adhesion(scene)
     is_punch, high = isinstance(indenter, FlatPunch), start or indenter.flat_radius
@@ -265,9 +287,12 @@ def branch_of(scene: Scene, start: float | None, solve: ContactSolver, growth: f
         count = max(1, int(np.ceil(np.log(end / breaks[-1]) / np.log(WIDEST_PIECE))))
         breaks += [*np.geomspace(breaks[-1], end, count + 1)[1:-1], end]
     # A piece that starts at a kink is interpolated in the root of the distance.
-    nodes, solve = max(4, round(NODES * (0.5 / growth) ** NODE_POWER)), cache(solve)
-    pairs = pairwise(map(float, breaks))
-    return Branch([BranchPiece.solved(*pair, solve, nodes, graded=pair[0] in kinks) for pair in pairs], work)
+    nodes = max(4, round(NODES * (0.5 / settings.growth) ** NODE_POWER))
+    pieces = [
+        BranchPiece.solved(low, high, cache(Neighbours(scene, settings, log)), nodes, graded=low in kinks)
+        for low, high in pairwise(map(float, breaks))
+    ]
+    return Branch(pieces, work)
 
 
 @dataclass(frozen=True)
@@ -277,26 +302,23 @@ class Separation:
     Attributes:
         scene: with a `Detachment`.
         branch: equilibria over the contact radius.
-        solve: contact of a given radius [m].
     """
 
     scene: Scene
     branch: Branch
-    solve: ContactSolver
 
     @classmethod
-    def of(cls, scene: Scene, solve: ContactSolver, growth: float) -> Self:
+    def of(cls, scene: Scene, settings: Discretisation, log: StageLog) -> Self:
         """Solve the shortest branch of `SPANS` that becomes unstable, or the longest."""
         loading: Any = scene.loading
-        solve = cache(solve)
         for span in SPANS:
-            branch = branch_of(scene, loading.initial_contact_radius, solve, growth, span)
+            branch = branch_of(scene, loading.initial_contact_radius, settings, log, span)
             # Under a machine that gives way, contact is lost before it would be at a prescribed depth.
             unstable = branch.slope("force" if loading.control == "force" else "displacement", branch.samples) <= 0
             if np.any(unstable):
                 break
         compliance = contact_modulus(scene.layer) / loading.machine_stiffness if loading.machine_stiffness else 0.0
-        return cls(scene, replace(branch, machine=compliance), solve)
+        return cls(scene, replace(branch, machine=compliance))
 
     @property
     def control(self) -> Controlled:
@@ -310,7 +332,8 @@ class Separation:
 
     def point(self, radius: float, control: Controlled, kind: str) -> CriticalPoint:
         """A critical point, solved at its radius: extremal loads err in the square of the radius's error only."""
-        contact = self.solve(radius)
+        piece = next(piece for piece in self.branch.pieces if radius <= piece.high)
+        contact = piece.solve(radius)
         state, a = adhesive_equilibrium(contact, self.branch.work), contact.contact_radius
         return CriticalPoint(
             control=control,
@@ -388,17 +411,12 @@ class Separation:
 
 
 def detachment_path(
-    scene: Scene,
-    solver: Callable[[Discretisation], ContactSolver],
-    written: Mapping[str, Setting],
-    log: StageLog,
-    settings: Discretisation,
+    scene: Scene, written: Mapping[str, Setting], log: StageLog, settings: Discretisation
 ) -> DetachmentPath:
     """The branch in the order of decreasing contact radius, with its changes on coarser cells as errors.
 
     Args:
         scene: with a `Detachment`.
-        solver: makes the function that solves the contact of a radius with given settings.
         written: settings of the method.
         log: of the stages.
         settings: numerical settings.
@@ -406,7 +424,7 @@ def detachment_path(
     Raises:
         UnsupportedSceneError: the indenter would touch outside one of the contacts.
     """
-    companion, found = (Separation.of(scene, solver(each), each.growth) for each in (settings.coarser(), settings))
+    companion, found = (Separation.of(scene, each, log) for each in (settings.coarser(), settings))
     branch, radius, modulus = found.branch, found.radius, contact_modulus(scene.layer)
     inside, loads, along = np.clip(radius, companion.branch.pieces[0].low, None), [], []
     for control in ("displacement", "force"):
@@ -419,12 +437,17 @@ def detachment_path(
             refuse_touching(scene, (circle_of(state, tolerance) for state in states))
     (depth, force), numbers, coarser = loads, found.numbers, companion.numbers
     floor = float(np.max(along)) if branch.is_rough else FLOOR
-    own = {name: stated_error(v, coarser[name], scale=v, floor=floor) for name, v in numbers.items()}
+    number_errors = {name: stated_error(v, coarser[name], scale=v, floor=floor) for name, v in numbers.items()}
     return DetachmentPath(
         scene=scene,
         method="fem",
         settings=written,
-        error_estimate={"contact_radius": 0.0 * radius, "indentation_depth": along[0], "normal_force": along[1], **own},
+        error_estimate={
+            "contact_radius": 0.0 * radius,
+            "indentation_depth": along[0],
+            "normal_force": along[1],
+            **number_errors,
+        },
         cost=log.cost(unknowns=max(c.unknowns for c in branch.contacts)),
         stages=log.records,
         notes=_notes(branch.contacts),

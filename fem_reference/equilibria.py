@@ -32,7 +32,7 @@ from contact.answer.solution import Setting
 from contact.records.validation import FloatArray
 from contact.scene.extent import first_radius
 from fem_reference.materials import contact_modulus
-from fem_reference.prescribed_contact import ContactSolver, PrescribedContact, quick_solution
+from fem_reference.prescribed_contact import QUICK, ContactSolver, Neighbours, PrescribedContact, quick_solution
 from fem_reference.profiles import height
 from fem_reference.settings import NARROWEST, narrowest_radius
 
@@ -101,14 +101,14 @@ class FemEquilibrium:
         return a * self.contact.surface_displacement(radius / a, self.depth)
 
 
-def held_equilibrium(contact: PrescribedContact, depth: float) -> FemEquilibrium:
+def equilibrium_at_depth(contact: PrescribedContact, depth: float) -> FemEquilibrium:
     """The state with the contact's radius at a depth / a, whatever the stress at its edge."""
     return FemEquilibrium(contact=contact, depth=depth, radius_factor=contact.radius)
 
 
 def smooth_equilibrium(contact: PrescribedContact) -> FemEquilibrium:
     """The state at depth delta_0, in which the pressure vanishes at the contact edge."""
-    return held_equilibrium(contact, contact.smooth_depth)
+    return equilibrium_at_depth(contact, contact.smooth_depth)
 
 
 def targets_of(scene: Scene) -> tuple[FloatArray, bool]:
@@ -127,7 +127,7 @@ def flat_punch_equilibria(scene: Scene, solve: ContactSolver) -> list[FemEquilib
     radius = scene.indenter.flat_radius
     contact = solve(radius)
     depths = targets / radius / (1.0 if by_depth else radius * contact.stiffness)
-    return [held_equilibrium(contact, depth) for depth in map(float, depths)]
+    return [equilibrium_at_depth(contact, depth) for depth in map(float, depths)]
 
 
 def elastic_equilibria(
@@ -201,9 +201,10 @@ def searched_radius(scene: Scene, log: StageLog, target: float) -> float:
         NotConvergedError: the radius does not settle.
     """
     indenter, flat, by_depth = scene.indenter, scene.indenter.flat_radius, targets_of(scene)[1]
+    solve = Neighbours(scene, QUICK, log)
 
     def load_at(radius: float) -> tuple[float, float]:
-        contact = quick_solution(scene, radius, log)
+        contact = solve(radius)
         load = _load(contact, by_depth) * radius ** (1 if by_depth else 2)
         return load / target, grows_like(contact, flat / radius, by_depth=by_depth)
 
@@ -248,23 +249,23 @@ def radius_of_load(
         InvalidInput: contact would reach the end of the profile.
         NotConvergedError: the radius does not settle.
     """
-    least = float(np.log(narrowest - flat)) if flat else -np.inf
-    narrow, last = least + float(np.log(NARROW / NARROWEST)), float(np.log(end - flat))
+    lowest = float(np.log(narrowest - flat)) if flat else -np.inf
+    narrow, last = lowest + float(np.log(NARROW / NARROWEST)), float(np.log(end - flat))
     x, low, high = min(float(np.log(max(start - flat, narrowest - flat))), last), -np.inf, np.inf
     for _ in range(STEPS):
         ratio, growth = load_at(flat + float(np.exp(x)))
         # A load that is not positive counts as too small: a larger contact may press.
         y = float(np.log(ratio)) if ratio > 0 else -1.0
-        if x == least and y > 0:
+        if x == lowest and y > 0:
             return narrowest
         # One more step leaves an error of about y^2.
         if y**2 < LEFT_OVER:
-            return flat + float(np.exp(np.clip(x - y / growth, least, last)))
+            return flat + float(np.exp(np.clip(x - y / growth, lowest, last)))
         if x == last and y < 0:
             raise InvalidInput(f"contact would reach the end of the profile at {end:g} m; press less")
         low, high = (x, high) if y < 0 else (low, x)
         step = -y / growth if x < narrow else float(np.clip(-y / growth, -1, 1))
-        following = float(np.clip(x + step, least, last))
+        following = float(np.clip(x + step, lowest, last))
         x = following if low < following < high or np.isinf(high - low) else (low + high) / 2
     if y < 0 and x > last - 0.1:
         raise InvalidInput(f"contact comes close to the end of the profile at {end:g} m, or would pass it; press less")

@@ -112,9 +112,9 @@ class MeridianSection:
         space, unknowns = layer.space, self.contact.solutions @ [self.depth, 1.0]
         at_nodes = self.local_nodes, np.ones(self.local_nodes.shape[1])
         basis = Basis(layer.section.mesh, ElementVector(layer.pair.displacement), quadrature=at_nodes)
-        moved = basis.interpolate(unknowns[space.owner])
-        pressed = basis.with_element(layer.pair.pressure).interpolate(unknowns[space.displacement_count :])
-        u, slope, p = np.asarray(moved), moved.grad, np.asarray(pressed)
+        displacement = basis.interpolate(unknowns[space.owner])
+        pressure = basis.with_element(layer.pair.pressure).interpolate(unknowns[space.displacement_count :])
+        u, slope, p = np.asarray(displacement), displacement.grad, np.asarray(pressure)
         radius, depth = np.swapaxes(space.positions[:, space.displacement_dofs.element_dofs], 1, 2)
         # On the axis the hoop strain is u_r,r.
         hoop = np.divide(u[0], radius, out=slope[0, 0].copy(), where=radius > 0)
@@ -122,7 +122,7 @@ class MeridianSection:
         shear = layer.parts.at(layer.section.part, depth).shear
         stress = 2 * shear * (normal - normal.mean(axis=0)) - p
         tangential = shear * (slope[0, 1] + slope[1, 0])
-        return np.moveaxis(np.array([*u, *stress, tangential, p, *pressed.grad]), 0, -1)
+        return np.moveaxis(np.array([*u, *stress, tangential, p, *pressure.grad]), 0, -1)
 
     def places_of(self, points: FloatArray) -> tuple[IntArray, FloatArray]:
         """Triangle (n,) of each of n points (2, n), and the place (2, n) of the point in the reference triangle.
@@ -134,8 +134,8 @@ class MeridianSection:
 
         centres = self.corners.mean(axis=1).T
         near = cKDTree(centres).query(points.T, min(NEAREST, len(centres)))[1].reshape(points.shape[1], -1)
-        found, local, least = self._best(points, near)
-        if (lost := least < ROUNDING).any():
+        found, local, smallest = self._best(points, near)
+        if (lost := smallest < ROUNDING).any():
             every = np.broadcast_to(np.arange(len(centres)), (int(lost.sum()), len(centres)))
             found[lost], local[:, lost], _ = self._best(points[:, lost], every)
         return found, local
@@ -145,9 +145,9 @@ class MeridianSection:
         repeated = np.repeat(points, triangles.shape[1], axis=1)[:, :, None]
         mapping = self.contact.layer.section.mesh.mapping()
         local = mapping.invF(repeated, tind=triangles.ravel()).reshape(2, *triangles.shape)
-        least = np.minimum(local.min(axis=0), 1 - local.sum(axis=0))
-        best = np.arange(len(triangles)), least.argmax(axis=1)
-        return triangles[best], local[:, *best], least[best]
+        smallest = np.minimum(local.min(axis=0), 1 - local.sum(axis=0))
+        best = np.arange(len(triangles)), smallest.argmax(axis=1)
+        return triangles[best], local[:, *best], smallest[best]
 
 
 @dataclass(frozen=True, eq=False)

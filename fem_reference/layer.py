@@ -80,13 +80,13 @@ class DiscreteLayer:
         prescribed, too, so that the matrix of the others is regular.
         """
         base = self.nodes_on("base")
-        held = [2 * self.nodes_on("axis"), 2 * base + 1]
+        prescribed = [2 * self.nodes_on("axis"), 2 * base + 1]
         if self.parts.bonded:
-            held.append(2 * base)
+            prescribed.append(2 * base)
         if self.sticks:
-            held.append(2 * self.top_nodes(1.0))
+            prescribed.append(2 * self.top_nodes(1.0))
         owner = self.space.owner
-        return np.unique(np.concatenate([*held, np.flatnonzero(owner != np.arange(len(owner)))]))
+        return np.unique(np.concatenate([*prescribed, np.flatnonzero(owner != np.arange(len(owner)))]))
 
     def top_nodes(self, radius: float) -> IntArray:
         """Scalar displacement unknowns of the top cells that end within ``radius``, in the order of increasing r."""
@@ -95,9 +95,9 @@ class DiscreteLayer:
         inside = mesh.p[0, mesh.facets[:, facets]].max(axis=0) <= radius * (1 + 1e-14)
         return self.space.nodes_on(facets[inside])
 
-    def solver(self, held: IntArray) -> RestrictedSolver:
-        """The factorised layer with the unknowns ``held`` prescribed."""
-        return RestrictedSolver(self.space, self.elements, self.edge, held)
+    def solver(self, prescribed: IntArray) -> RestrictedSolver:
+        """The factorised layer with these unknowns prescribed."""
+        return RestrictedSolver(self.space, self.elements, self.edge, prescribed)
 
     def derivative_by_radius(self, solutions: FloatArray, eta: FloatArray) -> FloatArray:
         """A'(u_i, u_j), the derivative of ``u_i . K u_j`` when vertices move by ``(eta, 0)`` and carry the unknowns.

@@ -195,13 +195,13 @@ def _constant(value: float) -> OfDepth:
 
 
 def _stack_parts(layer: LayerStack, a: float, unit: float) -> list[Part]:
-    thicknesses = np.array([one.thickness for one in layer.sublayers]) / a
+    thicknesses = np.array([sublayer.thickness for sublayer in layer.sublayers]) / a
     tops = np.cumsum([0.0, *thicknesses[:-1]])
     on_base = isinstance(layer.support, ElasticBase) and layer.support.interface == "unbonded"
     slips = [*(interface == "unbonded" for interface in layer.interfaces), on_base]
     return [
-        Part(float(top), float(h), _constant(one.youngs_modulus / unit), _constant(one.poissons_ratio), slip)
-        for top, h, one, slip in zip(tops, thicknesses, layer.sublayers, slips, strict=True)
+        Part(float(top), float(h), _constant(sublayer.youngs_modulus / unit), _constant(sublayer.poissons_ratio), slip)
+        for top, h, sublayer, slip in zip(tops, thicknesses, layer.sublayers, slips, strict=True)
     ]
 
 

@@ -17,7 +17,8 @@ from __future__ import annotations
 
 import hashlib
 import signal
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from functools import cache, cached_property
 from itertools import pairwise
 from threading import current_thread, main_thread
@@ -65,6 +66,12 @@ FAR_GROWTH = 0.5
 # Distance from the base, over the last part's thickness, within which a vertex is put on it: above gmsh's roundings.
 ON_BASE = 1e-9
 
+# Largest factor on a thickness by which a section is stretched. With its square one mesh serves a whole branch and errs
+# several times as much at its ends, with its root twice as many meshes are made.
+MOST_STRETCHED = 2.0
+# Largest relative difference of thicknesses that is rounding.
+SAME = 1e-12
+
 # (radius, cell size) on the top, increasing.
 Graded = tuple[tuple[float, float], ...]
 
@@ -77,17 +84,50 @@ class Section:
         mesh: points and triangles, with named boundaries.
         part: index of the part of each triangle, shape (triangle,).
         faces: facets where two parts meet, from the surface down.
-        thickness: depth of the base.
-        outer_radius: end of the section.
-        fingerprint: hash of points and triangles.
+        graded: radii of the graded points, increasing.
+        depths: of the mesh lines, the surface and the base included, increasing.
     """
 
     mesh: MeshTri
     part: IntArray
     faces: tuple[Face, ...]
-    thickness: float
-    outer_radius: float
-    fingerprint: str
+    graded: FloatArray
+    depths: FloatArray
+
+    @property
+    def thickness(self) -> float:
+        """Depth of the base."""
+        return float(self.depths[-1])
+
+    @property
+    def outer_radius(self) -> float:
+        """End of the section."""
+        return float(self.mesh.p[0].max())
+
+    @cached_property
+    def fingerprint(self) -> str:
+        """Hash of points and triangles."""
+        return hashlib.sha256(self.mesh.p.tobytes() + self.mesh.t.tobytes()).hexdigest()[:16]
+
+    def stretched(self, graded: FloatArray, depths: FloatArray, outer_radius: float) -> Section | None:
+        """The same triangles with mesh lines at other depths, and the outer edge moved in proportion.
+
+        Within the contact radii stay, and within a contact radius of the edge or half a thickness triangles keep their
+        shape as far as possible. Errors of stretched meshes are smooth functions of the contact radius, while each new
+        mesh has errors of its own. None where graded points differ or a thickness changes by more than
+        `MOST_STRETCHED`; the section itself where nothing moves.
+        """
+        if not np.array_equal(graded, self.graded) or depths.shape != self.depths.shape:
+            return None
+        most = float(np.exp(np.abs(np.log(np.diff(depths) / np.diff(self.depths))).max()))
+        if most > MOST_STRETCHED:
+            return None
+        if most < 1 + SAME:
+            return self
+        near, other = (min(1.0, lines[1] / 2) for lines in (self.depths, depths))
+        r = np.interp(self.mesh.p[0], [0, 1, 1 + near, self.outer_radius], [0, 1, 1 + other, outer_radius])
+        z = np.interp(self.mesh.p[1], np.insert(self.depths, 1, near), np.insert(depths, 1, other))
+        return replace(self, mesh=replace(self.mesh, doflocs=np.array([r, z])), depths=depths)
 
 
 def section_mesh(
@@ -116,7 +156,8 @@ def section_mesh(
     corners = np.hstack([start + np.searchsorted(vertices, region) for start, vertices, region in each])
     if np.any(doubled_area(points_back, corners) * np.sign(doubled_area(drawn, np.hstack(regions))) <= 0):
         raise NotConvergedError("a triangle of a thin part turned over or has no area; ask for smaller cells")
-    return named_section(points_back, corners, np.repeat(np.arange(len(regions)), [r.shape[1] for r in regions]), parts)
+    owner = np.repeat(np.arange(len(regions)), [region.shape[1] for region in regions])
+    return named_section(points_back, corners, owner, parts, [r for r, _ in points])
 
 
 @dataclass(frozen=True)
@@ -345,8 +386,12 @@ def doubled_area(points: FloatArray, triangles: IntArray) -> FloatArray:
     return np.asarray((r1 - r0) * (z2 - z0) - (r2 - r0) * (z1 - z0))
 
 
-def named_section(points: FloatArray, triangles: IntArray, part: IntArray, parts: Parts) -> Section:
+def named_section(
+    points: FloatArray, triangles: IntArray, part: IntArray, parts: Parts, graded: Sequence[float] = ()
+) -> Section:
     """Section of points (2, n) and triangles (3, m) in the parts of indices (m,), with named boundaries and faces.
+
+    Radii of graded points may be given for `Section.stretched`.
 
     Raises:
         NotConvergedError: a triangle has no area.
@@ -364,6 +409,5 @@ def named_section(points: FloatArray, triangles: IntArray, part: IntArray, parts
         on_line = np.all(z == depth, axis=0)
         above, below = (facets[on_line & (owner == side)] for side in (upper, upper + 1))
         faces.append(Face(above, below, parts.parts[upper].slips))
-    digest = hashlib.sha256(mesh.p.tobytes() + mesh.t.tobytes()).hexdigest()
-    named = mesh.with_boundaries(boundaries)
-    return Section(named, part, tuple(faces), float(thickness), float(outer_radius), digest[:16])
+    depths = np.array([*parts.depths[:-1], thickness])
+    return Section(mesh.with_boundaries(boundaries), part, tuple(faces), np.array(graded), depths)

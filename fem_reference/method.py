@@ -179,7 +179,7 @@ class Fem:
         if isinstance(scene.loading, Detachment):
             from fem_reference.adhesion import detachment_path  # noqa: PLC0415
 
-            return partial(detachment_path, scene, partial(self._solver, scene, log), written, log)
+            return partial(detachment_path, scene, written, log)
         return partial(self._at_rest, scene, cache(partial(searched_radius, scene, log)), log)
 
     def _at_rest(
@@ -209,7 +209,7 @@ class Fem:
         if scene.effects:
             from fem_reference.adhesion import adhesive_equilibria  # noqa: PLC0415
 
-            return adhesive_equilibria(scene, solve, settings.growth)
+            return adhesive_equilibria(scene, solve, settings, log)
         return elastic_equilibria(scene, solve, settings.coarsening, search)
 
     def _solver(self, scene: Scene, log: StageLog, settings: Discretisation) -> ContactSolver:

@@ -15,7 +15,7 @@ which is the depth without adhesion.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TypeAlias
 
 import numpy as np
@@ -24,8 +24,10 @@ from scipy.linalg import solveh_banded
 from contact import NotConvergedError, Scene, StageLog
 from contact.records.validation import FloatArray
 from fem_reference.layer import DiscreteLayer
+from fem_reference.mesh import Section
 from fem_reference.profiles import ScaledIndenter
 from fem_reference.settings import Discretisation, contact_section, narrowest_radius
+from fem_reference.solver import RestrictedSolver
 from fem_reference.surface import TraceSpace
 
 # Largest relative difference of the stiffness by energy and by reactions: sound solutions agree to 1e-12, a broken
@@ -144,33 +146,53 @@ class PrescribedContact:
 ContactSolver: TypeAlias = Callable[[float], PrescribedContact]
 
 
-def solve_contact(
-    scene: Scene,
-    radius: float,
-    settings: Discretisation,
-    log: StageLog,
-    *,
-    sticks: bool = False,
-) -> PrescribedContact:
-    """Mesh the section around a contact radius [m] and solve it.
+@dataclass
+class Neighbours:
+    """Solves contacts of given radii [m]; those of similar proportions share a mesh, which is stretched.
 
-    Where the ring around a flat end is narrower than `narrowest_radius` allows, the narrowest meshed contact is solved
-    and `PrescribedContact.narrowed`.
+    Where nothing is stretched, as on a half-space under a smooth profile, they share the factorised matrix, too.
 
-    Args:
+    Attributes:
         scene: layer and indenter.
-        radius: contact radius [m].
         settings: numerical settings.
         log: record of time and memory by stage.
         sticks: whether u_r = 0 under the indenter.
+        sections: meshes so far, not stretched.
+        factorised: the last mesh with its factors.
     """
-    layer, flat = scene.layer, scene.indenter.flat_radius
-    meshed = max(radius, narrowest_radius(layer, scene.indenter, settings.coarsening)) if radius > flat else radius
-    indenter = ScaledIndenter(scene.indenter, meshed)
-    with log.stage("mesh"):
-        parts, section = contact_section(layer, indenter, settings)
-    contact = solve_prescribed_contact(DiscreteLayer(section, settings.pair, parts, sticks), indenter, log)
-    return contact if meshed == radius else contact.narrowed(float(np.sqrt((radius - flat) / (meshed - flat))))
+
+    scene: Scene
+    settings: Discretisation
+    log: StageLog
+    sticks: bool = False
+    sections: list[Section] = field(default_factory=list)
+    factorised: tuple[DiscreteLayer, RestrictedSolver] | None = None
+
+    def __call__(self, radius: float) -> PrescribedContact:
+        """The contact of a radius [m].
+
+        Where the ring around a flat end is narrower than `narrowest_radius` allows, the narrowest meshed contact is
+        solved and `PrescribedContact.narrowed`.
+        """
+        layer, profile, settings = self.scene.layer, self.scene.indenter, self.settings
+        flat = profile.flat_radius
+        meshed = max(radius, narrowest_radius(layer, profile, settings.coarsening)) if radius > flat else radius
+        indenter = ScaledIndenter(profile, meshed)
+        with self.log.stage("mesh"):
+            parts, section = contact_section(layer, indenter, settings, self.sections)
+        if self.factorised is None or section is not self.factorised[0].section:
+            discrete = DiscreteLayer(section, settings.pair, parts, self.sticks)
+            self.factorised = discrete, factorised_contact(discrete, self.log)
+        discrete, solver = self.factorised
+        contact = solve_prescribed_contact(discrete, indenter, self.log, solver)
+        return contact if meshed == radius else contact.narrowed(float(np.sqrt((radius - flat) / (meshed - flat))))
+
+
+def solve_contact(
+    scene: Scene, radius: float, settings: Discretisation, log: StageLog, *, sticks: bool = False
+) -> PrescribedContact:
+    """Mesh the section around a contact radius [m] and solve it; the arguments are those of `Neighbours`."""
+    return Neighbours(scene, settings, log, sticks)(radius)
 
 
 def quick_solution(scene: Scene, radius: float, log: StageLog) -> PrescribedContact:
@@ -178,21 +200,29 @@ def quick_solution(scene: Scene, radius: float, log: StageLog) -> PrescribedCont
     return solve_contact(scene, radius, QUICK, log)
 
 
-def solve_prescribed_contact(layer: DiscreteLayer, indenter: ScaledIndenter, log: StageLog) -> PrescribedContact:
-    """Solve the contact of radius one on a mesh with a vertex there.
+def factorised_contact(layer: DiscreteLayer, log: StageLog) -> RestrictedSolver:
+    """The layer with u_z prescribed within radius one: the last of the prescribed unknowns, as `top_nodes` has them."""
+    with log.stage("assemble"):
+        log.hold(layer.elements.nbytes)
+    with log.stage("factor"):
+        solver = layer.solver(np.concatenate([layer.supported_unknowns, 2 * layer.top_nodes(1.0) + 1]))
+    log.count("factorisations", solver.factorisations)
+    return solver
+
+
+def solve_prescribed_contact(
+    layer: DiscreteLayer, indenter: ScaledIndenter, log: StageLog, solver: RestrictedSolver | None = None
+) -> PrescribedContact:
+    """Solve the contact of radius one on a mesh with a vertex there, by its `factorised_contact`.
 
     Raises:
         NotConvergedError: the linear solve is inaccurate, energy and reactions disagree, or the patch test fails.
     """
     contact = layer.top_nodes(1.0)
     radii, pressed = layer.space.positions[0, contact], 2 * contact + 1
-    with log.stage("assemble"):
-        log.hold(layer.elements.nbytes)
-    with log.stage("factor"):
-        solver = layer.solver(np.concatenate([layer.supported_unknowns, pressed]))
-    log.count("factorisations", solver.factorisations)
+    solver = solver or factorised_contact(layer, log)
     with log.stage("solve"):
-        values = np.zeros((len(solver.held), 2))
+        values = np.zeros((len(solver.prescribed), 2))
         values[-len(pressed) :] = np.column_stack([np.ones_like(radii), -indenter.height(radii)])
         solutions = solver.solve_displaced(values)
         forces = solver.reactions(solutions, pressed)

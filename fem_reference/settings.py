@@ -109,12 +109,28 @@ class Discretisation:
         return float(1 + parts.depths[-1] * distance)
 
 
-def contact_section(layer: ElasticLayer, indenter: ScaledIndenter, settings: Discretisation) -> tuple[Parts, Section]:
-    """The graded section of a contact of known radius, with vertices at the edge and at every kink and breakpoint."""
+def contact_section(
+    layer: ElasticLayer, indenter: ScaledIndenter, settings: Discretisation, made: list[Section] | None = None
+) -> tuple[Parts, Section]:
+    """The graded section of a contact of known radius, with vertices at the edge and at every kink and breakpoint.
+
+    Args:
+        layer: of the scene.
+        indenter: by the contact radius.
+        settings: numerical settings.
+        made: sections of other contact radii: one that is similar is stretched, else a new one is appended.
+    """
     parts = parts_of(layer, indenter.contact_radius, settings.half_space_thickness)
-    points = graded_points(parts.parts[0].thickness, indenter, settings)
+    points, outer_radius = graded_points(parts.parts[0].thickness, indenter, settings), settings.outer_radius(parts)
+    graded = np.array([r for r, _ in points])
+    for section in made or ():
+        if stretched := section.stretched(graded, parts.depths, outer_radius):
+            return parts, stretched
     end = 1.0 + indenter.left_to_upright_end
-    return parts, section_mesh(parts, settings.outer_radius(parts), points, settings.growth, end=end)
+    section = section_mesh(parts, outer_radius, points, settings.growth, end=end)
+    if made is not None:
+        made.append(section)
+    return parts, section
 
 
 def graded_points(thickness: float, indenter: ScaledIndenter, settings: Discretisation) -> Graded:

@@ -38,10 +38,10 @@ class RestrictedSolver:
         space: the unknowns.
         elements: matrix of each triangle, shape (triangle, n, n).
         springs: a matrix of all unknowns that is added, or None; without entries inside triangles.
-        held: prescribed unknowns, none of them inside a triangle.
+        prescribed: unknowns with given values, none of them inside a triangle.
 
     Attributes:
-        held: the prescribed unknowns.
+        prescribed: unknowns with given values.
         factorisations: how many were needed: one, or two where the first lost digits.
 
     Raises:
@@ -49,7 +49,9 @@ class RestrictedSolver:
         UnsupportedSceneError: its factors do not fit into memory.
     """
 
-    def __init__(self, space: Space, elements: FloatArray, springs: sparse.csc_array | None, held: IntArray) -> None:
+    def __init__(
+        self, space: Space, elements: FloatArray, springs: sparse.csc_array | None, prescribed: IntArray
+    ) -> None:
         inner = space.pair.inner
         outer = np.setdiff1d(np.arange(elements.shape[1]), inner)
         self._unknowns, self._inner = space.element_unknowns[:, outer], space.element_unknowns[:, inner]
@@ -59,9 +61,9 @@ class RestrictedSolver:
         shared = shared - self._coupling.transpose(0, 2, 1) @ (self._inverse @ self._coupling)
         matrix = scatter(shared, self._unknowns, space.size)
         self._matrix = (matrix if springs is None else matrix + springs).tocsr()
-        self.held, is_free = held, np.zeros(space.size, dtype=bool)
+        self.prescribed, is_free = prescribed, np.zeros(space.size, dtype=bool)
         is_free[self._unknowns] = True
-        is_free[held] = False
+        is_free[prescribed] = False
         order = minimum_degree(space)
         self._free = order[is_free[order]]
         self._square = self._matrix[self._free][:, self._free].tocsc()
@@ -69,9 +71,9 @@ class RestrictedSolver:
         self._factors = self._factorised(permc_spec="NATURAL", **DIAGONAL)
 
     def solve_displaced(self, values: FloatArray) -> FloatArray:
-        """All unknowns, shape (size, m), for prescribed values of shape (held, m)."""
+        """All unknowns, shape (size, m), for prescribed values of shape (prescribed, m)."""
         solution = np.zeros((self._matrix.shape[0], values.shape[1]))
-        solution[self.held] = values
+        solution[self.prescribed] = values
         solution[self._free] = self._solved(-(self._matrix @ solution)[self._free])
         solution[self._inner] = -(self._inverse @ (self._coupling @ solution[self._unknowns]))
         return solution

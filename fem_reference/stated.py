@@ -90,12 +90,12 @@ def path_with_errors(
         name: stated_error(getattr(answer, name), getattr(companion, name), scale=answer.scale(name), floor=FLOOR)
         for name in answer.ARRAYS
     }
-    least = LEAST_SHARE * np.max([errors[name] for name in errors if name != "contact_radius"], axis=0)
+    least_error = LEAST_SHARE * np.max([errors[name] for name in errors if name != "contact_radius"], axis=0)
     # The stiffness of a load errs with its radius, too.
     by_radius = LEAST_SHARE * errors["contact_radius"]
     errors["contact_stiffness"] = np.maximum(errors["contact_stiffness"], by_radius)
     exact = set() if answer.scene.effect(Adhesion) is not None else exact_names(answer.scene)
-    errors = {name: 0.0 * error if name in exact else np.maximum(error, least) for name, error in errors.items()}
+    errors = {name: 0.0 * error if name in exact else np.maximum(error, least_error) for name, error in errors.items()}
     pairs = list(zip(states, coarser, strict=True))
     displacements = SAFETY * np.array([change_beside(*pair) for pair in pairs]) / answer.scale("indentation_depth")
     errors["pressure"] = SAFETY * np.array([pressure_change(*pair) for pair in pairs]) + FLOOR

@@ -69,7 +69,10 @@ class TraceSpace:
         # Products of differences: each value has the same bits for any set of arguments.
         nodes = np.arange(self.degree + 1) / self.degree
         others = [[m for m in range(self.degree + 1) if m != n] for n in range(self.degree + 1)]
-        ways = [np.prod((t[..., None] - nodes[own]) / (nodes[n] - nodes[own]), axis=-1) for n, own in enumerate(others)]
+        ways = [
+            np.prod((t[..., None] - nodes[other]) / (nodes[n] - nodes[other]), axis=-1)
+            for n, other in enumerate(others)
+        ]
         return np.stack(ways, axis=-1)
 
     def _values(self, cell: IntArray, t: FloatArray) -> sparse.csr_array:

@@ -67,8 +67,8 @@ def inf_sup_constant(pair: ElementPair, mesh: MeshTri) -> float:
     displacement = Basis(mesh, ElementVector(pair.displacement))
     pressure = displacement.with_element(pair.pressure)
     axis = displacement.get_dofs("axis").all(["u^1"])
-    held = np.concatenate([axis, displacement.get_dofs("base").all()])
-    free = np.setdiff1d(np.arange(displacement.N), held)
+    prescribed = np.concatenate([axis, displacement.get_dofs("base").all()])
+    free = np.setdiff1d(np.arange(displacement.N), prescribed)
     gradient = weak_forms.displacement_gradient.assemble(displacement).toarray()[np.ix_(free, free)]
     divergence = weak_forms.constraint.assemble(displacement, pressure).toarray()[:, free]
     mass = weak_forms.pressure_mass.assemble(pressure).toarray()
@@ -163,21 +163,21 @@ class ManufacturedProblem:
         loads = np.zeros((space.size, 1))
         loads[: basis.N, 0] = LinearForm(work).assemble(basis)
         boundary = space.nodes_on(layer.section.mesh.boundary_facets())
-        held = np.concatenate([2 * boundary, 2 * boundary + 1])
+        prescribed = np.concatenate([2 * boundary, 2 * boundary + 1])
         values = self.displacement(*space.positions[:, boundary]).ravel()
         if self._is_incompressible:
-            held, values = self._with_pressure_level(held, values)
-        solver = layer.solver(held)
+            prescribed, values = self._with_pressure_level(prescribed, values)
+        solver = layer.solver(prescribed)
         return np.asarray(solver.solve_displaced(values[:, None]) + solver.solve_loaded(loads))[:, 0]
 
-    def _with_pressure_level(self, held: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
+    def _with_pressure_level(self, prescribed: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Held unknowns and values, with the exact pressure at the first vertex and boundary values without net flux.
 
         With u given on the whole boundary the level of the pressure is free. The interpolated boundary values have a
         little net flux, which would enter as a source at that vertex, with an error of the pressure of order h^3.
         """
         first = self.layer.space.displacement_count
-        held = np.append(held, first)
+        prescribed = np.append(prescribed, first)
         values = np.append(values, np.prod(np.cos(self.layer.section.mesh.p[:, 0])))
-        flux = np.asarray(self.layer.matrix[first:].sum(axis=0)).ravel()[held]
-        return held, values - flux * (flux @ values) / (flux @ flux)
+        flux = np.asarray(self.layer.matrix[first:].sum(axis=0)).ravel()[prescribed]
+        return prescribed, values - flux * (flux @ values) / (flux @ flux)

@@ -96,9 +96,9 @@ class RubbedFields:
             step: number of the state in the path.
         """
         at = self.steps[step]
-        moved = (at.state.radial - at.state.touched) / at.contact.surface.resultants
-        moved[0] = 0.0  # u_r = 0 on the axis
-        return at.contact.radius * at.at_radii(np.where(at.state.pressure > 0.0, moved, 0.0), radius)
+        slip = (at.state.radial - at.state.touched) / at.contact.surface.resultants
+        slip[0] = 0.0  # u_r = 0 on the axis
+        return at.contact.radius * at.at_radii(np.where(at.state.pressure > 0.0, slip, 0.0), radius)
 
     def surface_displacement(self, radius: FloatArray, step: int) -> FloatArray:
         """Displacement w(r) [m], positive into the layer; zero beyond the mesh."""
@@ -133,8 +133,8 @@ def rubbed_path(
             for strip in (growth.fine, growth.coarse)
         )
         defect = {"base_force_defect": abs(fine.base_force / fine.state.force - 1.0)}
-        own = {QUANTITIES[n][0]: e for n, e in stated.items()}
-        errors[step], steps[step] = own | _traction_errors(fine, coarse) | defect, fine
+        number_errors = {QUANTITIES[n][0]: e for n, e in stated.items()}
+        errors[step], steps[step] = number_errors | _traction_errors(fine, coarse) | defect, fine
     found: dict[str, Any] = {
         quantity: modulus**power * np.array([number[n] for number in numbers])
         for n, (quantity, power) in QUANTITIES.items()

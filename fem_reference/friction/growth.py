@@ -269,9 +269,12 @@ class GrowthRecord:
         found, other = self.numbers(name, value), self.numbers(name, value, extrapolated=False)
         radius, cell = found["radius"], self.fine.cell / found["radius"]
         scale = found | {"stick": radius, "heat": found["force"] * found["depth"]}
-        least = LEAST_SHARE * max(abs(other[each] / found[each] - 1.0) for each in ("depth", "force", "stiffness"))
+        least_change = LEAST_SHARE * max(
+            abs(other[each] / found[each] - 1.0) for each in ("depth", "force", "stiffness")
+        )
         error = {
-            each: SAFETY * max(abs(other[each] - size), least * size) / scale[each] for each, size in found.items()
+            each: SAFETY * max(abs(other[each] - size), least_change * size) / scale[each]
+            for each, size in found.items()
         } | {name: 0.0}
         # Slip may be narrower than a cell: the edge is that of a contact that sticks, or that of one that slides.
         edge = cell * (EDGE_UNCERTAIN + self.fine.less_by_stick * math.isfinite(self.fine.contact.coefficient))

@@ -154,8 +154,10 @@ def advance(contact: RubbedContact, before: RubbedState, active: int, control: C
     seen: set[bytes] = set()
     for _ in range(MOST_SETS):
         tractions, depth = _equilibrium(contact, before, sliding, active, control)
-        moved = contact.surface.compliance @ tractions
-        after = replace(before, depth=depth, tractions=tractions, displacements=moved, sliding=sliding, active=active)
+        displacements = contact.surface.compliance @ tractions
+        after = replace(
+            before, depth=depth, tractions=tractions, displacements=displacements, sliding=sliding, active=active
+        )
         found = _sliding(contact, before, after)
         if np.array_equal(found, sliding):
             return _accounted(contact, before, after)

@@ -32,7 +32,7 @@ def pressed(degree, nu):
     problem = discrete(taylor_hood(degree), nu)
     disc = 2 * problem.top_nodes(1.0) + 1
     solver = problem.solver(np.concatenate([problem.supported_unknowns, disc]))
-    values = np.zeros((len(solver.held), 1))
+    values = np.zeros((len(solver.prescribed), 1))
     values[-len(disc) :] = 1
     force = solver.reactions(solver.solve_displaced(values), disc).sum()
     return solver, force, solver.factorisations
