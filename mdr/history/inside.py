@@ -275,7 +275,7 @@ class HistoryFields:
         if above.any():
             g[above] = np.maximum(springs.at(x[above], x[above] - flat).g, 0.0)
         order, path, last = np.argsort(g, kind="stable"), self.answer.path, int(self.answer.given[step])
-        *_, bed = followed(self.problem.law, g[order], path.until(last))
+        *_, (bed, _) = followed(self.problem.law, g[order], path.until(last))
         values = np.empty(x.size)
         values[order] = bed.surface if moved else bed.forces(float(path.final_speed[last]))
         return values
