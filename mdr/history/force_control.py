@@ -162,7 +162,7 @@ def march(law: SpringLaw, springs: Layout, steps: Steps, closed: FloatArray, gue
     """
     count, q = steps.time.size - 1, steps.nodes.size
     is_known = never_larger(law, steps.load)[1:].reshape(count, q).all(axis=1)
-    is_free = np.asarray(~is_known & (steps.force[1:] <= 0))
+    is_free = np.logical_and(~is_known, steps.force[1:] <= 0)
     bed = SpringBed.undeformed(law, springs.g, float(closed[0]))
     depth, front, polynomials, load_error = closed.copy(), np.full(closed.size, -1.0), np.zeros((count, q + 1)), 0.0
     for k, span in enumerate(np.diff(steps.time).tolist()):
