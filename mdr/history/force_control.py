@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 from bem.numerics import EPS
 from contact import ForceHistory, NotConvergedError
 from contact.records.validation import BoolArray, FloatArray
-from mdr.history.fronts import Layout
+from mdr.history.fronts import Layout, panel_ends
 from mdr.history.spring_bed import Passage, Path, SpringBed
 from mdr.history.spring_law import SpringLaw
 
@@ -135,15 +135,21 @@ class March(NamedTuple):
 
     Attributes:
         path: Depths between all ends of substeps.
-        depth: Depths at `Steps.instants` [m], shape (1 + n q,).
+        instants: Those of `Steps` [s], shape (1 + n q,).
+        depth: Depths there [m].
         front: Radii [m] at which contact ends there, -1 where nothing touches.
         load_error: Largest error of F_e over the largest F_e.
     """
 
     path: Path
+    instants: FloatArray
     depth: FloatArray
     front: FloatArray
     load_error: float
+
+    def panel_ends(self, law: SpringLaw) -> FloatArray:
+        """Radii [m] at which panels of the next march end."""
+        return panel_ends(law, self.instants, self.front)
 
 
 def march(law: SpringLaw, springs: Layout, steps: Steps, closed: FloatArray, guess: FloatArray) -> March:
@@ -161,8 +167,8 @@ def march(law: SpringLaw, springs: Layout, steps: Steps, closed: FloatArray, gue
         NotConvergedError: If no depth is found for a force.
     """
     count, q = steps.time.size - 1, steps.nodes.size
-    is_known = never_larger(law, steps.load)[1:].reshape(count, q).all(axis=1)
-    is_free = np.logical_and(~is_known, steps.force[1:] <= 0)
+    is_known = np.asarray(never_larger(law, steps.load)[1:].reshape(count, q).all(axis=1))
+    is_free = np.asarray(~is_known & (steps.force[1:] <= 0))
     bed = SpringBed.undeformed(law, springs.g, float(closed[0]))
     depth, front, polynomials, load_error = closed.copy(), np.full(closed.size, -1.0), np.zeros((count, q + 1)), 0.0
     for k, span in enumerate(np.diff(steps.time).tolist()):
@@ -178,7 +184,8 @@ def march(law: SpringLaw, springs: Layout, steps: Steps, closed: FloatArray, gue
             depth[nodes], bed, passage, error = balance.solved(start + guess[nodes] - guess[k * q])
             load_error = max(load_error, error)
         polynomials[k], front[nodes] = steps.polynomials(start, depth[None, nodes])[0], _fronts(springs.radius, passage)
-    return March(Path(steps.time, depth[::q], polynomials, is_free), depth, front, load_error)
+    path = Path(steps.time, depth[::q], polynomials, is_free)
+    return March(path, steps.instants, depth, front, load_error)
 
 
 class Balance(NamedTuple):
@@ -209,37 +216,31 @@ class Balance(NamedTuple):
         return bed, passage, passage.surface @ self.stiffness - self.load
 
     def solved(self, depth: FloatArray) -> tuple[FloatArray, SpringBed, Passage, float]:
-        """Depths [m] at the nodes by damped Newton steps from a guess, springs after and at them, error of F_e."""
+        """Depths [m] at the nodes from a guess, springs after and at them, and the error of F_e over the largest.
+
+        Broyden's method: the sum of displacements changes at first by the stiffness of the springs in contact.
+        """
         bed, passage, errors = self.after(depth)
-        halvings, correction = 0, self._correction(errors, passage.touching)
+        stiffness = passage.touching @ self.stiffness
+        least = max(_LEAST * self.stiffness.sum(), stiffness.max() / 4)
+        inverse, halvings = np.diag(1 / np.maximum(stiffness, least)), 0
+        step = -inverse @ errors
         for _ in range(_MOST_STEPS):
             if np.abs(errors).max() <= _TOLERANCE * self.scale or halvings > _MOST_HALVINGS:
                 break
-            trial = self.after(depth + correction)
+            trial = self.after(depth + step)
+            change = inverse @ (trial[2] - errors)
+            if np.abs(step @ change) > 1e-3 * (step @ step):
+                inverse += np.outer(step - change, step @ inverse) / (step @ change)
             if np.abs(trial[2]).max() < np.abs(errors).max():
-                depth, (bed, passage, errors) = depth + correction, trial
-                halvings, correction = 0, self._correction(errors, passage.touching)
+                depth, (bed, passage, errors) = depth + step, trial
+                halvings, step = 0, -inverse @ errors
             else:
-                halvings, correction = halvings + 1, correction / 2
+                halvings, step = halvings + 1, step / 2
         error = float(np.abs(errors).max()) / self.scale
         if not error <= _ACCEPTABLE:
             raise NotConvergedError("no depth carries the prescribed force", {"force": error})
         return depth, bed, passage, error
-
-    def _correction(self, errors: FloatArray, touching: BoolArray) -> FloatArray:
-        """Change of depths at the nodes that changes F_e there by -errors, to first order.
-
-        Without dashpots a spring that loses contact no longer counts; with them dF_e = int K(t) dv(t) dt.
-        """
-        stiffness = np.append(self.bed.touching @ self.stiffness, touching @ self.stiffness)
-        stiffness = np.maximum(stiffness, max(_LEAST * self.stiffness.sum(), stiffness.max() / 4))
-        if not self.bed.law.viscosity:
-            return np.asarray(-errors / stiffness[1:])
-        nodes, order = np.append(0.0, self.steps.nodes), np.arange(1, errors.size + 2)
-        powers = np.vander(nodes, nodes.size, increasing=True)
-        slopes = powers[:, :-1] * order[:-1] @ np.linalg.inv(self.steps.powers)
-        integrals = (nodes[1:, None] * powers[1:] / order) @ np.linalg.inv(powers)
-        return -np.linalg.solve(integrals @ (stiffness[:, None] * slopes), errors)
 
 
 def _fronts(radius: FloatArray, passage: Passage) -> FloatArray:

@@ -120,13 +120,14 @@ class Problem(NamedTuple):
         depth[some] = self.springs.depth_of(load[some], self.springs.at(radius))
         return depth
 
-    def refuse_falls(self, radius: float) -> None:
-        """Refuse contacts up to a radius [m] within which g falls: springs there would be touched from outside."""
+    def refuse_circle(self, radius: float, depth: float = 0.0) -> None:
+        """Refuse an elastic contact of a radius [m], under a flat punch at a depth [m], that is no disc.
+
+        Raises:
+            UnsupportedSceneError: Also if g falls within it, so that springs would be touched from outside.
+        """
         if self.punch is None:
             self._search.refuse_falls(radius)
-
-    def refuse_circle(self, radius: float, depth: float = 0.0) -> None:
-        """Refuse an elastic contact of a radius [m], under a flat punch at a depth [m], that is no disc."""
         a, values = np.array([radius]), self.springs.at([radius])
         refuse_inadmissible(self.scene, self.springs, self.springs.state(a, values, np.maximum(values.g, depth)))
 

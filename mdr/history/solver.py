@@ -8,7 +8,6 @@ Errors: the same history on finer springs with more of them, and with other step
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import NamedTuple
 
 import numpy as np
 
@@ -72,7 +71,6 @@ def solve_history(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
         else:
             answer, other = _by_force(problem, loading, _substeps(settings))
         if (widest := float(answer.radius.max())) > 0:
-            problem.refuse_falls(widest)
             problem.refuse_circle(widest, 0.0 if problem.punch is None else float(answer.path.depth.max()))
     errors = _errors(springs, answer, other)
     errors["indentation_depth" if isinstance(loading, DepthHistory) else "normal_force"][:] = 0.0
@@ -148,57 +146,42 @@ def _by_depth(problem: Problem, loading: DepthHistory) -> list[Response]:
 
 def _by_force(problem: Problem, loading: ForceHistory, substeps: int) -> list[Response]:
     """The answer to forces that are balanced at the nodes of substeps, and before it the same on coarser ones."""
-    answers: list[Response] = []
-    before: Marched | None = None
+    answers, law = [], problem.law
+    is_elastic, before = not law.times.size and not law.viscosity, None
     for resolved, degree in ((problem, _DEGREES[1]), (problem.finer, _DEGREES[0])):
-        steps = steps_of(problem.law, loading, substeps, degree)
+        steps = steps_of(law, loading, substeps, degree)
         places, given = degree * steps.given, steps.given
-        closed, known = resolved.depths(steps.load), never_larger(problem.law, steps.load)[places]
-        depth, front = closed[places], np.where(loading.force > 0, closed[places], -1.0)
+        closed, known = resolved.depths(steps.load), never_larger(law, steps.load)[places]
+        depth, front, size, change = closed[places], closed[places], 1, 0.0
         path = Path(steps.time, closed[::degree], steps.polynomials(closed[:-1:degree], closed[1:].reshape(-1, degree)))
-        if problem.law.is_elastic or problem.punch is not None or known.all():
-            answers.append(Response(path, given, depth, loading.force, resolved.radii(front), known | True, 1))
-            continue
-        before = _marched(resolved, steps, closed, before)
-        depth, path = before.march.depth[places], before.march.path
-        some = np.flatnonzero(~known & (loading.force > 0))
-        front[some] = fronts(problem.law, path, given[some], float(closed.max()))
-        radius = resolved.radii(front)
-        answers.append(Response(path, given, depth, loading.force, radius, known, before.springs, before.depth_error))
+        if is_elastic or problem.punch is not None:
+            known = np.ones(given.size, dtype=np.bool_)
+        elif not known.all():
+            before, size, change = _marched(resolved, steps, closed, before)
+            depth, path = before.depth[places], before.path
+            some = np.flatnonzero(~known & (loading.force > 0))
+            front[some] = fronts(law, path, given[some], float(closed.max()))
+        radius = resolved.radii(np.where(loading.force > 0, front, -1.0))
+        answers.append(Response(path, given, depth, loading.force, radius, known, size, change))
     return answers[::-1]
 
 
-class Marched(NamedTuple):
-    """Marches whose panels have converged.
+def _marched(problem: Problem, steps: Steps, closed: FloatArray, before: March | None) -> tuple[March, int, float]:
+    """March on panels that end at the fronts of the march before, number of springs, and error of a depth [m].
 
-    Attributes:
-        march: The last one.
-        steps: Its substeps.
-        ends: Radii [m] at which panels end, from its fronts.
-        springs: Number of its springs.
-        depth_error: Last change of a depth, and error of the balance [m].
+    The first panels end at the fronts of a march at another resolution, if there is one.
     """
-
-    march: March
-    steps: Steps
-    ends: FloatArray
-    springs: int
-    depth_error: float
-
-
-def _marched(problem: Problem, steps: Steps, closed: FloatArray, before: Marched | None) -> Marched:
-    """Marches on panels that end at the fronts of the march before, at first those of another resolution."""
     deepest = float(closed.max())
-    widest = float(problem.radii(np.array([deepest]))[0])
+    widest = problem.radii(np.array([deepest]))
     ends, guess = widest * np.linspace(0, 1, _FIRST_PANELS + 1)[1:], closed
     if before is not None:
-        ends, guess = before.ends, np.interp(steps.instants, before.steps.instants, before.march.depth)
+        ends, guess = before.panel_ends(problem.law), np.interp(steps.instants, before.instants, before.depth)
     for _ in range(_MOST_MARCHES):
-        springs = layout(problem.springs, ends[ends > problem.springs.tip.flat], _NODES)
+        ends = np.append(ends[(ends > problem.springs.tip.flat) & (ends < widest)], widest)
+        springs = layout(problem.springs, ends, _NODES)
         stiff = springs._replace(weight=2 * problem.springs.modulus * springs.weight)
         last = march(problem.law, stiff, steps, closed, guess)
-        change, guess = float(np.abs(last.depth - guess).max()), last.depth
-        ends = np.append(panel_ends(problem.law, steps.instants, last.front), widest)
+        change, guess, ends = float(np.abs(last.depth - guess).max()), last.depth, last.panel_ends(problem.law)
         if change < _STAYS * deepest:
             break
-    return Marched(last, steps, ends, springs.g.size, change + last.load_error * deepest)
+    return last, springs.g.size, change + last.load_error * deepest

@@ -18,9 +18,8 @@ they stay together. Hence springs touch up to one front, f decreases outwards, a
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -45,61 +44,35 @@ _FAST, _MOST_TERMS = 1.0, 24
 _AT_END = np.ones(1)
 
 
-@dataclass(frozen=True)
-class Motion:
-    """Motion of the indenter in one interval.
+class Motion(NamedTuple):
+    """Polynomials in the share of one interval, by coefficients of rising powers.
 
     Attributes:
-        law: Law of the springs.
-        coefficients: Coefficients of the depth as a polynomial in the share of the interval [m], shape (p + 1,).
-        span: Duration of the interval [s].
-        rounding: Rounding error of a force or a gap over its largest terms.
+        depth: Depth w of the indenter [m], shape (p + 1,).
+        strains: Strains P_j [m] towards which e_j decay in contact, shape (n, m).
+        force: Force of a spring g = 0 with these strains [m], shape (n,).
     """
 
-    law: SpringLaw
-    coefficients: FloatArray
-    span: float
-    rounding: float = _ROUNDING
+    depth: FloatArray
+    strains: FloatArray
+    force: FloatArray
 
-    def depth(self, s: FloatArray) -> FloatArray:
-        """Depth [m] at shares of the interval, any shape."""
-        return _polynomial(self.coefficients, s)
-
-    @cached_property
-    def _rise(self) -> FloatArray:
-        """Coefficients of w', the derivative of the depth by the share of the interval [m], shape (p,)."""
-        return self.coefficients[1:] * np.arange(1, self.coefficients.size)
-
-    @cached_property
-    def _strains(self) -> FloatArray:
-        """Coefficients of polynomials P_j with P_j' = w' - x_j P_j, x_j = span/tau_j, shape (n, m)."""
-        rise, x = self._rise, self.span / self.law.times
-        exact = np.zeros((_MOST_TERMS, x.size))
-        for n in range(rise.size)[::-1]:
+    @classmethod
+    def of(cls, law: SpringLaw, depth: FloatArray, span: float) -> Motion:
+        """Motion in an interval of duration `span` [s]: P_j' = w' - x_j P_j, x_j = span/tau_j."""
+        x, rise = span / law.times, np.zeros(_MOST_TERMS)
+        rise[: depth.size - 1] = depth[1:] * np.arange(1, depth.size)
+        (exact, series), slow = np.zeros((2, _MOST_TERMS, x.size)), np.where(x > _FAST, 0.0, x)
+        for n in range(depth.size - 1)[::-1]:
             exact[n] = (rise[n] - (n + 1) * exact[n + 1]) / x
-        # Next to x = 0 coefficients cancel. There the power series converges, which is zero at first.
-        series, slow = np.zeros((_MOST_TERMS, x.size)), np.where(x > _FAST, 0.0, x)
+        # Next to x = 0 these coefficients cancel. There the power series converges, which is zero at first.
         for n in range(_MOST_TERMS - 1):
-            series[n + 1] = ((rise[n] if n < rise.size else 0.0) - slow * series[n]) / (n + 1)
-        polynomials = np.where(x > _FAST, exact, series)
-        return polynomials[: 1 + np.flatnonzero(np.append(1.0, np.abs(polynomials[1:]).max(axis=1, initial=0.0)))[-1]]
-
-    def strains(self, s: FloatArray) -> FloatArray:
-        """Strains P_j [m] at shares of the interval, shape (m, ..): e_j decay towards them in contact."""
-        return _polynomial(self._strains.reshape(*self._strains.shape, *(1,) * s.ndim), s)
-
-    @cached_property
-    def _force(self) -> FloatArray:
-        """Coefficients of the force of a spring g = 0 with strains P_j [m]."""
-        force = np.zeros(max(self.coefficients.size, len(self._strains)))
-        force[: self.coefficients.size] += self.law.long_term * self.coefficients
-        force[: self._rise.size] += self.law.viscosity / self.span * self._rise
-        force[: len(self._strains)] += self._strains @ self.law.weights
-        return force
-
-    def force(self, s: FloatArray) -> FloatArray:
-        """Force C(s) [m] of a spring g = 0 with strains P_j at shares of the interval, any shape."""
-        return _polynomial(self._force, s)
+            series[n + 1] = (rise[n] - slow * series[n]) / (n + 1)
+        strains = np.where(x > _FAST, exact, series)
+        force = strains @ law.weights + law.viscosity / span * rise
+        force[: depth.size] += law.long_term * depth
+        last = np.flatnonzero(np.append(True, np.abs(np.column_stack([strains, force])[1:]).max(axis=1)))[-1]
+        return cls(depth, strains[: last + 1], force[: last + 1])
 
 
 def _polynomial(coefficients: FloatArray, s: FloatArray) -> FloatArray:
@@ -119,7 +92,7 @@ class Course(NamedTuple):
         amplitudes: c_k, shape (k, n).
         rates: r_k times the interval, shape (k,).
         start: theta of each spring, or of all, shape (n,) or (1,).
-        shared: Function that computes C at shares.
+        shared: Coefficients of C.
         rounding: Rounding errors of the values, shape (n,).
     """
 
@@ -127,7 +100,7 @@ class Course(NamedTuple):
     amplitudes: FloatArray
     rates: FloatArray
     start: FloatArray
-    shared: Callable[[FloatArray], FloatArray]
+    shared: FloatArray
     rounding: FloatArray
 
     def among(self, some: NDArray[np.intp] | BoolArray) -> Course:
@@ -145,7 +118,7 @@ class Course(NamedTuple):
 
     def values(self, s: FloatArray) -> FloatArray:
         """Values at shares of shape (q, n) or (q, 1); shape (q, n)."""
-        return np.asarray(self.constant + self.shared(s) + self.fading(s).sum(axis=0))
+        return np.asarray(self.constant + _polynomial(self.shared, s) + self.fading(s).sum(axis=0))
 
 
 def first_fall(course: Course) -> FloatArray:
@@ -156,7 +129,9 @@ def first_fall(course: Course) -> FloatArray:
     shares = np.unique(np.concatenate([[0.0], 0.5 ** np.arange(halves), np.arange(1, _PARTS) / _PARTS]))
     s = course.start + (1 - course.start) * shares[:, None]
     # Exponentials fade, so that no value is less than all terms at their least.
-    least = course.fading(s[[0, -1]]).min(axis=1).sum(axis=0) + course.constant + course.shared(s).min(axis=0)
+    least = (
+        course.fading(s[[0, -1]]).min(axis=1).sum(axis=0) + course.constant + _polynomial(course.shared, s).min(axis=0)
+    )
     some = np.flatnonzero(least <= course.rounding)
     course, s = course.among(some), s[:, some] if s.shape[1] > 1 else s
     falls = course.values(s) < -course.rounding
@@ -268,17 +243,18 @@ class SpringBed:
         Raises:
             NotConvergedError: If a spring is touched and released without end.
         """
-        motion, shape = Motion(self.law, coefficients, span), (nodes.size, self.g.size)
+        motion, shape = Motion.of(self.law, coefficients, span), (nodes.size, self.g.size)
         passage = Passage(np.zeros(shape), np.zeros(shape, dtype=np.bool_), np.zeros(shape))
         events, moving = np.zeros(self.g.size), np.arange(self.g.size)
         for number in range(_MOST_EVENTS):
-            # A spring that is touched and released at one instant is so by rounding.
-            motion = replace(motion, rounding=_ROUNDING * 2.0**number)
             pressed = self.touching[moving]
             for group in (moving[pressed], moving[~pressed]):
                 if group.size:
                     start = events[group] if number else np.zeros(1)
-                    events[group] = self._stretch(group, self._course(group, motion, start), motion, nodes, passage)
+                    course = self._course(group, motion, span, start)
+                    # A spring that is touched and released at one instant is so by rounding.
+                    course = course._replace(rounding=course.rounding * 2.0**number)
+                    events[group] = self._stretch(group, course, motion, nodes, passage)
             moving = moving[events[moving] < np.inf]
             if not moving.size:
                 return passage._replace(edge=np.where(passage.touching, 1, -1) * np.abs(passage.edge))
@@ -293,41 +269,41 @@ class SpringBed:
         """Advance springs i, all in contact or all free, to their next event or the end; shares of events, or inf."""
         is_pressed, event = bool(self.touching[i[0]]), first_fall(course)
         s = np.maximum(nodes[:, None], course.start)
-        fading = course.fading(s).sum(axis=0)
-        surface = motion.depth(s) - self.g[i] if is_pressed else fading
-        is_later = nodes[:, None] >= course.start
+        values, is_later = course.values(s), nodes[:, None] >= course.start
+        surface = _polynomial(motion.depth, s) - self.g[i] if is_pressed else course.fading(s).sum(axis=0)
         passage.surface[:, i] = np.where(is_later, surface, passage.surface[:, i])
         passage.touching[:, i] = np.where(is_later, is_pressed, passage.touching[:, i])
         is_continued = (nodes[:, None] > event) | ~course.start.any()
-        passage.edge[:, i] = np.where(is_continued, course.constant + course.shared(s) + fading, passage.edge[:, i])
+        passage.edge[:, i] = np.where(is_continued, values, passage.edge[:, i])
         ends = event < np.inf
         for some, end in ((~ends, _AT_END), (ends, event[ends])):
             if some.any():
                 self._move(i[some], motion, course.among(some), end)
         return event
 
-    def _course(self, i: NDArray[np.intp], motion: Motion, start: FloatArray) -> Course:
+    def _course(self, i: NDArray[np.intp], motion: Motion, span: float, start: FloatArray) -> Course:
         """Forces of springs i in contact, or gaps of free ones, from their states at shares `start`."""
         g, law = self.g[i], self.law
         if self.touching[i[0]]:
             constant, rates, shared = -law.long_term * g, 1 / law.times, motion.force
-            fading = law.weights[:, None] * (self.strains[:, i] - motion.strains(start))
+            strains = self.strains[:, i] - _polynomial(motion.strains[..., None], start)
+            fading = law.weights[:, None] * strains
         else:
-            constant, rates, shared = g, law.modes.rates, lambda s: -motion.depth(s)
+            constant, rates, shared = g, law.modes.rates, -motion.depth
             fading = law.modes.amplitudes(self.surface[i], self.strains[:, i])
-        rounding = motion.rounding * (g + np.abs(motion.coefficients).sum() + np.abs(fading).sum(axis=0))
-        return Course(constant, fading, motion.span * rates, start, shared, rounding)
+        rounding = _ROUNDING * (g + np.abs(motion.depth).sum() + np.abs(fading).sum(axis=0))
+        return Course(constant, fading, span * rates, start, shared, rounding)
 
     def _move(self, i: NDArray[np.intp], motion: Motion, course: Course, end: FloatArray) -> None:
         """Set springs i to their state at shares `end`, at which they are touched or released unless these are 1."""
         fading = course.fading(end[None])[:, 0]
         is_pressed, is_event = bool(self.touching[i[0]]), end is not _AT_END
         if is_pressed:
-            self.strains[:, i] = motion.strains(end) + fading / self.law.weights[:, None]
+            self.strains[:, i] = _polynomial(motion.strains[..., None], end) + fading / self.law.weights[:, None]
         else:
             self.surface[i], self.strains[:, i] = fading.sum(axis=0), self.law.modes.strains @ fading
         if is_pressed or is_event:
-            self.surface[i] = motion.depth(end) - self.g[i]
+            self.surface[i] = _polynomial(motion.depth, end) - self.g[i]
         self.touching[i] = is_pressed != is_event
 
     def forces(self, speed: float) -> FloatArray:

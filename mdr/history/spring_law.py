@@ -79,11 +79,6 @@ class SpringLaw:
         weights, times = relaxation.moduli[::-1] / modulus, relaxation.times[::-1]
         return cls(relaxation.long_term_modulus / modulus, relaxation.viscosity / modulus, weights, times)
 
-    @property
-    def is_elastic(self) -> bool:
-        """Whether forces depend on the present displacement only."""
-        return self.viscosity == 0.0 and not self.weights.size
-
     def free(self, surface: FloatArray, strains: FloatArray, t: float) -> tuple[FloatArray, FloatArray]:
         """u, shape (n,), and e_j, shape (m, n), of free springs after a time t [s]."""
         amplitudes = self.modes.amplitudes(surface, strains) * np.exp(-self.modes.rates * t)[:, None]
@@ -139,8 +134,6 @@ class SpringLaw:
             time: Instants [s].
             force: F, linear between them; a force at the first instant is applied at once.
         """
-        if self.is_elastic:
-            return force
         span, rates = np.diff(time)[:, None], self.modes.rates
         z = rates * span
         # 1F1(1, 2, -z) = (1 - exp(-z))/z and 1F1(1, 3, -z)/2 = (z - 1 + exp(-z))/z^2.
