@@ -2,7 +2,7 @@
 
 Forces f of a spring and displacements u of its end obey u = J * df with the compliance J, in contact or free, so their
 sums do: the springs' displacements, each times its stiffness, add up to F_e = J * dF, a sum of exponentials while F
-moves linearly. No end of a spring stands above the indenter, and a free one only creeps back. So where F_e has never
+is linear in time. No end of a spring stands above the indenter, and a free one only creeps back. So where F_e has never
 been larger all springs ever touched are touched, and F_e is the elastic force of the depth (Lee and Radok 1960,
 J. Appl. Mech. 27, 438; Ting 1966, J. Appl. Mech. 33, 845).
 
@@ -11,15 +11,12 @@ Chebyshev's points t_i follow from the sums of displacements at these instants,
 
     2 E* int u(x, t_i) y_1^2(x) dx = F_e(t_i),   u = delta - g in contact.
 
-Springs in contact take part with their depth alone, whatever the path to it. Panels of springs end at the fronts of the
-last march, so that these sums are Gauss rules, and the march is repeated until the depth converges: the sum is
-stationary in the fronts.
+Panels of springs end at the fronts of the last march, so that these sums are Gauss rules, and the march is repeated
+until the depth converges: the sum is stationary in the fronts. Without force the indenter rests on the spring g = 0.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -27,9 +24,9 @@ from numpy.typing import NDArray
 
 from bem.numerics import EPS
 from contact import ForceHistory, NotConvergedError
-from contact.records.validation import FloatArray
-from mdr.history.fronts import Layout
-from mdr.history.spring_bed import Path, SpringBed, followed
+from contact.records.validation import BoolArray, FloatArray
+from mdr.history.fronts import Layout, panel_ends
+from mdr.history.spring_bed import Passage, Path, SpringBed
 from mdr.history.spring_law import SpringLaw
 
 # Samples of F_e in all intervals of a history and in each, and refinements by 16 of its turns. An error of a turn of
@@ -42,8 +39,6 @@ _MOST_STEPS, _MOST_HALVINGS = 60, 6
 # Relative tolerance of F_e, and the largest error that is accepted, which is stated. Before a contact ends free springs
 # alone may exceed F_e by the accumulated errors.
 _TOLERANCE, _ACCEPTABLE = 1e-13, 1e-5
-# Springs among which the lowest is selected, and number of refinements, each by a factor of twenty.
-_AMONG, _ROUNDS = 41, 4
 # Least stiffness for corrections, over that of all springs, in substeps in which hardly any touch.
 _LEAST = 1e-3
 # Ratio of neighbouring substeps while a force decreases to zero; the second half of the interval has twice as many as
@@ -52,18 +47,15 @@ _SHORTER = 0.35
 
 
 class Steps(NamedTuple):
-    """Substeps of a force history.
+    """Substeps of a force history, n of them with q nodes each.
 
     Attributes:
         time: Ends of substeps [s], shape (n + 1,).
         force: F [N] at `time`.
-        given: Indices of the instants of the history.
+        given: Indices in `time` of the instants of the history.
         nodes: Shares of a substep at which depths are determined, shape (q,).
-        instants: Nodes of all substeps [s], shape (n, q).
-        load: F_e [N] at `instants`, shape (n, q).
-        start: F_e [N] at the first instant.
-        from_rises: Matrix from depth increases at the nodes to coefficients of a polynomial in the share of a substep,
-            without the constant, shape (q, q).
+        instants: First instant and nodes of all substeps [s], shape (1 + n q,).
+        load: F_e [N] at `instants`.
     """
 
     time: FloatArray
@@ -72,13 +64,15 @@ class Steps(NamedTuple):
     nodes: FloatArray
     instants: FloatArray
     load: FloatArray
-    start: float
-    from_rises: FloatArray
 
-    def ways(self, depth: FloatArray) -> FloatArray:
-        """Coefficients of the depth in substeps [m], from depths at the first instant and all nodes."""
-        start, inner = depth[:: self.nodes.size][:-1, None], depth[1:].reshape(-1, self.nodes.size)
-        return np.column_stack([start, (inner - start) @ self.from_rises.T])
+    @property
+    def powers(self) -> FloatArray:
+        """Powers 1 to q of the nodes, shape (q, q)."""
+        return np.vander(self.nodes, self.nodes.size + 1, increasing=True)[:, 1:]
+
+    def polynomials(self, start: FloatArray, depth: FloatArray) -> FloatArray:
+        """Coefficients, shape (n, q + 1), from depths [m] at starts, shape (n,), and at nodes, shape (n, q)."""
+        return np.column_stack([start, np.linalg.solve(self.powers, (depth - start[:, None]).T).T])
 
 
 def steps_of(law: SpringLaw, loading: ForceHistory, substeps: int, degree: int) -> Steps:
@@ -86,37 +80,32 @@ def steps_of(law: SpringLaw, loading: ForceHistory, substeps: int, degree: int) 
 
     Args:
         law: Law of the springs.
-        loading: The force.
+        loading: Forces in time.
         substeps: Their number. Half are distributed by duration, half equally: short intervals may be steep.
         degree: Degree of the depth in each substep.
     """
     ends = np.sort(np.append(loading.time, turns(law, loading)))
     force = np.interp(ends, loading.time, loading.force)
-    load = law.elastic_force(ends, force)
-    durations = np.diff(ends)
-    share = (durations / durations.sum() + 1 / durations.size) / 2
+    load, durations = law.elastic_force(ends, force), np.diff(ends)
+    counts = np.ceil(substeps * (durations / durations.sum() + 1 / durations.size) / 2).astype(int)
     time = [ends[:1]]
-    for k, count in enumerate(np.ceil(substeps * share).astype(int).tolist()):
-        s = np.arange(1, count + 1) / count
-        way = s**2 if min(load[k], force[k]) > 0 else s**4
-        if force[k + 1] <= 0:
-            ends_at_zero = np.concatenate([way / 2, 1 - 0.5 * _SHORTER ** np.arange(1, 2 * degree), [1.0]])
-            way = ends_at_zero if force[k] > 0 else np.ones(1)
-        time.append(np.append(ends[k] + durations[k] * way[:-1], ends[k + 1]))
+    for k, count in enumerate(counts.tolist()):
+        share = (np.arange(1, count + 1) / count) ** (2 if min(load[k], force[k]) > 0 else 4)
+        if force[k + 1] <= 0 < force[k]:
+            share = np.concatenate([share / 2, 1 - 0.5 * _SHORTER ** np.arange(1, 2 * degree), [1.0]])
+        elif force[k + 1] <= 0:
+            share = np.ones(1)
+        time.append(np.append(ends[k] + durations[k] * share[:-1], ends[k + 1]))
     every = np.concatenate(time)
     nodes = (1 - np.cos(np.pi * np.arange(1, degree + 1) / degree)) / 2
-    instants = every[:-1, None] + np.diff(every)[:, None] * nodes
-    all_instants = np.append(every[0], instants)
-    found = law.elastic_force(all_instants, np.interp(all_instants, loading.time, loading.force))
+    instants = np.append(every[0], every[:-1, None] + np.diff(every)[:, None] * nodes)
     return Steps(
         time=every,
         force=np.interp(every, loading.time, loading.force),
         given=np.searchsorted(every, loading.time),
         nodes=nodes,
         instants=instants,
-        load=found[1:].reshape(-1, degree),
-        start=float(found[0]),
-        from_rises=np.asarray(np.linalg.inv(np.vander(nodes, degree + 1, increasing=True)[:, 1:])),
+        load=law.elastic_force(instants, np.interp(instants, loading.time, loading.force)),
     )
 
 
@@ -126,162 +115,139 @@ def turns(law: SpringLaw, loading: ForceHistory) -> FloatArray:
     grid = np.unique(np.linspace(loading.time[:-1], loading.time[1:], count))
     turn = np.zeros(0)
     for _ in range(_ZOOMS):
-        closed = never_larger(law, law.elastic_force(grid, np.interp(grid, loading.time, loading.force)))
-        change = np.flatnonzero(closed[1:] != closed[:-1])
-        turn = np.where(closed[change], grid[change], grid[change + 1])
+        is_largest = never_larger(law, law.elastic_force(grid, np.interp(grid, loading.time, loading.force)))
+        change = np.flatnonzero(is_largest[1:] != is_largest[:-1])
+        turn = np.where(is_largest[change], grid[change], grid[change + 1])
         grid = np.unique(np.append(grid, np.linspace(grid[change], grid[change + 1], 17)))
     interval = np.clip(np.searchsorted(loading.time, turn) - 1, 0, loading.time.size - 2)
     share = (turn - loading.time[interval]) / np.diff(loading.time)[interval]
     return np.unique(turn[np.minimum(share, 1 - share) > _APART])
 
 
-def never_larger(law: SpringLaw, load: FloatArray) -> NDArray[np.bool_]:
+def never_larger(law: SpringLaw, load: FloatArray) -> BoolArray:
     """Whether F_e [N] is its largest value so far, within rounding, at each instant, shape (n,)."""
     rounding = EPS * (load.size + 4.0 * (law.times.size + 1))
     return np.asarray(load >= np.maximum.accumulate(load) * (1 - rounding))
 
 
-@dataclass
-class March:
-    """Depths under a force on one bed of springs.
+class March(NamedTuple):
+    """Depths under a force on one layout of springs.
 
     Attributes:
-        law: Law of the springs.
-        layout: Positions of the springs.
-        weight: Stiffness of each spring [N/m], shape (n,).
-        steps: Substeps.
-        closed: Depths [m] of the elastic layer under F_e at the first instant and all nodes, shape (1 + n q,).
-        known: Whether `closed` is the depth in the whole substep, shape (n,).
-        before: First guess of the depths at nodes, e.g. of an earlier march, shape (n, q).
-        missed: Largest error of F_e over the largest F_e.
-        depth: Depths at nodes [m], shape (n, q).
-        fronts: Radii [m] at which contact ends at all nodes, negative where nothing touches, shape (n, q).
+        path: Depths between all ends of substeps.
+        instants: Those of `Steps` [s], shape (1 + n q,).
+        depth: Depths there [m].
+        front: Radii [m] at which contact ends there, -1 where nothing touches.
+        load_error: Largest error of F_e over the largest F_e.
     """
 
-    law: SpringLaw
-    layout: Layout
-    weight: FloatArray
-    steps: Steps
-    closed: FloatArray
-    known: NDArray[np.bool_]
-    before: FloatArray
-    missed: float = 0.0
-    depth: FloatArray = field(init=False)
-    fronts: FloatArray = field(init=False)
+    path: Path
+    instants: FloatArray
+    depth: FloatArray
+    front: FloatArray
+    load_error: float
 
-    def path(self) -> Path:
-        """Depths at all ends of substeps.
-
-        Raises:
-            NotConvergedError: If no depth is found for a force.
-        """
-        (count, degree), steps = self.steps.load.shape, self.steps
-        bed = SpringBed.undeformed(self.law, self.layout.g, float(self.closed[0]))
-        ways, depth = np.zeros((count, degree + 1)), np.full(count + 1, self.closed[0])
-        free = ~self.known & (steps.force[1:] <= 0)
-        self.depth = np.zeros((count, degree))
-        touched, passed = np.zeros((count, degree), dtype=np.bool_), [np.zeros((2, 1))]
-        for k, span in enumerate(np.diff(steps.time).tolist()):
-            if free[k]:
-                bed.release(span)
-                touching = np.zeros((degree, bed.g.size), dtype=np.bool_)
-            elif self.known[k]:
-                ways[k] = self._way(float(depth[k]), self.closed[1 + k * degree : 1 + (k + 1) * degree])
-                _, touching = bed.advance(ways[k], span, steps.nodes)
-            else:
-                ways[k], bed, touching = self._met(bed, float(depth[k]), k, span)
-            pressed = steps.force[k + 1] > 0 or self.known[k]
-            depth[k + 1] = ways[k].sum() if pressed else np.min(bed.surface + bed.g)
-            self.depth[k] = np.vander(steps.nodes, degree + 1, increasing=True) @ ways[k] if pressed else depth[k + 1]
-            touched[k] = touching.any(axis=1)
-            for share, spring in bed.events:
-                passed.append(np.stack([steps.time[k] + span * share, self.layout.radius[spring]]))
-        time, radius = np.concatenate(passed, axis=1)
-        order = np.argsort(time, kind="stable")
-        self.fronts = np.where(touched, _fronts(time[order], radius[order], steps.instants), -1.0)
-        return Path(steps.time, depth, ways, free)
-
-    @cached_property
-    def _dashpots(self) -> tuple[FloatArray, FloatArray]:
-        """Matrices from values at start and nodes to integrals up to the nodes, and from depth increases to slopes."""
-        nodes, order = np.append(0.0, self.steps.nodes), np.arange(1, self.steps.nodes.size + 2)
-        powers = np.vander(nodes, nodes.size, increasing=True)
-        slopes = powers[:, :-1] * order[:-1] @ self.steps.from_rises
-        return (nodes[1:, None] * powers[1:] / order) @ np.linalg.inv(powers), slopes
-
-    def _correction(self, missed: FloatArray, touching: NDArray[np.bool_], before: SpringBed) -> FloatArray:
-        """Change of depths at the nodes that changes F_e there by -missed, to first order.
-
-        Without dashpots a spring that loses contact no longer counts; with them dF_e = int K(t) dv(t) dt.
-        """
-        stiffness = np.append(before.touching @ self.weight, touching @ self.weight)
-        stiffness = np.maximum(stiffness, max(_LEAST * self.weight.sum(), stiffness.max() / 4))
-        if not self.law.viscosity:
-            return np.asarray(-missed / stiffness[1:])
-        integral, slope = self._dashpots
-        return -np.linalg.solve(integral @ (stiffness[:, None] * slope), missed)
-
-    def _way(self, start: float, depth: FloatArray) -> FloatArray:
-        """Coefficients of the polynomial through a depth at the start and depths at the nodes."""
-        return np.append(start, self.steps.from_rises @ (depth - start))
-
-    def _met(
-        self, before: SpringBed, start: float, k: int, span: float
-    ) -> tuple[FloatArray, SpringBed, NDArray[np.bool_]]:
-        """Solve substep k for the depth at which the force is F_e at its nodes, by damped Newton steps.
-
-        Returns the coefficients of the depth, the bed at the end, and which springs touch at the nodes.
-        """
-        steps = self.steps
-        target, largest = steps.load[k], float(steps.load.max())
-        y = start + self.before[k] - (self.before[k - 1, -1] if k else self.closed[0])
-        halvings, best, move = 0, (np.inf, np.zeros(0), before, np.zeros(0, dtype=np.bool_)), np.zeros(y.size)
-        for _ in range(_MOST_STEPS):
-            bed, way = before.copy(), self._way(start, y + move)
-            surface, touching = bed.advance(way, span, steps.nodes)
-            load_error = surface @ self.weight - target
-            relative = float(np.abs(load_error).max()) / largest
-            if relative < best[0]:
-                best, y = (relative, way, bed, touching), y + move
-                move = self._correction(load_error, touching, before)
-                halvings = 0
-            else:
-                move, halvings = move / 2, halvings + 1
-            if relative <= _TOLERANCE or halvings > _MOST_HALVINGS:
-                break
-        if best[0] > _ACCEPTABLE:
-            raise NotConvergedError("no depth carries the prescribed force", {"force": best[0]})
-        self.missed = max(self.missed, best[0])
-        return best[1], best[2], best[3]
+    def panel_ends(self, law: SpringLaw) -> FloatArray:
+        """Radii [m] at which panels of the next march end."""
+        return panel_ends(law, self.instants, self.front)
 
 
-def _fronts(time: FloatArray, radius: FloatArray, instants: FloatArray) -> FloatArray:
-    """Front [m] at instants [s], linear between the instants when springs at given radii [m] touch or lose contact.
-
-    A front that turns passes the same spring twice. In between it moves with its speed before and after.
-    """
-    apart = time[-1] + instants.max()
-    time, radius = np.concatenate([[-2 * apart, -apart], time, [apart, 2 * apart]]), np.pad(radius, 2, mode="edge")
-    i = np.clip(np.searchsorted(time, instants) - 1, 1, time.size - 3)
-    with np.errstate(all="ignore"):  # springs that touch at one instant have an infinite pace, which times zero is zero
-        pace = np.nan_to_num(np.diff(radius) / np.diff(time), posinf=1e150, neginf=-1e150)
-    turns = (pace[i] == 0) & (pace[i - 1] * pace[i + 1] < 0)
-    beyond = np.minimum(np.abs(pace[i - 1]) * (instants - time[i]), np.abs(pace[i + 1]) * (time[i + 1] - instants))
-    return np.interp(instants, time, radius) + np.where(turns, np.sign(pace[i - 1]) * np.maximum(beyond, 0.0), 0.0)
-
-
-def resting_depth(law: SpringLaw, g: FloatArray, path: Path, k: int) -> float:
-    """Depth [m] of an indenter that rests on the surface at a free instant k: the least u + g.
+def march(law: SpringLaw, springs: Layout, steps: Steps, closed: FloatArray, guess: FloatArray) -> March:
+    """Depths that balance F_e in all substeps.
 
     Args:
         law: Law of the springs.
-        g: g(x) of the first springs [m], increasing.
-        path: Depths over time.
-        k: Number of the instant.
+        springs: Springs, whose weights are stiffnesses [N/m].
+        steps: Substeps.
+        closed: Depths [m] of the elastic layer under F_e at `Steps.instants`. They are inserted in substeps in which
+            F_e has never been larger.
+        guess: First guess of the depths there.
+
+    Raises:
+        NotConvergedError: If no depth is found for a force.
     """
-    for _ in range(_ROUNDS):
-        *_, bed = followed(law, g, path.until(k))
-        height = bed.surface + g
-        lowest = int(height.argmin())
-        g = np.linspace(g[max(lowest - 1, 0)], g[min(lowest + 1, g.size - 1)], _AMONG)
-    return float(height.min())
+    count, q = steps.time.size - 1, steps.nodes.size
+    is_known = np.asarray(never_larger(law, steps.load)[1:].reshape(count, q).all(axis=1))
+    is_free = np.asarray(~is_known & (steps.force[1:] <= 0))
+    bed = SpringBed.undeformed(law, springs.g, float(closed[0]))
+    depth, front, polynomials, load_error = closed.copy(), np.full(closed.size, -1.0), np.zeros((count, q + 1)), 0.0
+    for k, span in enumerate(np.diff(steps.time).tolist()):
+        nodes, start = slice(1 + k * q, 1 + (k + 1) * q), depth[[k * q]]
+        if is_free[k]:
+            bed.release(span)
+            depth[nodes] = bed.surface[0]
+            continue
+        balance = Balance(bed, springs.weight, steps, span, start, steps.load[nodes], float(steps.load.max()))
+        if is_known[k]:
+            bed, passage, _ = balance.after(depth[nodes])
+        else:
+            depth[nodes], bed, passage, error = balance.solved(start + guess[nodes] - guess[k * q])
+            load_error = max(load_error, error)
+        polynomials[k], front[nodes] = steps.polynomials(start, depth[None, nodes])[0], _fronts(springs.radius, passage)
+    path = Path(steps.time, depth[::q], polynomials, is_free)
+    return March(path, steps.instants, depth, front, load_error)
+
+
+class Balance(NamedTuple):
+    """Balance of F_e at the nodes of one substep.
+
+    Attributes:
+        bed: Springs at the start of the substep.
+        stiffness: Stiffness of each spring [N/m], shape (n,).
+        steps: All substeps.
+        span: Duration of this one [s].
+        start: Depth at its start [m], shape (1,).
+        load: F_e [N] at its nodes, shape (q,).
+        scale: Largest F_e [N].
+    """
+
+    bed: SpringBed
+    stiffness: FloatArray
+    steps: Steps
+    span: float
+    start: FloatArray
+    load: FloatArray
+    scale: float
+
+    def after(self, depth: FloatArray) -> tuple[SpringBed, Passage, FloatArray]:
+        """Springs at the end, springs at the nodes, and errors of F_e [N] there, from depths [m] at the nodes."""
+        bed = self.bed.copy()
+        passage = bed.advance(self.steps.polynomials(self.start, depth[None])[0], self.span, self.steps.nodes)
+        return bed, passage, passage.surface @ self.stiffness - self.load
+
+    def solved(self, depth: FloatArray) -> tuple[FloatArray, SpringBed, Passage, float]:
+        """Depths [m] at the nodes from a guess, springs after and at them, and the error of F_e over the largest.
+
+        Broyden's method: the sum of displacements changes at first by the stiffness of the springs in contact.
+        """
+        bed, passage, errors = self.after(depth)
+        stiffness = passage.touching @ self.stiffness
+        least = max(_LEAST * self.stiffness.sum(), stiffness.max() / 4)
+        inverse, halvings = np.diag(1 / np.maximum(stiffness, least)), 0
+        step = -inverse @ errors
+        for _ in range(_MOST_STEPS):
+            if np.abs(errors).max() <= _TOLERANCE * self.scale or halvings > _MOST_HALVINGS:
+                break
+            trial = self.after(depth + step)
+            change = inverse @ (trial[2] - errors)
+            if np.abs(step @ change) > 1e-3 * (step @ step):
+                inverse += np.outer(step - change, step @ inverse) / (step @ change)
+            if np.abs(trial[2]).max() < np.abs(errors).max():
+                depth, (bed, passage, errors) = depth + step, trial
+                halvings, step = 0, -inverse @ errors
+            else:
+                halvings, step = halvings + 1, step / 2
+        error = float(np.abs(errors).max()) / self.scale
+        if not error <= _ACCEPTABLE:
+            raise NotConvergedError("no depth carries the prescribed force", {"force": error})
+        return depth, bed, passage, error
+
+
+def _fronts(radius: FloatArray, passage: Passage) -> FloatArray:
+    """Radii [m] at which contact ends at the nodes, linear in `Passage.edge` between two springs, shape (q,)."""
+    touching, edge = passage.touching, passage.edge
+    free = np.argmin(np.column_stack([touching, np.zeros(len(touching), dtype=np.bool_)]), axis=1)
+    i, row = np.clip(free, 1, radius.size - 1), np.arange(free.size)
+    share = edge[row, i - 1] / np.maximum(edge[row, i - 1] - edge[row, i], 1e-300)
+    front = radius[i - 1] + np.clip(share, 0, 1) * (radius[i] - radius[i - 1])
+    return np.where(free == 0, -1.0, np.where(free == radius.size, radius[-1], front))

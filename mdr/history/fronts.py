@@ -1,13 +1,13 @@
 """Where contact ends at each instant, and Gauss rules over the springs between these fronts.
 
 Springs of one MDR profile g behave alike on every layer and under every indenter, so the fronts gamma(t), outside of
-which nothing touches, are found in g from the history alone. Spring forces are smooth in g between the fronts of all
+which nothing touches, are computed in g from the history alone. Spring forces are smooth in g between the fronts of all
 instants, and in the radius between kinks of the profile, so that
 
     F(t) = 2 E* int f(g(x), t) y_1^2(x) dx
 
-is a sum of Gauss rules on panels that end there. Beside a front forces bend within the way that it goes in a relaxation
-time; where that is less than an interval of the history, more panels end on that way.
+is a sum of Gauss rules on panels that end there. Beside a front forces change within the distance that it moves in a
+relaxation time; where that is less than an interval of the history, more panels end within that distance.
 """
 
 from __future__ import annotations
@@ -18,17 +18,18 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from bem.numerics import EPS, panels
-from contact import FlatPunch, InvalidInput, Scene, UnsupportedSceneError
+from bem.numerics import panels
+from contact import FlatPunch, InvalidInput, Scene
 from contact.records.validation import BoolArray, FloatArray
 from mdr.equilibria import is_simple, refuse_inadmissible
-from mdr.history.spring_bed import Path, SpringBed, followed
+from mdr.history.spring_bed import Path, followed
 from mdr.history.spring_law import SpringLaw
 from mdr.radius_search import Quantity, RadiusSearch, refuse_too_wide, roots
 from mdr.spring_bed import Springs
 
-# Springs among which fronts are bracketed, besides one between all depths of the history.
-_SPREAD = 33
+# Springs among which fronts are bracketed, besides one between all depths of the history, and how far they reach over
+# the largest depth. With half as many the root search takes one step more.
+_SPREAD, _BEYOND = 33, 1.001
 # Ratio of the widths of neighbouring panels near a front, and their largest number. With 2 springs double.
 _GROWTH, _MOST_PANELS = 4.0, 12
 # Share of a stretch between kinks below which two ends of panels are one.
@@ -41,7 +42,7 @@ _PRESCRIBED = {"depth": "loading.depth", "force": "loading.force, as an elastic 
 
 
 class Response(NamedTuple):
-    """What springs answer to a history.
+    """Answer of the springs to a history.
 
     Attributes:
         path: Depths between all instants.
@@ -50,9 +51,8 @@ class Response(NamedTuple):
         force: F_N [N], shape (n,).
         radius: a [m], zero without contact, shape (n,).
         known: Where the depth is known in closed form, shape (n,).
-        bent: Whether spring forces ever rose outwards.
-        springs: Number of them.
-        doubt: Last correction of the depth [m].
+        springs: Number of springs.
+        depth_error: Last correction of the depth [m].
     """
 
     path: Path
@@ -61,18 +61,17 @@ class Response(NamedTuple):
     force: FloatArray
     radius: FloatArray
     known: BoolArray
-    bent: bool
     springs: int
-    doubt: float = 0.0
+    depth_error: float = 0.0
 
 
 class Problem(NamedTuple):
     """A layer that relaxes, under an indenter.
 
     Attributes:
-        scene: The problem.
-        springs: Of the layer.
-        law: Of each spring.
+        scene: The scene.
+        springs: Springs of the layer.
+        law: Law of each spring.
     """
 
     scene: Scene
@@ -81,12 +80,12 @@ class Problem(NamedTuple):
 
     @property
     def finer(self) -> Problem:
-        """The same on finer springs."""
+        """The same problem on finer springs."""
         return self._replace(springs=self.springs.finer)
 
     @property
     def punch(self) -> float | None:
-        """Radius of a flat punch [m], None of other indenters."""
+        """Radius of a flat punch [m], None for other indenters."""
         return self.scene.indenter.radius if isinstance(self.scene.indenter, FlatPunch) else None
 
     def elastic_radii(self, quantity: Quantity, values: FloatArray) -> FloatArray:
@@ -98,11 +97,14 @@ class Problem(NamedTuple):
         if self.punch is not None:
             refuse_too_wide(self.springs, self.punch)
             return np.full(values.size, self.punch)
-        search = RadiusSearch(self.springs, may_fall=not is_simple(self.scene))
         try:
-            return search.radii(quantity, values, self.refuse_circle)
+            return self._search.radii(quantity, values, self.refuse_circle)
         except InvalidInput as error:
             raise InvalidInput(str(error).replace("loading.values", _PRESCRIBED[quantity])) from None
+
+    @property
+    def _search(self) -> RadiusSearch:
+        return RadiusSearch(self.springs, may_fall=not is_simple(self.scene))
 
     def radii(self, gamma: FloatArray) -> FloatArray:
         """Contact radii [m] of fronts gamma [m], zero where gamma < 0."""
@@ -119,90 +121,68 @@ class Problem(NamedTuple):
         return depth
 
     def refuse_circle(self, radius: float, depth: float = 0.0) -> None:
-        """Refuse an elastic contact of a radius [m], under a flat punch at a depth [m], that is no disc."""
+        """Refuse an elastic contact of a radius [m], under a flat punch at a depth [m], that is no disc.
+
+        Raises:
+            UnsupportedSceneError: Also if g falls within it, so that springs would be touched from outside.
+        """
+        if self.punch is None:
+            self._search.refuse_falls(radius)
         a, values = np.array([radius]), self.springs.at([radius])
         refuse_inadmissible(self.scene, self.springs, self.springs.state(a, values, np.maximum(values.g, depth)))
 
 
-def fronts(law: SpringLaw, path: Path, some: BoolArray | bool = True) -> FloatArray:
-    """gamma [m] at some instants, -1 where nothing touches, shape (n,)."""
-    depth, peaks = path.depth, path.peaks
-    # Deeper than ever, the indenter touches all springs up to its depth.
-    grows = (depth > 0) & (depth >= peaks * (1 - EPS))
-    gamma, unknown = np.where(grows, depth, -1.0), np.flatnonzero(some & ~grows & (peaks > 0))
-    if not unknown.size:
+def fronts(law: SpringLaw, path: Path, instants: NDArray[np.intp], deepest: float) -> FloatArray:
+    """Fronts gamma [m] at instants of a path whose largest depth [m] is known, -1 where nothing touches, shape (n,)."""
+    gamma = np.full(instants.size, -1.0)
+    if not instants.size:
         return gamma
-    low, high = _brackets(law, path)
-    unknown = unknown[low[0, unknown] >= 0]
-    if unknown.size:
-        gamma[unknown] = _refined(law, path, unknown, low[:, unknown], high[:, unknown])
+    path = path.until(int(instants.max()))
+    knots = np.unique(np.concatenate([path.depth[path.depth > 0], np.linspace(0, _BEYOND * deepest, _SPREAD)]))
+    g = np.sort(np.append(knots, (knots[1:] + knots[:-1]) / 2))
+    edge = _edges(law, g, path)[instants]
+    first_free = np.argmax(edge <= 0, axis=1)
+    some = np.flatnonzero(first_free)
+    high, low = g[first_free[some]], g[first_free[some] - 1]
+
+    def sunk(share: FloatArray, at: BoolArray) -> FloatArray:
+        edge_of_springs = _edges(law, deepest * share, path)
+        return np.asarray(-edge_of_springs[instants[some[at]], np.arange(share.size)] / deepest)
+
+    if some.size:
+        first = -edge[some, first_free[some] - 1] / deepest
+        gamma[some] = deepest * roots(sunk, low / deepest, first, (high - low) / deepest)
     return gamma
 
 
-def _brackets(law: SpringLaw, path: Path) -> tuple[FloatArray, FloatArray]:
-    """Neighbouring springs inside and outside each front, and `SpringBed.edge` there, each of shape (2, n)."""
-    top = path.peaks[-1]
-    knots = np.unique(np.concatenate([[0.0], path.depth[path.depth > 0], np.linspace(0, top, _SPREAD)]))
-    g = np.unique(np.concatenate([knots, (knots[1:] + knots[:-1]) / 2]))
-    low, high = np.full((2, path.time.size), -1.0), np.zeros((2, path.time.size))
-    for k, (bed, speed) in enumerate(zip(followed(law, g, path), path.final_speed, strict=True)):
-        first = int(np.argmin(np.append(bed.touching, False)))
-        edge = bed.edge(float(path.depth[k]), float(speed))
-        if first:
-            low[:, k] = g[first - 1], edge[first - 1]
-        high[:, k] = (g[first], edge[first]) if first < g.size else (top, 0.0)
-    return low, high
+def _edges(law: SpringLaw, g: FloatArray, path: Path) -> FloatArray:
+    """`Passage.edge` of springs g [m], shape (m,), at all instants of a path, shape (n, m)."""
+    return np.array([edge for _, edge in followed(law, g, path)])
 
 
-def _refined(law: SpringLaw, path: Path, instants: NDArray[np.intp], low: FloatArray, high: FloatArray) -> FloatArray:
-    """Fronts at some instants, all at once, in units of the largest depth."""
-    top = path.peaks[-1]
-
-    def missed(g: FloatArray, at: BoolArray) -> FloatArray:
-        return np.asarray(-_edges(law, path, instants[at], top * g) / top)
-
-    return np.asarray(top * roots(missed, low[0] / top, -low[1] / top, (high[0] - low[0]) / top))
-
-
-def _edges(law: SpringLaw, path: Path, instants: NDArray[np.intp], g: FloatArray) -> FloatArray:
-    """`SpringBed.edge` of spring i at the i-th of the instants, in increasing order, in one march, shape (n,)."""
-    found, done = np.empty(g.size), 0
-    bed = SpringBed.undeformed(law, g, float(path.depth[0]))
-    speed = path.final_speed
-    for k in range(int(instants[-1]) + 1):
-        if k:
-            bed.along(path, k - 1)
-        while done < g.size and instants[done] == k:
-            found[done] = bed.edge(float(path.depth[k]), float(speed[k]))[0]
-            bed, done = bed.beyond(1), done + 1
-    return found
-
-
-def panel_ends(law: SpringLaw, time: FloatArray, gamma: FloatArray) -> FloatArray:
-    """Where panels end [m]: fronts at instants [s], as radii or values of g, and their way in a relaxation time."""
-    steps = np.diff(time)
+def panel_ends(law: SpringLaw, time: FloatArray, front: FloatArray) -> FloatArray:
+    """Radii [m] or values of g at which panels end: fronts at instants [s], and next to them; those > 0, increasing."""
     shortest = float(law.times[-1]) if law.times.size else np.inf
-    ways = [gamma]
+    before, after, steps, ends = np.maximum(front[:-1], 0), np.maximum(front[1:], 0), np.diff(time), [front]
     for number in range(_MOST_PANELS):
-        way = shortest / 2 * _GROWTH**number
-        share = way / steps
+        share = shortest / 2 * _GROWTH**number / steps
         # A contact that begins or ends comes from, or goes to, the axis.
-        some = (share < 0.5) & ((gamma[1:] > 0) | (gamma[:-1] > 0))
+        some = (share < 0.5) & ((after > 0) | (before > 0))
         if not some.any():
             break
-        before, after = np.maximum(gamma, 0)[:-1][some], np.maximum(gamma, 0)[1:][some]
-        ways += [before + share[some] * (after - before), after - share[some] * (after - before)]
-    ends = np.concatenate(ways)
-    return np.unique(ends[ends > 0])
+        way = (share * (after - before))[some]
+        ends += [before[some] + way, after[some] - way]
+    every = np.concatenate(ends)
+    return np.unique(every[every > 0])
 
 
 class Layout(NamedTuple):
-    """Springs that stand for the layer.
+    """Springs of the quadrature.
 
     Attributes:
         g: MDR profile [m], increasing, shape (n,); the first is the axis, or the whole flat end.
-        weight: What they add to K [m], shape (n,).
-        radius: Where they stand [m], shape (n,).
+        weight: Part of K of each spring [m], shape (n,).
+        radius: Distance from the axis [m], shape (n,).
     """
 
     g: FloatArray
@@ -224,9 +204,7 @@ def layout(springs: Springs, radii: FloatArray, nodes: int) -> Layout:
     for low, high in pairwise(stretches):
         power = KINK_POWER if low else _AXIS_POWER
         share = ((inner[(inner > low) & (inner < high)] - low) / (high - low)) ** (1 / power)
-        ends = np.unique(np.concatenate([[0.0, 0.5], share, [1.0]]))
-        ends = ends[np.append(True, np.diff(ends) > _APART)]
-        v, w = panels(np.append(ends[ends < 1 - _APART], 1.0), nodes + springs.sizes.extra)
+        v, w = panels(separate(np.append(share, [0.0, 0.5, 1.0]), _APART), nodes + springs.sizes.extra)
         parts.append(np.array([low - flat + (high - low) * v**power, w * (high - low) * power * v ** (power - 1)]))
     excess, weight = np.concatenate(parts, axis=1)
     values = springs.at(flat + excess, excess)
@@ -234,14 +212,8 @@ def layout(springs: Springs, radii: FloatArray, nodes: int) -> Layout:
     return Layout(np.append(0.0, g), np.append(core, weight), np.append(flat, flat + excess))
 
 
-def refuse_open_inside(touching: BoolArray, time: float) -> None:
-    """Refuse a contact with a gap inside.
-
-    Raises:
-        UnsupportedSceneError: With the instant.
-    """
-    if (np.diff(touching.astype(int)) > 0).any():
-        raise UnsupportedSceneError(
-            f"at t = {time:g} s the contact opens inside while it holds outside: the method needs one circle; "
-            "end the history earlier, or let the layer recover before reloading"
-        )
+def separate(ends: FloatArray, apart: float) -> FloatArray:
+    """Ends of panels from 0 to 1, increasing, without those that are closer than `apart` to the one before."""
+    ends = np.unique(ends)
+    ends = ends[np.append(True, np.diff(ends) > apart)]
+    return np.append(ends[ends < 1 - apart], 1.0)

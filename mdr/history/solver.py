@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bem.flat_punch import FlatPunchSource
 from bem.kernels.moduli import relaxation_of
@@ -28,8 +27,8 @@ from contact.answer.solution import Setting
 from contact.records.validation import FloatArray
 from contact.stated import stated_error
 from mdr.equilibria import springs_on
-from mdr.history.force_control import March, Steps, never_larger, resting_depth, steps_of
-from mdr.history.fronts import Problem, Response, fronts, layout, panel_ends, refuse_open_inside
+from mdr.history.force_control import March, Steps, march, never_larger, steps_of
+from mdr.history.fronts import Problem, Response, fronts, layout, panel_ends
 from mdr.history.inside import HistoryFields
 from mdr.history.spring_bed import Path, followed
 from mdr.history.spring_law import SpringLaw
@@ -47,14 +46,8 @@ _FEWEST, _MOST = 0, 2
 _DEGREES = (6, 5)
 # Panels of the first march, marches at most, and the share of the largest depth by which the last one may differ.
 _FIRST_PANELS, _MOST_MARCHES, _STAYS = 32, 4, 1e-9
-# Share of the largest force below which what is held is rounding and no contact.
-_HELD = 1e-12
-# Share of the largest spring force by which spring forces must rise outwards for the answer to carry a note.
-_BEND = 1e-6
-_BENT = (
-    "Reloading has left spring forces that rise outwards somewhere; that the pressure is positive everywhere then "
-    "follows no longer from the springs alone."
-)
+# Share of the largest force below which a force is rounding and no contact.
+_NO_FORCE = 1e-12
 
 
 def solve_history(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[str, Setting]) -> HistoryPath:
@@ -76,10 +69,9 @@ def solve_history(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
         if isinstance(loading, DepthHistory):
             answer, other = _by_depth(problem, loading)
         else:
-            steps = [steps_of(problem.law, loading, _substeps(settings), degree) for degree in _DEGREES]
-            answer, other = _by_force(problem.finer, loading, steps[0]), _by_force(problem, loading, steps[1])
+            answer, other = _by_force(problem, loading, _substeps(settings))
         if (widest := float(answer.radius.max())) > 0:
-            problem.refuse_circle(widest, 0.0 if problem.punch is None else float(answer.path.peaks[-1]))
+            problem.refuse_circle(widest, 0.0 if problem.punch is None else float(answer.path.depth.max()))
     errors = _errors(springs, answer, other)
     errors["indentation_depth" if isinstance(loading, DepthHistory) else "normal_force"][:] = 0.0
     log.count("springs", answer.springs)
@@ -91,7 +83,6 @@ def solve_history(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
         error_estimate=errors,
         cost=log.cost(unknowns=answer.springs),
         stages=log.records,
-        notes=(_BENT,) if answer.bent else (),
         time=loading.time,
         indentation_depth=answer.depth,
         normal_force=answer.force,
@@ -102,14 +93,14 @@ def solve_history(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
 
 def _errors(springs: Springs, answer: Response, other: Response) -> dict[str, FloatArray]:
     """Errors relative to the largest value: one for all instants known in closed form, one for all others."""
-    floor, found = sum(float(one[0]) for one in springs.floor(answer.radius.max(keepdims=True))), {}
+    floor, errors = sum(float(one[0]) for one in springs.floor(answer.radius.max(keepdims=True))), {}
     for name, short in (("indentation_depth", "depth"), ("normal_force", "force"), ("contact_radius", "radius")):
         values, known = getattr(answer, short), answer.known
         scale = max(float(np.abs(values).max()), np.finfo(float).tiny)
         change = stated_error(values, getattr(other, short), scale=scale, floor=floor, sequence=False)
-        unknown = change.max() + answer.doubt / answer.depth.max()
-        found[name] = np.asarray(np.where(known, change[known].max(initial=0.0), unknown))
-    return found
+        unknown = change.max() + answer.depth_error / answer.depth.max()
+        errors[name] = np.asarray(np.where(known, change[known].max(initial=0.0), unknown))
+    return errors
 
 
 def _substeps(settings: Mapping[str, Setting]) -> int:
@@ -131,57 +122,66 @@ def _refuse_idle(loading: DepthHistory | ForceHistory) -> None:
 
 def _by_depth(problem: Problem, loading: DepthHistory) -> list[Response]:
     """The answer to depths, and the same on finer springs with fronts a rounding further out."""
-    law, path, found = problem.law, Path.linear(loading.time, loading.depth), []
-    gamma = fronts(law, path) if problem.punch is None else np.where(path.depth > 0, path.depth, 0.0)
-    moved = np.where(gamma > 0, gamma + 8 * EPS * path.peaks[-1], gamma)
-    for one, front in ((problem, gamma), (problem.finer, moved)):
-        ends = one.radii(panel_ends(law, path.time, front))
-        bed, force, bent = layout(one.springs, ends, _NODES_OF_DEPTHS), np.zeros(path.time.size), False
-        for k, (now, speed) in enumerate(zip(followed(law, bed.g, path), path.final_speed, strict=True)):
-            refuse_open_inside(now.touching, float(path.time[k]))
-            forces = now.forces(float(speed))
-            force[k] = 2 * one.springs.modulus * (bed.weight @ forces)
-            bent |= bool((np.diff(forces[now.touching]) > _BEND * forces.max(initial=0.0)).any())
-        held, every = force > _HELD * force.max(), np.arange(path.time.size)
-        radius = one.radii(np.where(held, front, -1.0))
-        found.append(Response(path, every, path.depth, np.where(held, force, 0.0), radius, every < 0, bent, bed.g.size))
-    return found
+    law, path, every = problem.law, Path.linear(loading.time, loading.depth), np.arange(loading.time.size)
+    peaks, gamma = np.maximum.accumulate(path.depth), path.depth.copy()
+    if problem.punch is None:
+        # Deeper than ever, the indenter touches all springs up to its depth.
+        others = np.flatnonzero((path.depth < peaks * (1 - EPS)) & (peaks > 0))
+        gamma[others] = fronts(law, path, others, float(peaks[-1]))
+    answers = []
+    for resolved, front in ((problem, gamma), (problem.finer, gamma + 8 * EPS * peaks[-1] * (gamma > 0))):
+        ends = resolved.radii(panel_ends(law, path.time, front))
+        springs = layout(resolved.springs, ends, _NODES_OF_DEPTHS)
+        forces = [
+            springs.weight @ bed.forces(float(speed))
+            for (bed, _), speed in zip(followed(law, springs.g, path), path.final_speed, strict=True)
+        ]
+        force = 2 * resolved.springs.modulus * np.array(forces)
+        is_pressed = force > _NO_FORCE * force.max()
+        radius = resolved.radii(np.where(is_pressed, np.maximum(front, 0.0), -1.0))
+        force = np.where(is_pressed, force, 0.0)
+        answers.append(Response(path, every, path.depth, force, radius, every < 0, springs.g.size))
+    return answers
 
 
-def _by_force(problem: Problem, loading: ForceHistory, steps: Steps) -> Response:
-    """The answer to forces that are met at the nodes of substeps."""
-    law, given, load, degree = problem.law, steps.given, np.append(steps.start, steps.load), steps.nodes.size
-    closed, known = problem.depths(load), never_larger(law, load)
-    if law.is_elastic or problem.punch is not None:
-        known[:] = True
-    own = np.append(0, degree * np.arange(1, steps.time.size))[given]
-    depth, known_there = closed[own], known[own]
-    free = np.zeros(steps.time.size - 1, dtype=np.bool_)
-    path, gamma, size, doubt = Path(steps.time, closed[::degree], steps.ways(closed), free), depth, 1, 0.0
-    if not known_there.all():
-        march, path, doubt = _marched(problem, steps, closed, known)
-        some = np.isin(np.arange(path.time.size), given)
-        gamma = np.where(known_there, depth, fronts(law, path, some)[given])
-        depth = np.where(known_there, depth, path.depth[given])
-        for i in np.flatnonzero(~known_there & (loading.force <= 0)):
-            depth[i] = resting_depth(law, march.layout.g, path, int(given[i]))
-        size = march.layout.g.size
-    radius = problem.radii(np.where(loading.force > 0, gamma, -1.0))
-    return Response(path, given, depth, loading.force, radius, known_there, False, size, doubt)
+def _by_force(problem: Problem, loading: ForceHistory, substeps: int) -> list[Response]:
+    """The answer to forces that are balanced at the nodes of substeps, and before it the same on coarser ones."""
+    answers, law = [], problem.law
+    is_elastic, before = not law.times.size and not law.viscosity, None
+    for resolved, degree in ((problem, _DEGREES[1]), (problem.finer, _DEGREES[0])):
+        steps = steps_of(law, loading, substeps, degree)
+        places, given = degree * steps.given, steps.given
+        closed, known = resolved.depths(steps.load), never_larger(law, steps.load)[places]
+        depth, front, size, change = closed[places], closed[places], 1, 0.0
+        path = Path(steps.time, closed[::degree], steps.polynomials(closed[:-1:degree], closed[1:].reshape(-1, degree)))
+        if is_elastic or problem.punch is not None:
+            known = np.ones(given.size, dtype=np.bool_)
+        elif not known.all():
+            before, size, change = _marched(resolved, steps, closed, before)
+            depth, path = before.depth[places], before.path
+            some = np.flatnonzero(~known & (loading.force > 0))
+            front[some] = fronts(law, path, given[some], float(closed.max()))
+        radius = resolved.radii(np.where(loading.force > 0, front, -1.0))
+        answers.append(Response(path, given, depth, loading.force, radius, known, size, change))
+    return answers[::-1]
 
 
-def _marched(problem: Problem, steps: Steps, closed: FloatArray, known: NDArray[np.bool_]) -> tuple[March, Path, float]:
-    """Marches on panels that end at the fronts of the last one, and the last change of a depth [m]."""
-    springs, shape = problem.springs, steps.load.shape
-    inside, whole = closed[1:].reshape(shape), np.asarray(known[1:].reshape(shape).all(axis=1))
-    widest = float(problem.radii(closed.max(keepdims=True))[0])
-    ends, depth = widest * np.linspace(0, 1, _FIRST_PANELS + 1)[1:], inside
-    for number in range(_MOST_MARCHES):
-        bed = layout(springs, ends[ends > springs.tip.flat], _NODES)
-        march = March(problem.law, bed, 2 * springs.modulus * bed.weight, steps, closed, whole, depth)
-        path = march.path()
-        doubt, depth = float(np.abs(march.depth - depth).max()), march.depth
-        if number and doubt < _STAYS * closed.max():
+def _marched(problem: Problem, steps: Steps, closed: FloatArray, before: March | None) -> tuple[March, int, float]:
+    """March on panels that end at the fronts of the march before, number of springs, and error of a depth [m].
+
+    The first panels end at the fronts of a march at another resolution, if there is one.
+    """
+    deepest = float(closed.max())
+    widest = problem.radii(np.array([deepest]))
+    ends, guess = widest * np.linspace(0, 1, _FIRST_PANELS + 1)[1:], closed
+    if before is not None:
+        ends, guess = before.panel_ends(problem.law), np.interp(steps.instants, before.instants, before.depth)
+    for _ in range(_MOST_MARCHES):
+        ends = np.append(ends[(ends > problem.springs.tip.flat) & (ends < widest)], widest)
+        springs = layout(problem.springs, ends, _NODES)
+        stiff = springs._replace(weight=2 * problem.springs.modulus * springs.weight)
+        last = march(problem.law, stiff, steps, closed, guess)
+        change, guess, ends = float(np.abs(last.depth - guess).max()), last.depth, last.panel_ends(problem.law)
+        if change < _STAYS * deepest:
             break
-        ends = np.append(panel_ends(problem.law, steps.instants.ravel(), march.fronts.ravel()), widest)
-    return march, path, doubt + march.missed * float(closed.max())
+    return last, springs.g.size, change + last.load_error * deepest

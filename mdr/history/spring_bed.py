@@ -3,134 +3,113 @@
 Springs are independent of each other: with the factor A = C C^T of the layer's equation pressures within a are springs
 within a, and the viscoelastic law is valid spring by spring. Spring g is touched where the indenter at depth delta
 reaches its surface, delta - g = u, and released where its force would pull, f = 0. While the depth is a polynomial of
-time both are, since the last touch or release at time theta,
+time both the force f of a spring in contact and the gap u - (delta - g) of a free one are
 
     c + C(t) + sum_k c_k exp(-r_k (t - theta))
 
-with one C(t) for all springs: the force of a spring that has been in contact from the start without any strain, or
--delta(t). Signs of these functions are taken at times that crowd towards theta, where exponentials change fastest, and
-the first root is computed by Newton's rule.
+with the instant theta of the last touch or release, and one polynomial C(t) for all springs: -delta(t), or the force of
+a spring g = 0 whose strains are polynomials. Signs of these functions are taken at times that crowd towards theta,
+where exponentials change fastest, and the first root is computed within a bracket.
+
+Surfaces stay in the order of their profile: u + g never decreases with g. For let the surfaces of springs g_1 < g_2
+meet. Then u_2 - u_1 has never been less, so that f_2 < f_1 under a relaxation that fades: spring 1 is in contact, and
+they stay together. Hence springs touch up to one front, f decreases outwards, and the spring g = 0 has the highest end.
 """
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field, replace
-from functools import cached_property
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import hyp1f1
 
 from bem.numerics import EPS
 from contact import NotConvergedError
-from contact.records.validation import FloatArray
+from contact.records.validation import BoolArray, FloatArray
 from mdr.history.spring_law import SpringLaw
+from mdr.radius_search import roots
 
-# Touches and releases of one spring between two instants. A sum of k exponentials has fewer than k + 2 roots.
+# Largest number of touches and releases in an interval. A sum of k exponentials has less than k + 2 roots.
 _MOST_EVENTS = 40
-# Of the largest terms of a force or a gap: nearer to zero its sign is rounding. It doubles with each touch and release.
+# Rounding error of a force or a gap over its largest terms. It doubles with each touch and release.
 _ROUNDING = 8 * EPS
-# Signs are taken at sixteenths of what is left of an interval, and at halves of it down to 2^-6 of the fastest
-# relaxation time. Two roots in between are a touch that carries hardly anything: with eighths some carry 1e-9 of the
-# largest force.
+# Signs are taken at sixteenths of the rest of an interval, and at halves of it down to 2^-6 of the fastest relaxation
+# time. With eighths some springs are touched and released unseen that carry 1e-9 of the largest force.
 _PARTS, _HALVES_MORE, _MOST_HALVES = 16, 6, 40
-# Samples of a depth between two instants, whose largest one is computed.
-_PEAK_SAMPLES = 33
-# Newton steps to a root; six are usual.
-_MOST_STEPS = 80
+# Interval over relaxation time above which strains follow the indenter by a finite polynomial, and terms of the power
+# series below. At half of it rounding errors are 64 times as large, at twice of it the series takes six terms more.
+_FAST, _MOST_TERMS = 1.0, 24
 _AT_END = np.ones(1)
 
 
-@dataclass(frozen=True)
-class Motion:
-    """The indenter in an interval.
+class Motion(NamedTuple):
+    """Polynomials in the share of one interval, by coefficients of rising powers.
 
     Attributes:
-        law: Of the springs.
-        way: Coefficients of the depth as a polynomial in the share of the interval [m], shape (p + 1,).
-        span: The interval [s].
-        rounding: Of the largest terms of a force or a gap: nearer to zero its sign is rounding.
+        depth: Depth w of the indenter [m], shape (p + 1,).
+        strains: Strains P_j [m] towards which e_j decay in contact, shape (n, m).
+        force: Force of a spring g = 0 with these strains [m], shape (n,).
     """
 
-    law: SpringLaw
-    way: FloatArray
-    span: float
-    rounding: float = _ROUNDING
+    depth: FloatArray
+    strains: FloatArray
+    force: FloatArray
 
-    @cached_property
-    def rise(self) -> FloatArray:
-        """Coefficients of the slope of the depth [m]."""
-        return self.way[1:] * np.arange(1, self.way.size)
-
-    def depth(self, s: FloatArray) -> FloatArray:
-        """Depth at shares of the interval [m]."""
-        return polynomial(self.way, s)
-
-    def strains(self, s: FloatArray) -> FloatArray:
-        """e_j of a spring in contact from the start, without strain then, at shares of the interval [m], (m, ..).
-
-        int_0^s exp(-x (s - v)) v^n dv = s^(n+1)/(n+1) 1F1(1, n+2, -x s), x = span/tau.
-        """
-        z = np.multiply.outer(self.span / self.law.times, s)
-        terms = (rate * s ** (n + 1) / (n + 1) * hyp1f1(1.0, n + 2.0, -z) for n, rate in enumerate(self.rise.tolist()))
-        return np.asarray(sum(terms))
-
-    def force(self, s: FloatArray) -> FloatArray:
-        """C of springs in contact, at shares of the interval."""
-        law, strains = self.law, self.strains(s)
-        dashpot = law.viscosity / self.span * polynomial(self.rise, s) if law.viscosity else 0.0
-        return np.asarray(law.long_term * self.depth(s) + dashpot + _weighted(law.weights, strains))
-
-    def force_slope(self, s: FloatArray) -> FloatArray:
-        """Slope of C of springs in contact, at shares of the interval."""
-        law, bend = self.law, self.rise[1:] * np.arange(1, self.rise.size)
-        elastic = (law.long_term + law.weights.sum()) * polynomial(self.rise, s)
-        dashpot = law.viscosity / self.span * polynomial(bend, s) if bend.size else 0.0
-        return np.asarray(elastic + dashpot - _weighted(law.weights * self.span / law.times, self.strains(s)))
+    @classmethod
+    def of(cls, law: SpringLaw, depth: FloatArray, span: float) -> Motion:
+        """Motion in an interval of duration `span` [s]: P_j' = w' - x_j P_j, x_j = span/tau_j."""
+        x, rise = span / law.times, np.zeros(_MOST_TERMS)
+        rise[: depth.size - 1] = depth[1:] * np.arange(1, depth.size)
+        (exact, series), slow = np.zeros((2, _MOST_TERMS, x.size)), np.where(x > _FAST, 0.0, x)
+        for n in range(depth.size - 1)[::-1]:
+            exact[n] = (rise[n] - (n + 1) * exact[n + 1]) / x
+        # Next to x = 0 these coefficients cancel. There the power series converges, which is zero at first.
+        for n in range(_MOST_TERMS - 1):
+            series[n + 1] = (rise[n] - slow * series[n]) / (n + 1)
+        strains = np.where(x > _FAST, exact, series)
+        force = strains @ law.weights + law.viscosity / span * rise
+        force[: depth.size] += law.long_term * depth
+        last = np.flatnonzero(np.append(True, np.abs(np.column_stack([strains, force])[1:]).max(axis=1)))[-1]
+        return cls(depth, strains[: last + 1], force[: last + 1])
 
 
-def polynomial(coefficients: FloatArray, s: FloatArray) -> FloatArray:
-    """A polynomial at any shape of s."""
-    value = np.full(s.shape, coefficients[-1])
-    for one in coefficients[-2::-1].tolist():
-        value = value * s + one
-    return value
-
-
-def _weighted(weights: FloatArray, rows: FloatArray) -> FloatArray:
-    """Sum of weighted rows, of shape (m, ..)."""
-    return np.asarray((weights @ rows.reshape(weights.size, math.prod(rows.shape[1:]))).reshape(rows.shape[1:]))
+def _polynomial(coefficients: FloatArray, s: FloatArray) -> FloatArray:
+    """Polynomials at s from coefficients of rising powers, shape (n, ..)."""
+    value = coefficients[-1] + 0 * s
+    for coefficient in coefficients[-2::-1]:
+        value *= s
+        value += coefficient
+    return np.asarray(value)
 
 
 class Course(NamedTuple):
-    """c + C(s) + sum_k c_k exp(-r_k (s - theta)) of n springs at shares s of an interval.
+    """Forces or gaps c + C(s) + sum_k c_k exp(-r_k (s - theta)) of n springs at shares s of an interval.
 
     Attributes:
         constant: c, shape (n,).
         amplitudes: c_k, shape (k, n).
         rates: r_k times the interval, shape (k,).
         start: theta of each spring, or of all, shape (n,) or (1,).
-        shared: C at shares.
-        slope: Slope of C at shares.
-        rounding: Values whose sign is rounding, shape (n,).
+        shared: Coefficients of C.
+        rounding: Rounding errors of the values, shape (n,).
     """
 
     constant: FloatArray
     amplitudes: FloatArray
     rates: FloatArray
     start: FloatArray
-    shared: Callable[[FloatArray], FloatArray]
-    slope: Callable[[FloatArray], FloatArray]
+    shared: FloatArray
     rounding: FloatArray
 
-    def among(self, some: NDArray[np.intp]) -> Course:
-        """The courses of some springs."""
-        start = self.start[some] if self.start.size > 1 else self.start
+    def among(self, some: NDArray[np.intp] | BoolArray) -> Course:
+        """Courses of some of the springs."""
         return self._replace(
-            constant=self.constant[some], amplitudes=self.amplitudes[:, some], start=start, rounding=self.rounding[some]
+            constant=self.constant[some],
+            amplitudes=self.amplitudes[:, some],
+            start=self.start[some] if self.start.size > 1 else self.start,
+            rounding=self.rounding[some],
         )
 
     def fading(self, s: FloatArray) -> FloatArray:
@@ -139,12 +118,7 @@ class Course(NamedTuple):
 
     def values(self, s: FloatArray) -> FloatArray:
         """Values at shares of shape (q, n) or (q, 1); shape (q, n)."""
-        return np.asarray(self.constant + self.shared(s) + self.fading(s).sum(axis=0))
-
-    def with_slopes(self, s: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Values and slopes at one share of each spring, shape (n,)."""
-        fading = self.fading(s[None])[:, 0]
-        return self.constant + self.shared(s) + fading.sum(axis=0), self.slope(s) - self.rates @ fading
+        return np.asarray(self.constant + _polynomial(self.shared, s) + self.fading(s).sum(axis=0))
 
 
 def first_fall(course: Course) -> FloatArray:
@@ -155,34 +129,27 @@ def first_fall(course: Course) -> FloatArray:
     shares = np.unique(np.concatenate([[0.0], 0.5 ** np.arange(halves), np.arange(1, _PARTS) / _PARTS]))
     s = course.start + (1 - course.start) * shares[:, None]
     # Exponentials fade, so that no value is less than all terms at their least.
-    shared = course.shared(s)
-    least = course.fading(s[[0, -1]]).min(axis=1).sum(axis=0) + course.constant + shared.min(axis=0)
+    least = (
+        course.fading(s[[0, -1]]).min(axis=1).sum(axis=0) + course.constant + _polynomial(course.shared, s).min(axis=0)
+    )
     some = np.flatnonzero(least <= course.rounding)
-    few = course.among(some)
-    s = s[:, some] if s.shape[1] > 1 else s
-    falls = few.values(s) < -few.rounding
-    s = np.broadcast_to(s, falls.shape)
-    ends = falls.any(axis=0)
-    first, which = np.argmax(falls, axis=0)[ends], np.flatnonzero(ends)
-    if which.size:
-        event[some[ends]] = _root(few.among(which), s[np.maximum(first - 1, 0), which], s[first, which])
+    course, s = course.among(some), s[:, some] if s.shape[1] > 1 else s
+    falls = course.values(s) < -course.rounding
+    first, ends = np.argmax(falls, axis=0), np.flatnonzero(falls.any(axis=0))
+    if not ends.size:
+        return event
+    course, s = course.among(ends), np.broadcast_to(s, falls.shape)
+    low, high = s[np.maximum(first[ends] - 1, 0), ends], s[first[ends], ends]
+
+    def sunk(share: FloatArray, at: BoolArray) -> FloatArray:
+        """Negative value in units in which the root search stops at the rounding error."""
+        part = course.among(at)
+        return np.asarray(-1e-14 * part.values((low[at] + share * (high - low)[at])[None])[0] / part.rounding)
+
+    zero, one = np.zeros(ends.size), np.ones(ends.size)
+    share = roots(sunk, zero, np.minimum(sunk(zero, one > 0), 0.0), one)
+    event[some[ends]] = low + share * (high - low)
     return event
-
-
-def _root(course: Course, low: FloatArray, high: FloatArray) -> FloatArray:
-    """Roots of courses that fall between two shares of the interval, by Newton's rule within brackets."""
-    t = low
-    for _ in range(_MOST_STEPS):
-        value, slope = course.with_slopes(t)
-        low, high = np.where(value > 0, t, low), np.where(value > 0, high, t)
-        with np.errstate(over="ignore"):
-            new = t - value / np.minimum(slope, -1e-300)
-        new = np.where((new >= low) & (new <= high), new, (low + high) / 2)
-        small = np.abs(value) <= course.rounding / 8
-        if (small | (np.abs(new - t) <= EPS * high)).all():
-            break
-        t = np.where(small, t, new)
-    return t
 
 
 class Path(NamedTuple):
@@ -191,39 +158,45 @@ class Path(NamedTuple):
     Attributes:
         time: Instants [s], shape (n,).
         depth: delta there [m], shape (n,).
-        ways: Coefficients of the depth over the share of each interval [m], shape (n - 1, p + 1).
-        free: In which intervals the indenter is taken away, shape (n - 1,).
+        polynomials: Coefficients of the depth over the share of each interval [m], shape (n - 1, p + 1).
+        free: In which intervals the indenter is taken away, shape (n - 1,), or in none.
     """
 
     time: FloatArray
     depth: FloatArray
-    ways: FloatArray
-    free: NDArray[np.bool_]
+    polynomials: FloatArray
+    free: BoolArray | None = None
 
     @classmethod
     def linear(cls, time: FloatArray, depth: FloatArray) -> Path:
         """Depths that are linear between instants."""
-        return cls(time, depth, np.column_stack([depth[:-1], np.diff(depth)]), np.zeros(time.size - 1, dtype=np.bool_))
+        return cls(time, depth, np.column_stack([depth[:-1], np.diff(depth)]))
 
     def until(self, k: int) -> Path:
         """The path up to instant k."""
-        return Path(self.time[: k + 1], self.depth[: k + 1], self.ways[:k], self.free[:k])
+        return Path(
+            self.time[: k + 1], self.depth[: k + 1], self.polynomials[:k], None if self.free is None else self.free[:k]
+        )
 
     @property
     def final_speed(self) -> FloatArray:
         """Speed at which each instant is reached [m/s], zero at the first, shape (n,)."""
-        return np.append(0.0, self.ways @ np.arange(self.ways.shape[1]) / np.diff(self.time))
+        return np.append(0.0, self.polynomials @ np.arange(self.polynomials.shape[1]) / np.diff(self.time))
 
-    @property
-    def peaks(self) -> FloatArray:
-        """Largest depth so far [m] at each instant, between instants too, shape (n,)."""
-        inner = (
-            (self.ways @ np.vander(np.linspace(0, 1, _PEAK_SAMPLES), self.ways.shape[1], increasing=True).T).max(axis=1)
-            if self.ways.shape[1] > 2
-            else -np.inf
-        )
-        inner = np.where(self.free, 0.0, inner)
-        return np.maximum.accumulate(np.maximum(self.depth, np.append(self.depth[0], inner)))
+
+class Passage(NamedTuple):
+    """Springs at the nodes of an interval, each of shape (q, n).
+
+    Attributes:
+        surface: Displacements u [m].
+        touching: Which springs are in contact.
+        edge: Positive in contact, negative outside, and smooth across the front. It is the force f in contact and the
+            gap with its sign outside; of springs touched or released in this interval, f or gap without that event.
+    """
+
+    surface: FloatArray
+    touching: BoolArray
+    edge: FloatArray
 
 
 @dataclass
@@ -231,150 +204,107 @@ class SpringBed:
     """Springs at one instant.
 
     Attributes:
-        law: Of each spring.
+        law: Law of each spring.
         g: MDR profile where they stand [m], shape (n,).
         touching: Which are in contact, shape (n,).
         surface: Displacement u of their ends [m], shape (n,).
         strains: e_j [m], shape (m, n).
-        late: How long ago in the last interval they were touched or released [s], zero if not, shape (n,).
-        pace: Slope of force or gap then [m/s], shape (n,).
-        events: Shares of the last interval at which springs were touched or released, and their numbers.
     """
 
     law: SpringLaw
     g: FloatArray
-    touching: NDArray[np.bool_]
+    touching: BoolArray
     surface: FloatArray
     strains: FloatArray
-    late: FloatArray
-    pace: FloatArray
-    events: list[tuple[FloatArray, NDArray[np.intp]]] = field(default_factory=list)
 
     @classmethod
     def undeformed(cls, law: SpringLaw, g: FloatArray, depth: float) -> SpringBed:
         """The bed at first touch; a depth [m] that is there from the start has been reached at once."""
         surface = np.maximum(depth - g, 0.0)
-        strains = np.repeat(surface[None], law.weights.size, axis=0)
-        return cls(law, g, surface > 0, surface, strains, np.zeros(g.size), np.zeros(g.size))
+        return cls(law, g, surface > 0, surface, np.repeat(surface[None], law.weights.size, axis=0))
 
     def copy(self) -> SpringBed:
         """The same springs, to be advanced on their own."""
         return replace(self, touching=self.touching.copy(), surface=self.surface.copy(), strains=self.strains.copy())
 
-    def beyond(self, number: int) -> SpringBed:
-        """The springs from a number on."""
-        own = slice(number, None)
-        rows = (self.g[own], self.touching[own], self.surface[own], self.strains[:, own])
-        return SpringBed(self.law, *rows, self.late[own], self.pace[own])
-
-    def along(self, path: Path, k: int) -> None:
-        """Advance through interval k of a path."""
-        span = float(path.time[k + 1] - path.time[k])
-        if path.free[k]:
-            self.release(span)
-        else:
-            self.advance(path.ways[k], span)
-
     def release(self, span: float) -> None:
         """Advance by a time [s] without the indenter."""
-        self.surface, self.strains = self.law.free(self.surface, self.strains, np.array([span]))
-        self.touching, self.late, self.events = np.zeros(self.g.size, dtype=np.bool_), np.zeros(self.g.size), []
+        self.surface, self.strains = self.law.free(self.surface, self.strains, span)
+        self.touching = np.zeros(self.g.size, dtype=np.bool_)
 
-    def advance(
-        self, way: FloatArray, span: float, nodes: FloatArray = _AT_END
-    ) -> tuple[FloatArray, NDArray[np.bool_]]:
+    def advance(self, coefficients: FloatArray, span: float, nodes: FloatArray = _AT_END) -> Passage:
         """Advance by a time [s] under an indenter.
 
         Args:
-            way: Coefficients of the depth over the share of that time [m].
+            coefficients: Coefficients of the depth over the share of that time [m].
             span: The time [s].
             nodes: Shares, increasing, the last one 1, shape (q,).
-
-        Returns:
-            Displacements of all ends [m] and whether springs touch at the nodes, each of shape (q, n).
 
         Raises:
             NotConvergedError: If a spring is touched and released without end.
         """
-        motion, count = Motion(self.law, way, span), self.g.size
-        seen = np.zeros((nodes.size, count)), np.zeros((nodes.size, count), dtype=np.bool_)
-        self.late, self.pace = np.zeros(count), np.zeros(count)
-        self.events = []
-        theta, moving = np.zeros(count), np.arange(count)
+        motion, shape = Motion.of(self.law, coefficients, span), (nodes.size, self.g.size)
+        passage = Passage(np.zeros(shape), np.zeros(shape, dtype=np.bool_), np.zeros(shape))
+        events, moving = np.zeros(self.g.size), np.arange(self.g.size)
         for number in range(_MOST_EVENTS):
-            # A spring that is touched and released at one instant is so by rounding.
-            motion = replace(motion, rounding=_ROUNDING * 2.0**number)
-            held = self.touching[moving]
-            moving = np.concatenate(
-                [self._stretch(i, motion, theta, nodes, seen) for i in (moving[held], moving[~held])]
-            )
+            pressed = self.touching[moving]
+            for group in (moving[pressed], moving[~pressed]):
+                if group.size:
+                    start = events[group] if number else np.zeros(1)
+                    course = self._course(group, motion, span, start)
+                    # A spring that is touched and released at one instant is so by rounding.
+                    course = course._replace(rounding=course.rounding * 2.0**number)
+                    events[group] = self._stretch(group, course, motion, nodes, passage)
+            moving = moving[events[moving] < np.inf]
             if not moving.size:
-                return seen
+                return passage._replace(edge=np.where(passage.touching, 1, -1) * np.abs(passage.edge))
         raise NotConvergedError(
             f"{moving.size} springs are touched and released more than {_MOST_EVENTS} times between two instants",
             {"springs": float(moving.size)},
         )
 
     def _stretch(
-        self,
-        i: NDArray[np.intp],
-        motion: Motion,
-        theta: FloatArray,
-        nodes: FloatArray,
-        seen: tuple[FloatArray, NDArray[np.bool_]],
-    ) -> NDArray[np.intp]:
-        """Advance springs i, all in contact or all free, to their next event or the end; those with an event."""
-        if not i.size:
-            return i
-        touching, start = bool(self.touching[i[0]]), theta[i]
-        start = start if start.any() else start[:1]
-        course = (self._force if touching else self._gap)(i, motion, start)
-        later, s = nodes[:, None] >= start, np.maximum(nodes[:, None], start)
-        surface = motion.depth(s) - self.g[i] if touching else course.fading(s).sum(axis=0)
-        for values, own in zip(seen, (surface, touching), strict=True):
-            values[:, i] = np.where(later, own, values[:, i])
-        event = first_fall(course)
+        self, i: NDArray[np.intp], course: Course, motion: Motion, nodes: FloatArray, passage: Passage
+    ) -> FloatArray:
+        """Advance springs i, all in contact or all free, to their next event or the end; shares of events, or inf."""
+        is_pressed, event = bool(self.touching[i[0]]), first_fall(course)
+        s = np.maximum(nodes[:, None], course.start)
+        values, is_later = course.values(s), nodes[:, None] >= course.start
+        surface = _polynomial(motion.depth, s) - self.g[i] if is_pressed else course.fading(s).sum(axis=0)
+        passage.surface[:, i] = np.where(is_later, surface, passage.surface[:, i])
+        passage.touching[:, i] = np.where(is_later, is_pressed, passage.touching[:, i])
+        is_continued = (nodes[:, None] > event) | ~course.start.any()
+        passage.edge[:, i] = np.where(is_continued, values, passage.edge[:, i])
         ends = event < np.inf
-        last, rest, at = i[ends], i[~ends], event[ends]
-        self._move(rest, motion, start[~ends] if start.size > 1 else start, _AT_END)
-        if last.size:
-            self._move(last, motion, start[ends] if start.size > 1 else start, at)
-            self.surface[last], self.touching[last] = motion.depth(at) - self.g[last], not touching
-            self.events.append((at, last))
-            theta[last], self.late[last] = at, motion.span * (1 - at)
-            self.pace[last] = np.abs(course.among(np.flatnonzero(ends)).with_slopes(at)[1]) / motion.span
-        return last
+        for some, end in ((~ends, _AT_END), (ends, event[ends])):
+            if some.any():
+                self._move(i[some], motion, course.among(some), end)
+        return event
 
-    def _move(self, i: NDArray[np.intp], motion: Motion, start: FloatArray, end: FloatArray) -> None:
-        """Move springs i, all in contact or all free, from shares of an interval to others."""
-        if not i.size:
-            return
-        time = motion.span * (end - start)
+    def _course(self, i: NDArray[np.intp], motion: Motion, span: float, start: FloatArray) -> Course:
+        """Forces of springs i in contact, or gaps of free ones, from their states at shares `start`."""
+        g, law = self.g[i], self.law
         if self.touching[i[0]]:
-            decay = np.exp(-np.divide.outer(time, self.law.times).T)
-            self.strains[:, i] = motion.strains(end) + decay * (self.strains[:, i] - motion.strains(start))
-            self.surface[i] = motion.depth(end) - self.g[i]
+            constant, rates, shared = -law.long_term * g, 1 / law.times, motion.force
+            strains = self.strains[:, i] - _polynomial(motion.strains[..., None], start)
+            fading = law.weights[:, None] * strains
         else:
-            self.surface[i], self.strains[:, i] = self.law.free(self.surface[i], self.strains[:, i], time)
+            constant, rates, shared = g, law.modes.rates, -motion.depth
+            fading = law.modes.amplitudes(self.surface[i], self.strains[:, i])
+        rounding = _ROUNDING * (g + np.abs(motion.depth).sum() + np.abs(fading).sum(axis=0))
+        return Course(constant, fading, span * rates, start, shared, rounding)
 
-    def _force(self, i: NDArray[np.intp], motion: Motion, start: FloatArray) -> Course:
-        """Force of springs in contact."""
-        law, constant = self.law, -self.law.long_term * self.g[i]
-        fading = law.weights[:, None] * (self.strains[:, i] - motion.strains(start))
-        own = self._rounding(i, motion, fading)
-        return Course(constant, fading, motion.span / law.times, start, motion.force, motion.force_slope, own)
-
-    def _gap(self, i: NDArray[np.intp], motion: Motion, start: FloatArray) -> Course:
-        """Gap between surface and indenter of free springs."""
-        fading = self.law.modes.amplitudes(self.surface[i], self.strains[:, i])
-        rates, own = motion.span * self.law.modes.rates, self._rounding(i, motion, fading)
-        return Course(
-            self.g[i], fading, rates, start, lambda s: -motion.depth(s), lambda s: -polynomial(motion.rise, s), own
-        )
-
-    def _rounding(self, i: NDArray[np.intp], motion: Motion, fading: FloatArray) -> FloatArray:
-        """Values whose sign is rounding, shape (n,)."""
-        return np.asarray(motion.rounding * (self.g[i] + np.abs(motion.way).sum() + np.abs(fading).sum(axis=0)))
+    def _move(self, i: NDArray[np.intp], motion: Motion, course: Course, end: FloatArray) -> None:
+        """Set springs i to their state at shares `end`, at which they are touched or released unless these are 1."""
+        fading = course.fading(end[None])[:, 0]
+        is_pressed, is_event = bool(self.touching[i[0]]), end is not _AT_END
+        if is_pressed:
+            self.strains[:, i] = _polynomial(motion.strains[..., None], end) + fading / self.law.weights[:, None]
+        else:
+            self.surface[i], self.strains[:, i] = fading.sum(axis=0), self.law.modes.strains @ fading
+        if is_pressed or is_event:
+            self.surface[i] = _polynomial(motion.depth, end) - self.g[i]
+        self.touching[i] = is_pressed != is_event
 
     def forces(self, speed: float) -> FloatArray:
         """f at an indenter's speed [m/s], zero where free, shape (n,)."""
@@ -382,22 +312,14 @@ class SpringBed:
         pressed = law.long_term * self.surface + law.viscosity * speed + law.weights @ self.strains
         return np.where(self.touching, pressed, 0.0)
 
-    def edge(self, depth: float, speed: float) -> FloatArray:
-        """Positive in contact, negative outside, and zero at the front, at a depth [m] and speed [m/s], shape (n,).
 
-        It continues the force across a front that has receded, and the gap across one that has advanced.
-        """
-        gap, since = self.surface + self.g - depth, self.pace * self.late
-        creep = -self.law.modes.rates @ self.law.modes.amplitudes(self.surface, self.strains)
-        inside = np.where(self.late > 0, np.minimum(self.forces(speed), since), self.forces(speed))
-        outside = np.where((self.late > 0) & (creep > speed), since, gap)
-        return np.where(self.touching, np.maximum(inside, 1e-300), -np.maximum(outside, 0.0))
-
-
-def followed(law: SpringLaw, g: FloatArray, path: Path) -> Iterator[SpringBed]:
-    """The bed at each instant of a path; one object that is advanced."""
+def followed(law: SpringLaw, g: FloatArray, path: Path) -> Iterator[tuple[SpringBed, FloatArray]]:
+    """The bed at each instant of a path, one object that is advanced, and `Passage.edge` there, shape (n,)."""
     bed = SpringBed.undeformed(law, g, float(path.depth[0]))
-    yield bed
-    for k in range(path.time.size - 1):
-        bed.along(path, k)
-        yield bed
+    yield bed, path.depth[0] - g
+    for k, span in enumerate(np.diff(path.time).tolist()):
+        if path.free is not None and path.free[k]:
+            bed.release(span)
+            yield bed, np.full(g.size, -1.0)
+        else:
+            yield bed, bed.advance(path.polynomials[k], span).edge[-1]

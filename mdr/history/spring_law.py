@@ -12,9 +12,9 @@ A mode exp(-lambda t) of it has q_j = d_j/(d_j - lambda) for u = 1, d_j = 1/tau_
 
     g_inf - eta lambda - sum_j g_j lambda/(d_j - lambda) = 0.
 
-The left side falls from one rate to the next, so each root lies between two rates. Each is stored as its distance from
-the nearer rate, and the moduli are computed from the roots (Gu and Eisenstat 1994, SIAM J. Matrix Anal. Appl. 15,
-1266): the modes are orthogonal to rounding however close or far apart the rates are.
+The left side decreases from one rate d_j to the next, so each root lies between two rates. Each is stored as its
+distance from the nearer rate, and the moduli are computed from the roots (Gu and Eisenstat 1994, SIAM J. Matrix Anal.
+Appl. 15, 1266): the modes are orthogonal to rounding however close or far apart the rates are.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ class Modes(NamedTuple):
         rates: lambda [1/s], shape (k,).
         of_surface: Amplitudes that a unit surface displacement has, shape (k, 1).
         of_dashpots: Amplitudes that unit stretches q_j of the dashpots have, shape (k, m).
-        of_force: Rates [1/s] at which amplitudes grow under a unit force, shape (k, 1). Without eta the surface is
+        of_force: Rates [1/s] at which amplitudes grow under a unit force, shape (k,). Without eta the surface is
             displaced by the force over the instantaneous modulus besides.
         strains: Elastic strains u - q_j of the branches in each mode of unit surface displacement, shape (m, k).
     """
@@ -74,68 +74,58 @@ class SpringLaw:
 
     @classmethod
     def of(cls, relaxation: Relaxation) -> SpringLaw:
-        """From moduli in pascals; relaxation times must increase."""
+        """Law of a relaxation function with moduli in pascals and increasing relaxation times."""
         modulus = relaxation.instantaneous_modulus
         weights, times = relaxation.moduli[::-1] / modulus, relaxation.times[::-1]
         return cls(relaxation.long_term_modulus / modulus, relaxation.viscosity / modulus, weights, times)
 
-    @property
-    def is_elastic(self) -> bool:
-        """Whether forces depend on the present displacement only."""
-        return self.viscosity == 0.0 and not self.weights.size
-
-    def free(self, surface: FloatArray, strains: FloatArray, t: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """u, shape (n,), and e_j, shape (m, n), of free springs after times t [s], shape (n,) or (1,)."""
-        faded = self.modes.amplitudes(surface, strains) * np.exp(-self.modes.rates[:, None] * t)
-        return faded.sum(axis=0), self.modes.strains @ faded
+    def free(self, surface: FloatArray, strains: FloatArray, t: float) -> tuple[FloatArray, FloatArray]:
+        """u, shape (n,), and e_j, shape (m, n), of free springs after a time t [s]."""
+        amplitudes = self.modes.amplitudes(surface, strains) * np.exp(-self.modes.rates * t)[:, None]
+        return amplitudes.sum(axis=0), self.modes.strains @ amplitudes
 
     @cached_property
     def modes(self) -> Modes:
-        """How a free spring creeps back."""
+        """Modes in which a free spring creeps back."""
         rates = 1 / self.times
-        origin, way = self._roots(rates)
-        distances = (rates[:, None] - origin) - way
-        found = self._moduli(rates, distances)
-        size = self.viscosity + (found * rates / distances.T**2).sum(axis=1, keepdims=True)
+        origin, offset = self._roots(rates)
+        distances = (rates[:, None] - origin) - offset
+        moduli = self._moduli(rates, distances)
+        size = self.viscosity + (moduli * rates / distances.T**2).sum(axis=1)
         return Modes(
-            rates=origin + way,
-            of_surface=self.viscosity / size,
-            of_dashpots=found / distances.T / size,
+            rates=origin + offset,
+            of_surface=(self.viscosity / size)[:, None],
+            of_dashpots=moduli / distances.T / size[:, None],
             of_force=1 / size,
-            strains=-(origin + way) / distances,
+            strains=-(origin + offset) / distances,
         )
 
     def _roots(self, rates: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Rates of the modes as nearest d_j, or zero, and distance from it, each of shape (k,)."""
-        low, high = np.concatenate([[0.0], rates]), np.append(rates, 0.0)
-        if self.viscosity > 0:
-            high[-1] = 2 / self.viscosity + 2 * (rates[-1] if rates.size else 0.0)
-        else:
-            low, high = low[:-1], high[:-1]
+        fastest = [2 / self.viscosity + 2 * rates.max(initial=0.0)] if self.viscosity > 0 else []
+        low, high = np.append(0.0, rates)[: rates.size + len(fastest)], np.append(rates, fastest)
 
-        def secular(origin: FloatArray, way: FloatArray) -> FloatArray:
-            branches = self.weights[:, None] / ((rates[:, None] - origin) - way)
-            return np.asarray(self.long_term - (origin + way) * (self.viscosity + branches.sum(axis=0)))
+        def secular(origin: FloatArray, offset: FloatArray) -> FloatArray:
+            branches = self.weights[:, None] / ((rates[:, None] - origin) - offset)
+            return np.asarray(self.long_term - (origin + offset) * (self.viscosity + branches.sum(axis=0)))
 
         half = (high - low) / 2
-        from_low = secular(low, half) <= 0
-        origin, sign = np.where(from_low, low, high), np.where(from_low, 1.0, -1.0)
+        is_near_low = secular(low, half) <= 0
+        origin, sign = np.where(is_near_low, low, high), np.where(is_near_low, 1.0, -1.0)
         # Bisection of the bits of a positive number converges to its last digit whatever its magnitude.
         least = np.where(origin == 0, 0.0, np.minimum(np.finfo(float).tiny, half))
         inner, outer = least.view(np.int64), half.view(np.int64)
         for _ in range(_HALVINGS):
             middle = inner + (outer - inner) // 2
-            above = sign * secular(origin, sign * middle.view(np.float64)) > 0
-            inner, outer = np.where(above, middle, inner), np.where(above, outer, middle)
+            is_above = sign * secular(origin, sign * middle.view(np.float64)) > 0
+            inner, outer = np.where(is_above, middle, inner), np.where(is_above, outer, middle)
         return origin, sign * inner.view(np.float64)
 
     def _moduli(self, rates: FloatArray, distances: FloatArray) -> FloatArray:
         """The g_j, shape (m,), for which the roots at these distances d_j - lambda_k, shape (m, k), are exact."""
         spread = np.abs(rates[:, None] - rates) + np.eye(rates.size)
-        product = np.prod(np.abs(distances[:, : rates.size]) / spread, axis=1)
-        if self.viscosity > 0:
-            product = product * self.viscosity * np.abs(distances[:, rates.size])
-        return np.asarray(product / rates)
+        product = np.prod(np.abs(distances[:, : rates.size]) / spread, axis=1) / rates
+        return np.asarray(product * self.viscosity * np.abs(distances[:, -1]) if self.viscosity > 0 else product)
 
     def elastic_force(self, time: FloatArray, force: FloatArray) -> FloatArray:
         """F_e = J * dF: force under which springs without relaxation are displaced as far at each instant, shape (n,).
@@ -144,15 +134,13 @@ class SpringLaw:
             time: Instants [s].
             force: F, linear between them; a force at the first instant is applied at once.
         """
-        if self.is_elastic:
-            return force
-        z = self.modes.rates[:, None] * np.diff(time)
+        span, rates = np.diff(time)[:, None], self.modes.rates
+        z = rates * span
         # 1F1(1, 2, -z) = (1 - exp(-z))/z and 1F1(1, 3, -z)/2 = (z - 1 + exp(-z))/z^2.
-        gained = force[:-1] * hyp1f1(1.0, 2.0, -z) + np.diff(force) * hyp1f1(1.0, 3.0, -z) / 2
-        gained = (self.modes.of_force * np.diff(time) * gained).T
-        amplitudes = [np.zeros(self.modes.rates.size)]
-        for decay, gain in zip(np.exp(-z.T), gained, strict=True):
-            amplitudes.append(amplitudes[-1] * decay + gain)
-        crept = np.sum(amplitudes, axis=1)
+        mean = force[:-1, None] * hyp1f1(1.0, 2.0, -z) + np.diff(force)[:, None] * hyp1f1(1.0, 3.0, -z) / 2
+        amplitudes = np.zeros((time.size, rates.size))
+        for k, (decay, gain) in enumerate(zip(np.exp(-z), self.modes.of_force * span * mean, strict=True)):
+            amplitudes[k + 1] = amplitudes[k] * decay + gain
+        crept = amplitudes.sum(axis=1)
         # A dashpot beside the springs holds them where they are: a force that is there at first does not move it.
         return np.asarray(crept if self.viscosity > 0 else force + crept)

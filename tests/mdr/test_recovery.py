@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 
 from contact.scene.effects import Relaxation
-from mdr.history.spring_bed import Path, SpringBed
+from mdr.history.spring_bed import SpringBed
 from mdr.history.spring_law import SpringLaw
 
 
 def advance(bed, start, end, time):
-    """The bed after a linear way of the indenter."""
+    """The bed after a linear motion of the indenter."""
     bed = bed.copy()
-    bed.along(Path.linear(np.array([0.0, time]), np.array([start, end])), 0)
+    bed.advance(np.array([start, end - start]), time)
     return bed
 
 
