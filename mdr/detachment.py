@@ -37,8 +37,8 @@ class Withdrawal:
     """A detachment at one resolution.
 
     Attributes:
-        contacts: Its equilibria.
-        branch: The same within a radius at least as large as the first one.
+        contacts: Equilibria of the scene.
+        branch: Equilibria up to a radius at least as large as the first one.
         start: y of the branch where the front sets off.
     """
 
@@ -82,14 +82,14 @@ class Withdrawal:
 
     def places(self) -> FloatArray:
         """y of the states, shape (POINTS,)."""
-        held = _PINNED if self.pinned else 0
-        way = np.append(np.ones(held), np.linspace(1.0, 0.0, POINTS - held, endpoint=False))
+        pinned_count = _PINNED if self.pinned else 0
+        way = np.append(np.ones(pinned_count), np.linspace(1.0, 0.0, POINTS - pinned_count, endpoint=False))
         return np.asarray(self.start * way)
 
     def share(self) -> FloatArray:
         """Share of depth and force at which the front sets off, one from there on, shape (POINTS,)."""
-        held = _PINNED if self.pinned else 0
-        return np.append(np.arange(held) / max(held, 1), np.ones(POINTS - held))
+        pinned_count = _PINNED if self.pinned else 0
+        return np.append(np.arange(pinned_count) / max(pinned_count, 1), np.ones(POINTS - pinned_count))
 
 
 def solve_detachment(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[str, Setting]) -> DetachmentPath:
@@ -104,12 +104,12 @@ def solve_detachment(scene: Scene, flat_punch: FlatPunchSource, settings: Mappin
         raise UnsupportedSceneError(f"loading = {type(loading).__name__}: a detachment path needs Detachment")
     with log.stage("adhesion"):
         contacts = Adhesive(scene, springs_of(scene, flat_punch, log))
-        own, other = Withdrawal.of(contacts, loading), Withdrawal.of(contacts.finer, loading)
-        radius, values, stable = own.states()
+        fine, other = Withdrawal.of(contacts, loading), Withdrawal.of(contacts.finer, loading)
+        radius, values, stable = fine.states()
         refuse_touching(contacts, radius, values[DEPTH])
         control = CONTROLS.index(loading.controlled)
-        scalars = own.branch.pull_off(control, own.start)
-        errors = _detachment_errors(own, other, control)
+        scalars = fine.branch.pull_off(control, fine.start)
+        errors = _detachment_errors(fine, other, control)
     return DetachmentPath(
         scene=scene,
         method="mdr",
@@ -123,31 +123,31 @@ def solve_detachment(scene: Scene, flat_punch: FlatPunchSource, settings: Mappin
         normal_force=values[FORCE],
         stable_displacement_control=stable[DEPTH],
         stable_force_control=stable[FORCE],
-        critical_points=own.branch.critical_points(own.start, pinned=own.pinned),
+        critical_points=fine.branch.critical_points(fine.start, pinned=fine.pinned),
         **scalars,
     )
 
 
-def _detachment_errors(own: Withdrawal, other: Withdrawal, control: int) -> dict[str, FloatArray]:
+def _detachment_errors(fine: Withdrawal, other: Withdrawal, control: int) -> dict[str, FloatArray]:
     """Stated errors of a detachment: along the path relative to its largest values."""
-    radius, values, _ = own.states()
+    radius, values, _ = fine.states()
     companion, _, _ = other.states()
-    rounding = own.contacts.rounding(radius)
-    found = {"contact_radius": stated_error(radius, companion, scale=radius.max(), floor=1e-14)}
-    share = own.share()
-    direct = other.contacts.states(radius, own.branch.radius(own.places(), own.contacts.springs.tip.flat))
+    rounding = fine.contacts.rounding(radius)
+    errors = {"contact_radius": stated_error(radius, companion, scale=radius.max(), floor=1e-14)}
+    share = fine.share()
+    direct = other.contacts.states(radius, fine.branch.radius(fine.places(), fine.contacts.springs.tip.flat))
     for row, name in enumerate(("indentation_depth", "normal_force")):
         size = np.abs(values[row]).max()
-        found[name] = stated_error(values[row], share * direct[row], scale=size, floor=rounding[row] / size)
-    first, second = (one.branch.pull_off(control, one.start) for one in (own, other))
+        errors[name] = stated_error(values[row], share * direct[row], scale=size, floor=rounding[row] / size)
+    first, second = (path.branch.pull_off(control, path.start) for path in (fine, other))
     lost = np.array([first["pull_off_contact_radius"]])
-    floors = own.contacts.rounding(lost)[:, 0] if lost[0] else np.zeros(2)
+    floors = fine.contacts.rounding(lost)[:, 0] if lost[0] else np.zeros(2)
     floor = {"pull_off_depth": floors[DEPTH], "pull_off_contact_radius": 1e-13 * lost[0]}
     for name, value in first.items():
         size = abs(value) or 1.0
-        own_floor = floor.get(name, floors[FORCE])
-        found[name] = _PLACE * stated_error(value, second[name], scale=size, floor=float(own_floor) / size)
-    return found
+        least = floor.get(name, floors[FORCE])
+        errors[name] = _PLACE * stated_error(value, second[name], scale=size, floor=float(least) / size)
+    return errors
 
 
 def _notes(contacts: Adhesive, radius: float) -> tuple[str, ...]:

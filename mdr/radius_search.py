@@ -290,8 +290,8 @@ class RadiusSearch:
         is_contact: Callable[[float], None],
         ring: SeveralContacts,
     ) -> FloatArray:
-        """Of all radii with one depth or force the one that is a contact; the contact problem has one solution only."""
-        z, found = rough[0], np.empty_like(y)
+        """Radius of the contact among all radii with one depth or force; the contact problem has one solution only."""
+        z, contact_radii = rough[0], np.empty_like(y)
         tops = 1 + np.flatnonzero((np.diff(rough[1])[:-1] > 0) & (np.diff(rough[1])[1:] <= 0))
         close = [np.linspace(z[i - 1], z[i + 1], _AROUND_TOP) for i in tops.tolist()]
         z = np.unique(np.concatenate([z, *close]))
@@ -304,17 +304,17 @@ class RadiusSearch:
                 float(self.refined(quantity, np.array([target]), s, k)[0])
                 for s, k in zip(start[:, None], slope[:, None], strict=True)
             ]
-            found[i] = self._only_contact(radii, is_contact, ring)
-        return found
+            contact_radii[i] = self._only_contact(radii, is_contact, ring)
+        return contact_radii
 
     def _only_contact(self, radii: list[float], is_contact: Callable[[float], None], ring: SeveralContacts) -> float:
         objection: UnsupportedSceneError = ring
         for radius in radii:
             try:
                 is_contact(radius)
-            except UnsupportedSceneError as own:
+            except UnsupportedSceneError as refusal:
                 # A circle short of the falling stretch, known to one step of the table, has its own reason.
-                objection = own if radius < ring.radius * np.exp(1 / _DENSITY) else objection
+                objection = refusal if radius < ring.radius * np.exp(1 / _DENSITY) else objection
                 continue
             return radius
         raise objection

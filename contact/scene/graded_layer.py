@@ -130,7 +130,7 @@ class TabulatedDepth(DepthFunction):
 
     Attributes:
         depths: z [m], increasing from zero to at least the layer's thickness, shape (n,).
-        values: There, shape (n,).
+        values: Values at these depths, shape (n,).
     """
 
     depths: Annotated[Vector, *vector("give depths in metres, from the surface down", "m", least=0.0, increasing=True)]
