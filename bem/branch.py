@@ -85,7 +85,7 @@ class Branch:
 
         radii = np.array([0.0, *(b for b in sorted(set(breakpoints)) if 0.0 < b < radius), radius])
         ends = np.concatenate([[0.0], np.cumsum(np.sqrt(np.diff(radii)))])
-        sections = (section(*one) for one in zip(radii.tolist(), ends[:-1].tolist(), ends[1:].tolist(), strict=False))
+        sections = (section(*part) for part in zip(radii.tolist(), ends[:-1].tolist(), ends[1:].tolist(), strict=False))
         return cls(reduce(Piecewise.followed_by, sections), ends, radii, compliance)
 
     @property
@@ -131,15 +131,15 @@ class Branch:
 
     def solutions(self, control: int, target: FloatArray) -> FloatArray:
         """y of each target on each stable part of the branch, from the tip outwards, shape (parts, n); or NaN."""
-        found = []
+        places = []
         for low, high in pairwise([0.0, *self.folds(control), self.end]):
             if self.stable(control, np.array([0.5 * (low + high)]))[0]:
                 # Rounded values may jump at a kink; targets within the jump have their solution there.
                 ends = self.functions(np.array([low, np.nextafter(low, high), high]))[control]
                 inside = (target >= ends[:2].min()) & (target <= ends[2])
-                found.append(np.full(target.shape, np.nan))
-                found[-1][inside] = self._inverted(control, target[inside], low, high)
-        return np.array(found).reshape(-1, *target.shape)
+                places.append(np.full(target.shape, np.nan))
+                places[-1][inside] = self._inverted(control, target[inside], low, high)
+        return np.array(places).reshape(-1, *target.shape)
 
     def smallest(self, control: int, target: FloatArray) -> FloatArray:
         """Smallest y of a stable equilibrium with each q, shape (n,); NaN where there is none."""
@@ -204,8 +204,8 @@ class Branch:
 
     def _is_met(self, control: int, y: float, start: float) -> bool:
         """Whether a withdrawal passes the state at y: every state of larger radius has a larger q."""
-        outside = [one for one in (*self._within(control, start), start) if one > y]
-        return all(self.at(control, one) >= self.at(control, y) for one in outside)
+        outside = [fold for fold in (*self._within(control, start), start) if fold > y]
+        return all(self.at(control, fold) >= self.at(control, y) for fold in outside)
 
     def _kind(self, control: int, y: float) -> str:
         """Kind of a fold: "pull-off" if the states of slightly larger radius are stable, else "snap-in"."""

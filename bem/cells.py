@@ -67,9 +67,9 @@ class CellGrid:
 
     Attributes:
         scene: Layer, indenter and adhesion.
-        radius: Of the disc [m].
-        cells: Across the grid.
-        threads: Of the transforms.
+        radius: Radius of the grid's disc [m].
+        cells: Number of cells across the grid.
+        threads: Number of threads of the transforms.
     """
 
     scene: Scene
@@ -137,13 +137,13 @@ class CellGrid:
 
     def followed(self, depths: FloatArray) -> FloatArray:
         """`row` at depths [m] in their order, from out of contact; zero without contact, shape (4, n)."""
-        held: CellState | None = None
+        state: CellState | None = None
         rows = np.zeros((depths.size, 4))
         for i, depth in enumerate((depths / self.size).tolist()):
-            before = held if held is not None and depth < held.depth else self.first
-            held = self.settled(before, depth, 0.0) if held is not None or depth >= 0.0 else None
-            if held is not None:
-                rows[i] = *self.row(held), self.stiffness(held)
+            before = state if state is not None and depth < state.depth else self.first
+            state = self.settled(before, depth, 0.0) if state is not None or depth >= 0.0 else None
+            if state is not None:
+                rows[i] = *self.row(state), self.stiffness(state)
         return rows.T
 
     def row(self, state: CellState) -> tuple[float, float, float]:
@@ -180,20 +180,20 @@ def _path(fine: CellGrid, coarse: CellGrid) -> dict[str, Any]:
 
 def _detachment(fine: CellGrid, coarse: CellGrid) -> dict[str, Any]:
     """Numbers of a detachment."""
-    found, other = fine.unloaded(), coarse.unloaded()
-    radius, lag, least = found[0], fine.size / found[0], int(found[2].argmin())
-    near = [np.interp(radius, other[0][::-1], one[::-1]) for one in other]
-    errors = {name: _errors(one, two, lag) for name, one, two in zip(NAMES, found, near, strict=False)}
+    columns, other = fine.unloaded(), coarse.unloaded()
+    radius, lag, least = columns[0], fine.size / columns[0], int(columns[2].argmin())
+    near = [np.interp(radius, other[0][::-1], row[::-1]) for row in other]
+    errors = {name: _errors(row, two, lag) for name, row, two in zip(NAMES, columns, near, strict=False)}
     by_force = fine.scene.loading.controlled == "force"  # type: ignore[attr-defined]
-    scalars, others = (_pull_off(columns, by_force=by_force) for columns in (found, other))
+    scalars, others = (_pull_off(rows, by_force=by_force) for rows in (columns, other))
     for name, value in scalars.items():
         # At a fold depth and force are stationary: the radius is known to the root of their error.
         flat = 0.0 if name == "pull_off_force" else 2.0 * sqrt(FOLD)
         errors[name] = _errors(np.array([value]), np.array([others[name]]), lag[:1] + flat / LAG)
-    states = [dict(zip(NAMES, column, strict=False)) for column in found.T.tolist()]
+    states = [dict(zip(NAMES, column, strict=False)) for column in columns.T.tolist()]
     points = {"force": states[least], "displacement": states[-1]}
     return scalars | {
-        **dict(zip(NAMES, found, strict=False)),
+        **dict(zip(NAMES, columns, strict=False)),
         "stable_displacement_control": np.ones(radius.size, dtype=np.bool_),
         "stable_force_control": np.arange(radius.size) <= least,
         "critical_points": tuple(CriticalPoint(control=c, kind="pull-off", **point) for c, point in points.items()),

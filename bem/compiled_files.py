@@ -29,7 +29,7 @@ def compiled(name: str, otherwise: str) -> Any:
     """A compiled file alone; where it is loaded already, or arranged in another way, what its package offers.
 
     Args:
-        name: Of the compiled file, as "scipy.linalg._flapack".
+        name: Name of the compiled file, as "scipy.linalg._flapack".
         otherwise: The public module with the same functions, as "scipy.linalg.lapack".
     """
     return _alone(name) or importlib.import_module(otherwise)
@@ -42,12 +42,12 @@ def _alone(name: str) -> ModuleType | None:
     if name in sys.modules or package is None or not package.submodule_search_locations:
         return None
     folder = Path(package.submodule_search_locations[0]).joinpath(*folders)
-    found = importlib.machinery.PathFinder.find_spec(name, [str(folder)])
-    if found is None or found.loader is None:
+    spec = importlib.machinery.PathFinder.find_spec(name, [str(folder)])
+    if spec is None or spec.loader is None:
         return None
     try:
-        module = importlib.util.module_from_spec(found)
-        found.loader.exec_module(module)
+        module = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(module)
     except ImportError:
         # Some systems find the libraries behind it only after the package's own set-up.
         return None

@@ -71,8 +71,8 @@ class Sizes(NamedTuple):
     @property
     def finer(self) -> Sizes:
         """The companion that states errors."""
-        one = self._replace(nodes=self.nodes + 4, width=0.8 * self.width, waves=self.waves + 6, reach=self.reach + 3)
-        return one._replace(slopes=self.slopes + 4, terms=self.terms + 1, corner=self.corner / 4)
+        sizes = self._replace(nodes=self.nodes + 4, width=0.8 * self.width, waves=self.waves + 6, reach=self.reach + 3)
+        return sizes._replace(slopes=self.slopes + 4, terms=self.terms + 1, corner=self.corner / 4)
 
 
 class Kernel:
@@ -209,7 +209,7 @@ def panels_of(profile: Profile, a: float, kernel: Kernel) -> Panels:
     width = kernel.sizes.width * a if kernel.is_uniform else kernel.width
     pole = profile.radius if isinstance(profile, Sphere | Spheroconical) else inf
     ends = np.unique([0.0, *(b for b in (profile.flat_radius, *profile.breakpoints) if b < a), a]).tolist()
-    found = []
+    ranges = []
     for i, (start, stop) in enumerate(pairwise(ends)):
         gap = min(start - ends[i - 1], abs(pole - start)) if i else _TIP * a if isinstance(profile, PowerLaw) else width
         corner = stop if kernel.is_graded and (stop == a or stop in profile.kinks) else inf
@@ -219,9 +219,9 @@ def panels_of(profile: Profile, a: float, kernel: Kernel) -> Panels:
             t = start + low**2
             longest = min(width, max((corner - t) / 2, shortest), (upright - t) / 3)
             end = min(low + sqrt((low**2 + gap) / 2), sqrt(low**2 + longest))
-            found.append((start, low, end if end < high * (1 - 1e-9) else high))
-            low = found[-1][-1]
-    starts, lows, highs = np.array(found).T
+            ranges.append((start, low, end if end < high * (1 - 1e-9) else high))
+            low = ranges[-1][-1]
+    starts, lows, highs = np.array(ranges).T
     return Panels(starts, lows, highs, kernel.sizes.nodes)
 
 
@@ -229,7 +229,7 @@ class Density:
     """Solution for one contact radius; columns of arrays belong to the right-hand sides 1 and g_hs.
 
     Args:
-        kernel: Of the layer.
+        kernel: 1 - chi of the layer.
         profile: The indenter.
         a: Contact radius [m].
     """

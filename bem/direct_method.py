@@ -219,14 +219,14 @@ class DirectSolver:
             if pressure.min() < -_LEAST_TENSION * contact.mean_pressure:
                 raise no_single_circle(contact.state[0], f"would be pulled at r = {radius[pressure.argmin()]:g} m")
 
-    def changes(self, one: Contact, other: Contact) -> FloatArray:
+    def changes(self, contact: Contact, other: Contact) -> FloatArray:
         """Relative changes of depth, force, stiffness, pressure and displacement between contacts of one radius."""
-        a, depth = one.state[:2]
+        a, depth = contact.state[:2]
         x = gauss(_INSIDE)[0]
-        p, q = ((np.sqrt(1 - x * x) if self.is_punch else 1.0) * self.pressure(of, a * x) for of in (one, other))
-        w, v = (of.density.displacement(a * _OUTSIDE, of.state[1]) for of in (one, other))
-        fields = np.abs(p - q).max() / one.mean_pressure, np.abs(w - v).max() / depth
-        return np.append(np.abs(other.state[1:] / one.state[1:] - 1), fields)
+        p, q = ((np.sqrt(1 - x * x) if self.is_punch else 1.0) * self.pressure(of, a * x) for of in (contact, other))
+        w, v = (of.density.displacement(a * _OUTSIDE, of.state[1]) for of in (contact, other))
+        fields = np.abs(p - q).max() / contact.mean_pressure, np.abs(w - v).max() / depth
+        return np.append(np.abs(other.state[1:] / contact.state[1:] - 1), fields)
 
 
 class DirectFields(NamedTuple):

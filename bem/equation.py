@@ -295,8 +295,8 @@ class FlatPunches:
     def at(self, radii: FloatArray) -> Iterator[Rows]:
         """Rows at contact radii, shape (n,), one octave after the other."""
         if self.kernel.is_uniform:
-            one = np.ones((radii.size, 1))
-            yield Rows(np.arange(radii.size), one, 0 * one, np.ones((radii.size, 2)))
+            unit = np.ones((radii.size, 1))
+            yield Rows(np.arange(radii.size), unit, 0 * unit, np.ones((radii.size, 2)))
             return
         for octave, index in self._rows.groups(radii):
             # Not what was asked before, only this call decides, so that answers repeat to the last digit.
@@ -323,8 +323,8 @@ class FlatPunches:
 
     def _solved(self, a: float, octave: int) -> FloatArray:
         """Punch, resolvent and noise of one radius."""
-        one = self._factored(a, octave)
-        return np.concatenate([one.punch, one.resolvent, one.noise])
+        equation = self._factored(a, octave)
+        return np.concatenate([equation.punch, equation.resolvent, equation.noise])
 
 
 @lru_cache(maxsize=128)

@@ -52,7 +52,7 @@ class Bem(Record):
         accuracy: Relative accuracy wanted in all quantities but the fields; then the points are chosen: those of
             `ACCURACY_POINTS` are tried in turn until the stated errors hold.
         boundary: "free" space, or "periodic" with 16 thicknesses between images (thin uniform layers).
-        threads: Of the transforms.
+        threads: Number of threads of the transforms.
         adhesion: What lets go of an adhering indenter: the edge of "discs" of cells, by the energy it releases, or
             single "cells" beyond a stress that depends on their size (`bem.cells`).
 
@@ -163,7 +163,7 @@ class Bem(Record):
         return solve_cells(scene, self.points, self.threads, self.settings())
 
     def settings(self) -> dict[str, Setting]:
-        """As an answer reports them; an accuracy only where one was asked for."""
+        """Settings that an answer reports; an accuracy only where one was asked for."""
         return {name: value for name, value in dataclasses.asdict(self).items() if value is not None}
 
     def _solve_to_accuracy(self, scene: Scene, accuracy: float) -> ContactPath | DetachmentPath:

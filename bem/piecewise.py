@@ -77,7 +77,8 @@ class Piecewise:
             )
         done.sort(key=lambda panel: panel[0])
         return cls(
-            np.array([low, *(one[1] for one in done)]), np.stack([one[2] for one in done], axis=2).swapaxes(0, 1)
+            np.array([low, *(piece[1] for piece in done)]),
+            np.stack([piece[2] for piece in done], axis=2).swapaxes(0, 1),
         )
 
     def followed_by(self, other: Piecewise) -> Piecewise:

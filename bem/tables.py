@@ -49,7 +49,7 @@ class Densities(NamedTuple):
     Attributes:
         y1: phi_1 at the edge, shape (n,).
         density: c_0 = k_bar, c_1, .., shape (n, m).
-        slope: Their derivatives by ln(a), shape (n, m).
+        slope: Derivatives of the density by ln(a), shape (n, m).
     """
 
     y1: FloatArray
@@ -88,13 +88,13 @@ class FlatPunchTable:
         """Refuse what is not a table."""
         shape = self.ratios.size, self.radii.size
         steps = np.diff(self.ratios, prepend=0.0), np.diff(self.radii), 1.0 - self.radii, self.radii[:1] + 1e-300
-        if shape[0] < BEYOND or not all(np.all(one > 0.0) for one in steps):
+        if shape[0] < BEYOND or not all(np.all(values > 0.0) for values in steps):
             raise InvalidInput(
                 f"flat-punch table: at least {BEYOND} positive ratios, and radii in [0, 1), must increase"
             )
         if self.stiffness.shape != shape[:1] or self.pressure.shape != shape:
             raise InvalidInput(f"flat-punch table: stiffness and pressure must have shapes {shape[:1]} and {shape}")
-        if not all(np.all(np.isfinite(one) & (one >= 0.0)) for one in (self.stiffness, self.pressure)):
+        if not all(np.all(np.isfinite(values) & (values >= 0.0)) for values in (self.stiffness, self.pressure)):
             raise InvalidInput("flat-punch table: stiffness and pressure must be finite and not negative")
 
     @property
@@ -149,7 +149,7 @@ def refuse_beyond(ratio: float, largest: float) -> None:
     """Refuse a ratio a/h beyond the largest one of a table.
 
     Raises:
-        InvalidInput: With both.
+        InvalidInput: With both ratios.
     """
     if not 0.0 < ratio <= largest * (1.0 + 1e-9):
         raise InvalidInput(
@@ -266,9 +266,9 @@ def _row(layer: Layer, ratio: float, cells: int) -> tuple[float, FloatArray, Flo
     k, series = 0.0, np.zeros((2, LARGEST_DEGREE + 1))
     for boundary, share in shares.items():
         if share:
-            one = punch(layer, ratio, cells, boundary)
-            k += share * one.growth
-            series[:, : one.degree + 1] += [share * one.series(one.degree, edge) for edge in (0.0, 1.0)]
+            disc = punch(layer, ratio, cells, boundary)
+            k += share * disc.growth
+            series[:, : disc.degree + 1] += [share * disc.series(disc.degree, edge) for edge in (0.0, 1.0)]
     return k, series[0], series[1]
 
 
@@ -305,7 +305,7 @@ class TableFile(Record):
         return table
 
     def refined(self) -> Self:
-        """There is no finer file.
+        """Refuses, since a stored table has no finer one.
 
         Raises:
             InvalidInput: Always.

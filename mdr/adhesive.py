@@ -86,7 +86,7 @@ class Adhesive:
 
     @property
     def finer(self) -> Adhesive:
-        """The same scene at a finer resolution: the difference of the answers is the stated error."""
+        """Equilibria of the scene at a finer resolution: the difference of the answers is the stated error."""
         return replace(self, springs=self.springs.finer, longer=_LONGER)
 
     @cached_property
@@ -175,11 +175,11 @@ def solve_adhesive(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[
     with log.stage("adhesion"):
         contacts = Adhesive(scene, springs_of(scene, flat_punch, log))
         springs = contacts.springs
-        found, other = _prescribed(contacts), _prescribed(contacts.finer)
-        radius, depth, force = found
+        triple, other = _prescribed(contacts), _prescribed(contacts.finer)
+        radius, depth, force = triple
         refuse_touching(contacts, radius, depth)
         stiffness = 2 * springs.modulus * springs.at(radius).K
-        errors = _path_errors(contacts, found, other)
+        errors = _path_errors(contacts, triple, other)
     return ContactPath(
         scene=scene,
         method="mdr",
@@ -238,13 +238,13 @@ def _refuse_missing(y: FloatArray, values: FloatArray, branch: Branch, quantity:
     )
 
 
-def _path_errors(contacts: Adhesive, found: Triple, other: Triple) -> dict[str, StatedError]:
+def _path_errors(contacts: Adhesive, triple: Triple, other: Triple) -> dict[str, StatedError]:
     """Stated errors of a path, relative to its largest values."""
-    springs, (radius, depth, force) = contacts.springs, found
+    springs, (radius, depth, force) = contacts.springs, triple
     loading, rounding = contacts.scene.loading, contacts.rounding(radius)
     by_depth, by_force = (isinstance(loading, kind) for kind in (IndentationDepths, NormalForces))
     values, floor = springs.at(radius), np.max(springs.floor(radius), axis=0)
-    scale = [max(float(np.abs(one).max()), 1e-300) for one in found]
+    scale = [max(float(np.abs(column).max()), 1e-300) for column in triple]
     # The rounding error of a prescribed depth or force, divided by the branch's slope, is an error of the radius.
     row, step = FORCE if by_force else DEPTH, 1e-4
     slope = np.abs(contacts.states(radius)[row] - contacts.states(radius * (1 - step))[row]) / (step * radius)
@@ -263,15 +263,15 @@ def _path_errors(contacts: Adhesive, found: Triple, other: Triple) -> dict[str, 
         "normal_force": 0 * a_error if by_force else force_error,
         "contact_stiffness": stiffness,
     }
-    return errors | _field_errors(contacts, found, a_error)
+    return errors | _field_errors(contacts, triple, a_error)
 
 
-def _field_errors(contacts: Adhesive, found: Triple, a_error: FloatArray) -> dict[str, StatedError]:
+def _field_errors(contacts: Adhesive, triple: Triple, a_error: FloatArray) -> dict[str, StatedError]:
     """Relative stated errors of pressure and surface displacement.
 
     They add the difference of two resolutions, rounding, and the effect of `a_error`, the relative error of the radius.
     """
-    springs, (radius, depth, force) = contacts.springs, found
+    springs, (radius, depth, force) = contacts.springs, triple
     values, floor = springs.at(radius), np.max(springs.floor(radius), axis=0)
     load = np.maximum(np.abs(force), 2 * springs.modulus * values.K * np.abs(depth))
     scale = float((load / (np.pi * radius**2)).max())

@@ -57,7 +57,7 @@ def refuse_pulling(surface: Surface, mean: float, error: Callable[[], float]) ->
 
     Args:
         surface: The contact.
-        mean: Its mean pressure [Pa].
+        mean: Mean pressure of the contact [Pa].
         error: Computes the stated error of the pressure over the mean one.
 
     Raises:
@@ -120,7 +120,7 @@ def _stiffens_downwards(layer: ElasticLayer) -> bool:
     if not isinstance(layer, LayerStack):
         return False
     base = (layer.support,) if isinstance(layer.support, ElasticBase) else ()
-    parts = [(one.youngs_modulus, one.poissons_ratio) for one in (*layer.sublayers, *base)]
+    parts = [(part.youngs_modulus, part.poissons_ratio) for part in (*layer.sublayers, *base)]
     shear = [E / (2 * (1 + nu)) for E, nu in parts]
     confined = [
         np.inf if nu == 0.5 else 2 * G * (1 - nu) / (1 - 2 * nu) for G, (_, nu) in zip(shear, parts, strict=True)

@@ -133,7 +133,7 @@ def _together(scenes: list[Scene], flat_punch: FlatPunchSource) -> FloatArray:
     if not is_power_law(scenes[0].indenter):
         return _on_layers(scenes, flat_punch)
     units = [own_units(scene.layer, scene.indenter) for scene in scenes]
-    length, depth, stiffness = (np.array([getattr(one, name) for one in units]) for name in OwnUnits.SCALES)
+    length, depth, stiffness = (np.array([getattr(unit, name) for unit in units]) for name in OwnUnits.SCALES)
     values = np.array([scene.loading.values[0] for scene in scenes if isinstance(scene.loading, _PRESCRIBED)])
     unit_of = {ContactRadii: length, IndentationDepths: depth, NormalForces: stiffness * depth}
     kind = next(kind for kind in _PRESCRIBED if isinstance(scenes[0].loading, kind))

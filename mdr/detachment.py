@@ -7,7 +7,8 @@ The whole branch of equilibria (`mdr.adhesive`) gives stability and pull-off und
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -15,7 +16,7 @@ from bem.branch import CONTROLS, DEPTH, FORCE, Branch
 from bem.flat_punch import FlatPunchSource
 from contact import Detachment, DetachmentPath, FlatPunch, InvalidInput, Scene, StageLog, UnsupportedSceneError
 from contact.answer.solution import Setting
-from contact.records.validation import BoolArray, FloatArray
+from contact.records.validation import FloatArray
 from contact.stated import stated_error
 from mdr.adhesive import Adhesive, refuse_touching, work_of_adhesion
 from mdr.contact_surface import surface_of
@@ -27,18 +28,19 @@ POINTS = 200
 _PINNED = POINTS // 5
 # A punch's tension may be largest in its centre from this Poisson's ratio on; beyond this a/h it keeps its shape.
 _CONFINED, _THINNEST, _INSIDE = 0.45, 50.0, 0.1
+# Relative rounding error of contact radii along a path, a tenth of that of the radius at pull-off.
+_RADIUS = 1e-14
 # Change between resolutions where contact is lost, over that of other states: it is the place of a minimum, which moves
 # by the slope of the branch's error, and is rounded. With 1 two of fifty graded layers are not covered.
 _PLACE = 2.0
 
 
-@dataclass(frozen=True, eq=False)
-class Withdrawal:
+class Withdrawal(NamedTuple):
     """A detachment at one resolution.
 
     Attributes:
-        contacts: Its equilibria.
-        branch: The same within a radius at least as large as the first one.
+        contacts: Equilibria of the scene.
+        branch: Equilibria up to a radius at least as large as the first one.
         start: y of the branch where the front sets off.
     """
 
@@ -46,50 +48,32 @@ class Withdrawal:
     branch: Branch
     start: float
 
-    @classmethod
-    def of(cls, contacts: Adhesive, loading: Detachment) -> Withdrawal:
-        """The withdrawal that a loading asks for.
 
-        Raises:
-            InvalidInput: If there is nothing to detach, or the indenter ends too early.
-        """
-        scene = contacts.scene
-        is_punch, compliance = isinstance(scene.indenter, FlatPunch), 1.0 / (loading.machine_stiffness or np.inf)
-        if is_punch or loading.initial_contact_radius is not None:
-            branch = contacts.branch(loading.initial_contact_radius or scene.indenter.max_radius, compliance)
-            return cls(contacts, branch, branch.end)
-        if work_of_adhesion(scene) == 0.0:
-            raise InvalidInput(
-                "effects: without work of adhesion nothing says where to start; give initial_contact_radius"
-            )
-        branch = contacts.reaching(lambda b: b.at(FORCE, b.end) >= b.strength, compliance)
-        start = float(branch.smallest(FORCE, np.array([branch.strength]))[0])
-        return cls(contacts, branch, branch.end if np.isnan(start) else start)
+def withdrawal(contacts: Adhesive, loading: Detachment) -> Withdrawal:
+    """Equilibria of the withdrawal that a loading prescribes, and where it starts.
 
-    @property
-    def pinned(self) -> bool:
-        """Whether the front rests at a punch's edge at first."""
-        return isinstance(self.contacts.scene.indenter, FlatPunch)
+    Raises:
+        InvalidInput: If there is nothing to detach, or the indenter ends too early.
+    """
+    scene, compliance = contacts.scene, 1.0 / (loading.machine_stiffness or np.inf)
+    if isinstance(scene.indenter, FlatPunch) or loading.initial_contact_radius is not None:
+        branch = contacts.branch(loading.initial_contact_radius or scene.indenter.max_radius, compliance)
+        return Withdrawal(contacts, branch, branch.end)
+    if work_of_adhesion(scene) == 0.0:
+        raise InvalidInput("effects: without work of adhesion nothing says where to start; give initial_contact_radius")
+    branch = contacts.reaching(lambda b: b.at(FORCE, b.end) >= b.strength, compliance)
+    start = float(branch.smallest(FORCE, np.array([branch.strength]))[0])
+    return Withdrawal(contacts, branch, branch.end if np.isnan(start) else start)
 
-    def states(self) -> tuple[FloatArray, FloatArray, BoolArray]:
-        """Radius, depth and force with it, and stability by control, the radius falling.
 
-        A pinned front comes first: from rest to where it sets off, depth and force are shares of what they are there.
-        """
-        branch, share, y = self.branch, self.share(), self.places()
-        stable = np.stack([branch.stable(control, y) | (share < 1.0) for control in (DEPTH, FORCE)])
-        return branch.radius(y), share * branch.values(y), stable
+def shares(*, is_punch: bool) -> FloatArray:
+    """Shares of y, and of depth and force, along a path relative to where the front sets off, shape (2, POINTS).
 
-    def places(self) -> FloatArray:
-        """y of the states, shape (POINTS,)."""
-        held = _PINNED if self.pinned else 0
-        way = np.append(np.ones(held), np.linspace(1.0, 0.0, POINTS - held, endpoint=False))
-        return np.asarray(self.start * way)
-
-    def share(self) -> FloatArray:
-        """Share of depth and force at which the front sets off, one from there on, shape (POINTS,)."""
-        held = _PINNED if self.pinned else 0
-        return np.append(np.arange(held) / max(held, 1), np.ones(POINTS - held))
+    The front of a flat punch first rests at the edge, while depth and force rise.
+    """
+    rests = _PINNED if is_punch else 0
+    y = np.append(np.ones(rests), np.linspace(1.0, 0.0, POINTS - rests, endpoint=False))
+    return np.stack([y, np.append(np.arange(rests) / max(rests, 1), np.ones(POINTS - rests))])
 
 
 def solve_detachment(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[str, Setting]) -> DetachmentPath:
@@ -99,17 +83,18 @@ def solve_detachment(scene: Scene, flat_punch: FlatPunchSource, settings: Mappin
         InvalidInput: If there is nothing to detach, or the indenter ends too early.
         UnsupportedSceneError: If the indenter would touch outside its circle of contact.
     """
-    log, loading = StageLog(), scene.loading
+    log, loading, is_punch = StageLog(), scene.loading, isinstance(scene.indenter, FlatPunch)
     if not isinstance(loading, Detachment):
         raise UnsupportedSceneError(f"loading = {type(loading).__name__}: a detachment path needs Detachment")
     with log.stage("adhesion"):
         contacts = Adhesive(scene, springs_of(scene, flat_punch, log))
-        own, other = Withdrawal.of(contacts, loading), Withdrawal.of(contacts.finer, loading)
-        radius, values, stable = own.states()
+        fine, finer = withdrawal(contacts, loading), withdrawal(contacts.finer, loading)
+        along, loaded = shares(is_punch=is_punch)
+        y, branch, control = fine.start * along, fine.branch, CONTROLS.index(loading.controlled)
+        radius, values = branch.radius(y), loaded * branch.values(y)
+        stable = [branch.stable(quantity, y) | (loaded < 1.0) for quantity in (DEPTH, FORCE)]
         refuse_touching(contacts, radius, values[DEPTH])
-        control = CONTROLS.index(loading.controlled)
-        scalars = own.branch.pull_off(control, own.start)
-        errors = _detachment_errors(own, other, control)
+        errors = _path_errors(fine, finer, along, loaded) | _pull_off_errors(fine, finer, control)
     return DetachmentPath(
         scene=scene,
         method="mdr",
@@ -123,31 +108,36 @@ def solve_detachment(scene: Scene, flat_punch: FlatPunchSource, settings: Mappin
         normal_force=values[FORCE],
         stable_displacement_control=stable[DEPTH],
         stable_force_control=stable[FORCE],
-        critical_points=own.branch.critical_points(own.start, pinned=own.pinned),
-        **scalars,
+        critical_points=branch.critical_points(fine.start, pinned=is_punch),
+        **branch.pull_off(control, fine.start),
     )
 
 
-def _detachment_errors(own: Withdrawal, other: Withdrawal, control: int) -> dict[str, FloatArray]:
-    """Stated errors of a detachment: along the path relative to its largest values."""
-    radius, values, _ = own.states()
-    companion, _, _ = other.states()
-    rounding = own.contacts.rounding(radius)
-    found = {"contact_radius": stated_error(radius, companion, scale=radius.max(), floor=1e-14)}
-    share = own.share()
-    direct = other.contacts.states(radius, own.branch.radius(own.places(), own.contacts.springs.tip.flat))
-    for row, name in enumerate(("indentation_depth", "normal_force")):
-        size = np.abs(values[row]).max()
-        found[name] = stated_error(values[row], share * direct[row], scale=size, floor=rounding[row] / size)
-    first, second = (one.branch.pull_off(control, one.start) for one in (own, other))
-    lost = np.array([first["pull_off_contact_radius"]])
-    floors = own.contacts.rounding(lost)[:, 0] if lost[0] else np.zeros(2)
-    floor = {"pull_off_depth": floors[DEPTH], "pull_off_contact_radius": 1e-13 * lost[0]}
-    for name, value in first.items():
+def _path_errors(fine: Withdrawal, finer: Withdrawal, along: FloatArray, loaded: FloatArray) -> dict[str, FloatArray]:
+    """Stated errors along a path relative to its largest values; depth and force at the same radii."""
+    y, branch, springs = fine.start * along, fine.branch, fine.contacts.springs
+    radius, values = branch.radius(y), loaded * branch.values(y)
+    other = loaded * finer.contacts.states(radius, branch.radius(y, springs.tip.flat))
+    size = np.abs(values).max(axis=1, keepdims=True)
+    floor = fine.contacts.rounding(radius) / size
+    of_depth, of_force = (
+        stated_error(*row[:2], scale=row[2], floor=row[3]) for row in zip(values, other, size, floor, strict=True)
+    )
+    of_radius = stated_error(radius, finer.branch.radius(finer.start * along), scale=radius.max(), floor=_RADIUS)
+    return {"contact_radius": of_radius, "indentation_depth": of_depth, "normal_force": of_force}
+
+
+def _pull_off_errors(fine: Withdrawal, finer: Withdrawal, control: int) -> dict[str, FloatArray]:
+    """Relative stated errors of the numbers of the pull-off."""
+    scalars, others = (path.branch.pull_off(control, path.start) for path in (fine, finer))
+    lost = scalars["pull_off_contact_radius"]
+    of_depth, of_force = fine.contacts.rounding(np.array([lost]))[:, 0] if lost else (0.0, 0.0)
+    floors = {"pull_off_depth": of_depth, "pull_off_contact_radius": 10 * _RADIUS * lost}
+    errors = {}
+    for name, value in scalars.items():
         size = abs(value) or 1.0
-        own_floor = floor.get(name, floors[FORCE])
-        found[name] = _PLACE * stated_error(value, second[name], scale=size, floor=float(own_floor) / size)
-    return found
+        errors[name] = _PLACE * stated_error(value, others[name], scale=size, floor=floors.get(name, of_force) / size)
+    return errors
 
 
 def _notes(contacts: Adhesive, radius: float) -> tuple[str, ...]:

@@ -203,7 +203,7 @@ def _spread(radius: FloatArray, count: int) -> NDArray[np.intp]:
 def _elastic_errors(scene: Scene, springs: Springs, state: State, values: SpringValues) -> dict[str, StatedError]:
     """Relative errors, shape (n,) each, zero for the prescribed quantity; those of fields are called at first use."""
     some = _spread(state.radius, _COMPARED)
-    states = State(*(one[some] for one in state))
+    states = State(*(row[some] for row in state))
     finer, flat, a = springs.finer.at(states.radius), springs.tip.flat, state.radius
     is_punch = isinstance(scene.indenter, FlatPunch)
     by_radius, by_depth = (isinstance(scene.loading, kind) for kind in (ContactRadii, IndentationDepths))
@@ -258,7 +258,7 @@ def surface_pair(springs: Springs, a: float, depth: float, *, is_singular: bool)
     finer = springs.finer
     if is_slow(springs, a):
         finer = springs.at_sizes(finer.sizes._replace(rate=_FEWER * finer.sizes.rate))
-    return [surface_of(one, a, depth, is_singular=is_singular) for one in (springs, finer)]
+    return [surface_of(resolution, a, depth, is_singular=is_singular) for resolution in (springs, finer)]
 
 
 def pressure_error(springs: Springs, a: float, depth: float, scale: float, *, is_singular: bool) -> float:
@@ -295,11 +295,11 @@ class PathFields:
 
     Attributes:
         scene: The problem.
-        springs: Its springs.
+        springs: Springs of the scene.
         radius: a [m], shape (n,).
         depth: delta [m], shape (n,).
         flat_punch: Settings of the answer.
-        settings: The same as they are written down.
+        settings: Settings as the answer reports them.
         adheres: Whether the edge is held by adhesion.
     """
 

@@ -71,11 +71,11 @@ class Harmonics:
 
     def density(self, shape: Raised, a: float, x: FloatArray) -> FloatArray:
         """phi_n [m] at 0 < x <= a, shape (p, x.size)."""
-        found, moments = transforms(shape, self.orders, x), self._moments(shape, a)
+        phi, moments = transforms(shape, self.orders, x), self._moments(shape, a)
         for i, factor in enumerate(self._factors):
             smooth = solve_factored(factor, moments[i]) - moments[i]
-            found[i] += smooth @ basis_of(self.orders[i], self.count, x / a)
-        return found
+            phi[i] += smooth @ basis_of(self.orders[i], self.count, x / a)
+        return phi
 
     def _moments(self, shape: Raised, a: float) -> FloatArray:
         """int_0^1 G_n(a s) b_m(s) ds [m], shape (p, count)."""

@@ -87,10 +87,10 @@ class Body:
         z = np.maximum(z, _NEAREST * self.a)
         blocks = np.array_split(np.arange(r.size), 1 + r.size // _POINTS)
         near = np.concatenate([self._half_space(r[some], z[some]) for some in blocks], axis=1)
-        shear, own, far = np.ones(r.size), np.ones(r.size, dtype=bool), np.zeros_like(near)
+        shear, is_top, far = np.ones(r.size), np.ones(r.size, dtype=bool), np.zeros_like(near)
         if not self.layer.is_half_space:
-            far, shear, own = self._layer(r, z)
-        parts = [_from_rows(part, r, shear * self.layer.shear_modulus) for part in (np.where(own, near, 0.0), far)]
+            far, shear, is_top = self._layer(r, z)
+        parts = [_from_rows(part, r, shear * self.layer.shear_modulus) for part in (np.where(is_top, near, 0.0), far)]
         return parts[0] + parts[1], np.abs(parts[0]) + np.abs(parts[1])
 
     # Nine rows: u_r/r and u_z times 2 G; zz, rz; rr + 2 G u_r/r; tt - 2 G u_r/r; p, dp/dr, dp/dz.
@@ -107,9 +107,9 @@ class Body:
         surface, a = self.surface, self.a
         # Series of graded layers converge slowly at the edge: phi(a) is that of the series, as in its transform.
         edge = surface.edge_of_series if self.kernel.tail else surface.edge
-        found = edge * _punch(r, z, a, (r - a) * (r + a))
+        integrals = edge * _punch(r, z, a, (r - a) * (r + a))
         for low, high in pairwise([0.0, *(b for b in self.tip.breaks if b < a), a]):
-            own, above, gap, weight, rest = self._nodes(low, high, r, z)
+            point, above, gap, weight, rest = self._nodes(low, high, r, z)
             t = np.sqrt(low**2 + above)
             falls = self.tip.transform_slope(t) - surface.smooth_slope(t)  # -phi'
             for b, jump in self.tip.kinks:
@@ -120,9 +120,9 @@ class Body:
             elif surface.corner:
                 falls -= surface.corner * np.log((a + t) / (a - t))
             falls *= weight / t
-            for i, one in enumerate(_punch(r[own, None], z[own, None], t, gap)):
-                found[i] += np.bincount(own, (one * falls).sum(axis=1), r.size)
-        return self.surface.springs.modulus / np.pi * found
+            for i, integrand in enumerate(_punch(r[point, None], z[point, None], t, gap)):
+                integrals[i] += np.bincount(point, (integrand * falls).sum(axis=1), r.size)
+        return self.surface.springs.modulus / np.pi * integrals
 
     def _nodes(
         self, low: float, high: float, r: FloatArray, z: FloatArray
@@ -142,18 +142,18 @@ class Body:
         closest = np.clip(r, low, high)
         middle = np.arcsin(np.sqrt((closest - low) * (closest + low) / span))
         pole = np.abs(np.arcsin(np.sqrt(((r + 1j * z) ** 2 - low**2) / span)) - middle)
-        own, start, width = _panels(middle, pole, np.concatenate(fixed))
+        point, start, width = _panels(middle, pole, np.concatenate(fixed))
         x, w = gauss(self.nodes)
         offset = start[:, None] + width[:, None] * x
-        angle = middle[own, None] + offset
+        angle = middle[point, None] + offset
         # With the digits of the offset, however close to r.
-        gap = ((r - closest) * (r + closest))[own, None] - span * np.sin(offset) * np.sin(angle + middle[own, None])
+        gap = ((r - closest) * (r + closest))[point, None] - span * np.sin(offset) * np.sin(angle + middle[point, None])
         weight = span * np.sin(angle) * np.cos(angle) * width[:, None] * w
-        return own, span * np.sin(angle) ** 2, gap, weight, span * np.cos(angle) ** 2
+        return point, span * np.sin(angle) ** 2, gap, weight, span * np.cos(angle) ** 2
 
     def _layer(self, r: FloatArray, z: FloatArray) -> tuple[FloatArray, FloatArray, NDArray[np.bool_]]:
         """What layers add; G of the material over the surface's; whether the half-space part counts there."""
-        found, shear, own = np.empty((9, r.size)), np.empty(r.size), np.empty(r.size, dtype=bool)
+        fields, shear, within_top = np.empty((9, r.size)), np.empty(r.size), np.empty(r.size, dtype=bool)
         groups = np.floor(np.log2(z)) if self.kernel.tail else np.zeros(z.size)
         for number in sorted(set(groups.tolist())):
             some = np.flatnonzero(groups == number)
@@ -168,12 +168,15 @@ class Body:
                     scaled = depth[:, None] / self.unit
                     material = descent.material(place, scaled)
                     rows = load * self._rows(k, depth[:, None], material, descent.at(place, scaled))
-                    shear[few], own[few] = np.broadcast_to(material.shear_modulus, scaled.shape)[at, 0], material.is_top
+                    shear[few], within_top[few] = (
+                        np.broadcast_to(material.shear_modulus, scaled.shape)[at, 0],
+                        material.is_top,
+                    )
                     if depth.size * radius.size <= 4 * few.size:  # a grid
-                        found[:, few] = _waves(rows, k, radius)[:, at, beside]
+                        fields[:, few] = _waves(rows, k, radius)[:, at, beside]
                     else:
-                        found[:, few] = _waves(rows, k, r[few], at)
-        return found, shear, own
+                        fields[:, few] = _waves(rows, k, r[few], at)
+        return fields, shear, within_top
 
     def _rows(self, k: FloatArray, z: FloatArray, material: Material, transfer: Transfer) -> FloatArray:
         """Factors of the Bessel functions at depths z, shape (9, m, n), in the top layer beyond the half-space's."""
@@ -232,8 +235,8 @@ def _panels(middle: FloatArray, pole: FloatArray, fixed: FloatArray) -> tuple[ND
     ends = np.concatenate([fixed - middle[:, None], 0 * steps[:, :1], steps, -steps], axis=1)
     ends = np.sort(np.clip(ends, -middle[:, None], np.pi / 2 - middle[:, None]), axis=1)
     width = np.diff(ends)
-    own, number = np.nonzero(width > 0)
-    return own, ends[own, number], width[own, number]
+    point, number = np.nonzero(width > 0)
+    return point, ends[point, number], width[point, number]
 
 
 def _row_factors(transfer: Transfer, k: FloatArray, material: Material) -> FloatArray:
@@ -287,7 +290,7 @@ class Interior:
         """
         self._refuse_distant(radius, depth)
         z = np.minimum(depth, self.layer.thickness)
-        (values, sizes), (other, _) = (Body(self.layer, one).at(radius, z) for one in self.pair)
+        (values, sizes), (other, _) = (Body(self.layer, contact).at(radius, z) for contact in self.pair)
         surface = self.pair[0]
         floor = _ROUNDINGS * float(surface.springs.floor(np.array([surface.a]))[1][0])
         near = np.hypot(radius - self.known.radius, np.maximum(z, _NEAREST * self.known.radius))
@@ -333,8 +336,8 @@ def interior(
     shifted = min(known.radius * (1 + known.radius_error), springs.tip.end)
     sizes = springs.sizes
     fine, coarse = (sizes, sizes.scaled(0.5)) if is_slow(springs, known.radius) else (sizes.finer, sizes)
-    own = _surface(springs, fine, known.radius, depth, is_singular)
-    return Interior(layer, (own, _surface(springs, coarse, shifted, depth, is_singular)), known, depth)
+    surface = _surface(springs, fine, known.radius, depth, is_singular)
+    return Interior(layer, (surface, _surface(springs, coarse, shifted, depth, is_singular)), known, depth)
 
 
 def field_sizes(sizes: Sizes) -> Sizes:
@@ -344,5 +347,5 @@ def field_sizes(sizes: Sizes) -> Sizes:
 
 def _surface(springs: Springs, sizes: Sizes, a: float, depth: float, is_singular: bool) -> Surface:
     """A contact whose density ends with zero, or with adhesion, in the same discretisation as the density itself."""
-    own = springs.at_sizes(field_sizes(sizes))
-    return surface_of(own, a, depth if is_singular else float(own.at([a]).g[0]), is_singular=is_singular)
+    fine = springs.at_sizes(field_sizes(sizes))
+    return surface_of(fine, a, depth if is_singular else float(fine.at([a]).g[0]), is_singular=is_singular)

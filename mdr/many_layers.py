@@ -59,12 +59,12 @@ def equilibria_on_layers(scenes: Sequence[Scene], sizes: Sizes) -> FloatArray:
     state = springs.state(radius[reached], at, targets if by_depth else None)
     if by_force:
         state = springs.state(radius[reached], at, springs.depth_of(targets, at))._replace(force=targets)
-    found = np.full((4, values.size), np.nan)
-    found[:, reached] = state
-    found[2:] *= modulus
+    states = np.full((4, values.size), np.nan)
+    states[:, reached] = state
+    states[2:] *= modulus
     if by_force:
-        found[2, reached] = values[reached]
-    return found
+        states[2, reached] = values[reached]
+    return states
 
 
 def _radii(springs: Springs, quantity: Quantity, targets: FloatArray) -> FloatArray:

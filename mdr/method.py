@@ -65,8 +65,8 @@ class Solver:
     Attributes:
         effects: The effects it models; a scene must list exactly these kinds.
         loadings: The loadings it takes.
-        module: Where it is.
-        function: Its name there.
+        module: Module of the function.
+        function: Name of the function.
     """
 
     effects: tuple[type[Effect], ...]
@@ -115,7 +115,9 @@ def _not_relaxing(layer: ElasticLayer, model: str) -> str:
 def _compressible_part(layer: ElasticLayer) -> str:
     """The parts that relax in volume differently than in shape, by name and Poisson's ratio."""
     if isinstance(layer, LayerStack):
-        ratios = [(n, one.poissons_ratio) for n, one in enumerate(layer.sublayers) if one.poissons_ratio != 0.5]
+        ratios = [
+            (n, sublayer.poissons_ratio) for n, sublayer in enumerate(layer.sublayers) if sublayer.poissons_ratio != 0.5
+        ]
         return ", ".join(f"layer.sublayers[{n}].poissons_ratio = {nu:g}" for n, nu in ratios)
     if isinstance(layer, GradedLayer) and layer.surface.poissons_ratio == 0.5:
         return "layer.poissons_ratio is below 0.5 at some depths"
@@ -145,9 +147,9 @@ def solver_of(scene: Scene) -> Solver | Unsupported:
             f"{friction.coefficient:g}; use finite elements (--method fem), or bound the change of the force without "
             "friction in the scene (--advise)"
         )
-    found = [solver for solver in SOLVERS if solver.takes(scene)]
-    if found:
-        return found[0]
+    solvers = [solver for solver in SOLVERS if solver.takes(scene)]
+    if solvers:
+        return solvers[0]
     effects = ", ".join(type(effect).__name__ for effect in scene.effects) or "no effect"
     return Unsupported(f"mdr does not model {effects} under the loading {type(scene.loading).__name__}")
 
@@ -156,7 +158,7 @@ class Mdr(Record):
     """Method of dimensionality reduction, section 2 of Forsbach (2023).
 
     Attributes:
-        flat_punch: Where the flat punch's stiffness and pressure come from.
+        flat_punch: Source of the flat punch's stiffness and pressure.
         accuracy: Wanted relative accuracy of what is integrated in time (impacts, histories). Coarser ones than
             `COARSEST` are answered by it; what does not move is more accurate whatever is asked.
     """

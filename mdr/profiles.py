@@ -61,8 +61,8 @@ class Tip:
 
     def __init__(self, profile: Profile) -> None:
         self.profile, self.flat, self.end = profile, profile.flat_radius, profile.max_radius
-        found = {*profile.breakpoints, *((self.flat,) if self.flat else ())}
-        self.breaks = tuple(sorted(b for b in found if b < self.end))
+        radii = {*profile.breakpoints, *((self.flat,) if self.flat else ())}
+        self.breaks = tuple(sorted(b for b in radii if b < self.end))
 
     @cached_property
     def exponent(self) -> float:
@@ -128,13 +128,13 @@ class Tip:
 
     def moments(self, x: FloatArray, count: int, extra: int = 0) -> FloatArray:
         """m_n at x > 0 [m], shape (x.size, count) [m]; `extra` adds nodes to the quadrature."""
-        found = np.empty((x.size, count))
+        table = np.empty((x.size, count))
         for part in self._parts(x, count):
             at = x[part]
             angle, w = self._angles(at, lambda span: 16 + extra + int((0.7 + 1.3 * self._crowds) * count * span))
             weight = self.slope(at[:, None] * np.cos(angle)) * np.sin(angle) * w * at[:, None]
-            found[part] = (weight[:, None, :] @ abel_legendre(np.sin(angle), count))[:, 0]
-        return found
+            table[part] = (weight[:, None, :] @ abel_legendre(np.sin(angle), count))[:, 0]
+        return table
 
     _crowds = True
 
@@ -222,7 +222,7 @@ class BallTip(Tip):
             return np.asarray(np.log1p(2 * s / (self._radius - s)) / 2)
 
     def _beyond(self, x: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """On the flank: sqrt(x^2 - b^2), and ln[(R + x)/(sqrt(R^2 - b^2) + sqrt(x^2 - b^2))]."""
+        """Terms of g_hs on the flank: sqrt(x^2 - b^2), and ln[(R + x)/(sqrt(R^2 - b^2) + sqrt(x^2 - b^2))]."""
         R, b, near = self._radius, self._tangent, self._near
         far = np.sqrt(np.maximum((x - b) * (x + b), 0))
         return far, np.log1p(b * b * (1 / (R + near) + 1 / (x + far)) / (near + far))
@@ -331,15 +331,15 @@ class PiecewiseTip(Tip):
 
     def _integrated_slope(self, x: FloatArray) -> FloatArray:
         """g_hs' = int (f' + r f'') dt over r = x cos t, but for kinks."""
-        flat, found = np.ravel(x), np.empty(np.size(x))
+        flat, slope = np.ravel(x), np.empty(np.size(x))
         for part in self._parts(flat, 1):
             angle, w = self._angles(flat[part], lambda span: 16 + int(8 * span))
             r = flat[part, None] * np.cos(angle)
             i = np.clip(np.searchsorted(self._knots, r, "right") - 1, 0, None)
             d = np.maximum(r - self._knots[i], 0)
             value, first, second = np.moveaxis(self._pieces[i], -1, 0)
-            found[part] = (w * (value + d * (first + d * second) + r * (first + 2 * d * second))).sum(axis=1)
-        return found.reshape(np.shape(x))
+            slope[part] = (w * (value + d * (first + d * second) + r * (first + 2 * d * second))).sum(axis=1)
+        return slope.reshape(np.shape(x))
 
 
 def tip_of(profile: Profile) -> Tip:

@@ -257,12 +257,18 @@ class RadiusSearch:
                 return self._beyond_falls(quantity, y, (z, table), is_contact, SeveralContacts(fall))
         table = np.maximum.accumulate(table)
         slope = np.gradient(table, z)
-        if y.size <= _MANY:
+
+        def solved(y: FloatArray) -> FloatArray:
             return self.refined(quantity, y, np.interp(y, table, z), np.interp(y, table, slope))
+
+        if y.size <= _MANY:
+            return solved(y)
+        from scipy.interpolate import CubicSpline  # noqa: PLC0415 - loads slowly, and few ask for so many radii
+
         knots = np.linspace(y.min(), y.max(), _KNOTS)
-        inner = self.scale(self.refined(quantity, knots, np.interp(knots, table, z), np.interp(knots, table, slope)))
+        place = CubicSpline(knots, self.scale(solved(knots)))
         parts = np.array_split(y, y.size // _KNOTS)
-        return np.concatenate([self._between(quantity, part, *_cubics(knots, inner, part)) for part in parts])
+        return np.concatenate([self._between(quantity, part, place(part), 1 / place(part, 1)) for part in parts])
 
     def _between(self, quantity: Quantity, y: FloatArray, z: FloatArray, slope: FloatArray) -> FloatArray:
         """Radii [m] with these logarithms by one step of Newton from cubics between knots, where it suffices."""
@@ -284,8 +290,8 @@ class RadiusSearch:
         is_contact: Callable[[float], None],
         ring: SeveralContacts,
     ) -> FloatArray:
-        """Of all radii with one depth or force the one that is a contact; the contact problem has one solution only."""
-        z, found = rough[0], np.empty_like(y)
+        """Radius of the contact among all radii with one depth or force; the contact problem has one solution only."""
+        z, contact_radii = rough[0], np.empty_like(y)
         tops = 1 + np.flatnonzero((np.diff(rough[1])[:-1] > 0) & (np.diff(rough[1])[1:] <= 0))
         close = [np.linspace(z[i - 1], z[i + 1], _AROUND_TOP) for i in tops.tolist()]
         z = np.unique(np.concatenate([z, *close]))
@@ -298,17 +304,17 @@ class RadiusSearch:
                 float(self.refined(quantity, np.array([target]), s, k)[0])
                 for s, k in zip(start[:, None], slope[:, None], strict=True)
             ]
-            found[i] = self._only_contact(radii, is_contact, ring)
-        return found
+            contact_radii[i] = self._only_contact(radii, is_contact, ring)
+        return contact_radii
 
     def _only_contact(self, radii: list[float], is_contact: Callable[[float], None], ring: SeveralContacts) -> float:
         objection: UnsupportedSceneError = ring
         for radius in radii:
             try:
                 is_contact(radius)
-            except UnsupportedSceneError as own:
+            except UnsupportedSceneError as refusal:
                 # A circle short of the falling stretch, known to one step of the table, has its own reason.
-                objection = own if radius < ring.radius * np.exp(1 / _DENSITY) else objection
+                objection = refusal if radius < ring.radius * np.exp(1 / _DENSITY) else objection
                 continue
             return radius
         raise objection
@@ -333,58 +339,39 @@ class RadiusSearch:
 def roots(
     missed: Callable[[FloatArray, BoolArray], FloatArray], start: FloatArray, first: FloatArray, step: FloatArray
 ) -> FloatArray:
-    """Roots x of increasing functions, shape (n,), by Chandrupatla's method: Adv. Eng. Softw. 28 (1997) 145.
+    """Roots x of functions, shape (n,), by secants in brackets (Anderson and Bjorck 1973, BIT 13, 253).
 
-    Between places of both signs it takes inverse quadratic interpolation where that is safe, and halves elsewhere.
+    An end of the bracket that stays counts with a smaller value, so that the next secant ends beyond the root.
 
     Args:
-        missed: Values at x of the functions that a mask of shape (n,) names.
-        start: Places to begin with.
+        missed: Values at x of the functions that a mask of shape (n,) selects.
+        start: First ends of the brackets.
         first: Values there.
         step: Towards the root. It doubles until it reaches beyond.
 
     Raises:
         NotConvergedError: If a root was not found.
     """
-    x1, f1, x2, f2 = start.copy(), first.copy(), start + step, np.full(start.shape, np.nan)
-    at = np.ones(start.shape, dtype=np.bool_)
+    x1, f1, x2, at = start.copy(), first.copy(), start + step, np.ones(start.shape, dtype=np.bool_)
+    f2, step = missed(x2, at), step.copy()
     for _ in range(_MOST_STEPS):
-        f2[at] = missed(x2[at], at)
-        at = ~((f1 * f2 <= 0) | (np.abs(f2) <= _SMALLEST))
+        at = (f1 * f2 > 0) & (np.abs(f2) > _SMALLEST)
         if not at.any():
             break
-        x1, f1, step = np.where(at, x2, x1), np.where(at, f2, f1), 2 * step
-        x2 = np.where(at, x2 + step, x2)
+        x1[at], f1[at], step[at] = x2[at], f2[at], 2 * step[at]
+        x2[at] += step[at]
+        f2[at] = missed(x2[at], at)
     else:
         raise NotConvergedError("no contact radius has the load", {"ln(load) missed by": float(np.abs(f2[at]).max())})
-    x3, f3, share, at = x2, f2, np.full(start.shape, 0.5), np.ones(start.shape, dtype=np.bool_)
     for _ in range(_MOST_STEPS):
-        best: FloatArray
-        best, least = np.where(np.abs(f1) < np.abs(f2), (x1, np.abs(f1)), (x2, np.abs(f2)))
-        narrow = 2 * EPS * (1 + np.abs(best)) / np.maximum(np.abs(x2 - x1), 1e-300)
-        at = (least > _SMALLEST) & (narrow < 0.5)
+        at = (np.abs(f2) > _SMALLEST) & (np.abs(x2 - x1) > 2 * EPS * (1 + np.abs(x2)))
         if not at.any():
-            return best
-        x = x1 + np.clip(share, narrow, 1 - narrow) * (x2 - x1)
-        f = np.where(at, 0.0, f1)
-        f[at] = missed(x[at], at)
-        same = f * f1 > 0
-        x, f = np.where(at, (x, f), (x1, f1))
-        x3, f3, x2, f2 = np.where(at, np.where(same, (x1, f1, x2, f2), (x2, f2, x1, f1)), (x3, f3, x2, f2))
-        x1, f1 = x, f
-        with np.errstate(all="ignore"):
-            xi, phi = (x1 - x2) / (x3 - x2), (f1 - f2) / (f3 - f2)
-            quadratic = f1 / (f2 - f1) * f3 / (f2 - f3) + (x3 - x1) / (x2 - x1) * f1 / (f3 - f1) * f2 / (f3 - f2)
-            share = np.where((phi**2 < xi) & ((1 - phi) ** 2 < 1 - xi), quadratic, 0.5)
-    raise NotConvergedError("the contact radius was not found", {"ln(load) missed by": float(least.max())})
-
-
-def _cubics(knots: FloatArray, z: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """z at y by cubics with mean slopes between equidistant knots, and dy/dz."""
-    step, rise, pace = knots[1] - knots[0], np.diff(z), np.gradient(z)
-    before, after = pace[:-1] - rise, pace[1:] - rise
-    s = (y - knots[0]) / step
-    i = np.minimum(s.astype(int), rise.size - 1)
-    s -= i
-    found = z[i] + s * (pace[i] - s * ((2 * before + after)[i] - s * (before + after)[i]))
-    return found, step / np.maximum(pace[i] + s * (after - before)[i], 1e-300)
+            return x2
+        x = x2[at] - f2[at] * (x2[at] - x1[at]) / (f2[at] - f1[at])
+        f = missed(x, at)
+        share = 1 - f / f2[at]
+        crosses = f * f2[at] <= 0
+        x1[at] = np.where(crosses, x2[at], x1[at])
+        f1[at] = np.where(crosses, f2[at], f1[at] * np.where(share > 0, share, 0.5))
+        x2[at], f2[at] = x, f
+    raise NotConvergedError("the contact radius was not found", {"ln(load) missed by": float(np.abs(f2).max())})

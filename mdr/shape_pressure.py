@@ -43,7 +43,7 @@ class ShapeFields:
 
     Attributes:
         shape: The indenter.
-        springs: Of its mean profile.
+        springs: Springs of the mean profile.
         mean: The path of the mean profile.
         radius: abar [m], shape (n,).
         harmonics: alpha_n [m], shape (n, p).
@@ -93,8 +93,8 @@ class ShapeFields:
         if step not in self._brackets:
             a = float(self.mean.contact_radius[step])
             u = np.sin(np.pi / 2 * (np.arange(_NODES) + 0.5) / _NODES)
-            found = self._smooth(a, step, u) + self._shifted(a, step, u)
-            self._brackets[step] = CubicSpline(u, found / u[:, None] ** self._power)
+            pressures = self._smooth(a, step, u) + self._shifted(a, step, u)
+            self._brackets[step] = CubicSpline(u, pressures / u[:, None] ** self._power)
         return self._brackets[step]
 
     def _smooth(self, a: float, step: int, u: FloatArray) -> FloatArray:
@@ -130,9 +130,9 @@ class ShapeFields:
             return np.asarray(self.mean.pressure(r, step) / np.sqrt((a - r) * (a + r)) ** power)
 
         slope = (regular(s * (1 + _STEP)) - regular(s * (1 - _STEP))) / (2 * _STEP)
-        moved = slope * (a * u) ** power - power * s**2 * regular(s) * (a * u) ** (power - 2)
-        found = np.outer(moved, alpha / a)
+        shifted = slope * (a * u) ** power - power * s**2 * regular(s) * (a * u) ** (power - 2)
+        pressures = np.outer(shifted, alpha / a)
         if isinstance(self.shape, Flat):
             front = self.springs.modulus / np.pi * self._edge(a, step) * a
-            found -= front * alpha * (s[:, None] / a) ** np.array(self.shape.orders) / (a * u[:, None]) ** 3
-        return found
+            pressures -= front * alpha * (s[:, None] / a) ** np.array(self.shape.orders) / (a * u[:, None]) ** 3
+        return pressures

@@ -81,53 +81,53 @@ def solve_shape(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[str
     with log.stage("mean_profile"):
         path = solve_elastic(mean, flat_punch, settings)
     with log.stage("harmonics"):
-        found = expand.at(path)
+        expansion = expand.at(path)
         if isinstance(loading, NormalForces):
             for _ in range(_CORRECTIONS):
-                depth = path.indentation_depth + (loading.values - found.force) / found.stiffness
+                depth = path.indentation_depth + (loading.values - expansion.force) / expansion.stiffness
                 change = float(np.max(np.abs(depth / path.indentation_depth - 1)))
                 path = solve_elastic(mean.replace(loading=IndentationDepths(depth)), flat_punch, settings)
-                found = expand.at(path)
+                expansion = expand.at(path)
                 if change < _CLOSE:
                     break
             else:
                 raise NotConvergedError("the depth under a force was not found", {"change": change})
-            found = found._replace(force=loading.values)
-    _refuse_far(shape, found)
-    fields = ShapeFields(shape, springs, path, found.radius, found.outline)
+            expansion = expansion._replace(force=loading.values)
+    _refuse_far(shape, expansion)
+    fields = ShapeFields(shape, springs, path, expansion.radius, expansion.outline)
     return ContactPath(
         scene=scene,
         method="mdr",
         settings=settings,
-        contact_radius=found.radius,
+        contact_radius=expansion.radius,
         indentation_depth=path.indentation_depth,
-        normal_force=found.force,
-        contact_stiffness=found.stiffness,
-        error_estimate=StatedErrors(_errors(scene, path, found, fields), "mdr"),
+        normal_force=expansion.force,
+        contact_stiffness=expansion.stiffness,
+        error_estimate=StatedErrors(_errors(scene, path, expansion, fields), "mdr"),
         cost=log.cost(unknowns=0),
         stages=log.records,
-        notes=(NOTE, *told_of_friction(scene.layer, found.radius)),
+        notes=(NOTE, *told_of_friction(scene.layer, expansion.radius)),
         fields=fields,
     )
 
 
-def _refuse_far(shape: Shape, found: Expansion) -> None:
-    worst = SAFETY * float(found.third[:2].max())
+def _refuse_far(shape: Shape, expansion: Expansion) -> None:
+    worst = SAFETY * float(expansion.third[:2].max())
     if worst > LARGEST_THIRD:
-        size = float(np.sqrt((found.outline**2).sum(axis=1)).max() / abs(found.radius).max())
+        size = float(np.sqrt((expansion.outline**2).sum(axis=1)).max() / abs(expansion.radius).max())
         raise Unsupported(
             f"indenter = {type(shape).__name__}: its contact deviates from a circle by about {size:.2g} of the radius, "
             f"so that the second order may be {worst:.2g} off, more than {LARGEST_THIRD:g}; ask bem"
         )
 
 
-def _errors(scene: Scene, path: ContactPath, found: Expansion, fields: ShapeFields) -> dict[str, StatedError]:
+def _errors(scene: Scene, path: ContactPath, expansion: Expansion, fields: ShapeFields) -> dict[str, StatedError]:
     """Relative errors: those of the mean profile plus the third order."""
-    force, stiffness, radius = SAFETY * found.third
+    force, stiffness, radius = SAFETY * expansion.third
     share = path.normal_force / (path.contact_stiffness * path.indentation_depth)  # d(ln depth)/d(ln F)
     by_depth = isinstance(scene.loading, IndentationDepths)
     mean = path.error_estimate
-    size = (found.outline**2).sum(axis=1) / found.radius**2
+    size = (expansion.outline**2).sum(axis=1) / expansion.radius**2
     of_mean = mean["normal_force"] + mean["indentation_depth"]
     pressure = path.normal_force / (np.pi * path.contact_radius**2)
 
@@ -172,7 +172,7 @@ class Expanded:
         """Second order of a flat punch, whose stiffness is one constant for all depths."""
         angle, weight = shape.sector()
         outline, orders = shape.outline(angle), np.array(shape.orders)
-        a, one = float(weight @ outline), np.ones(len(path))
+        a, steps = float(weight @ outline), np.ones(len(path))
         alpha = 2 * (np.cos(np.outer(orders, angle)) * weight) @ outline
         y1 = float(self.springs.at([a]).y1[0])
         terms = self.springs.modulus * y1**2 * alpha**2 * self.harmonics(a).growth / a
@@ -180,7 +180,9 @@ class Expanded:
         # At corners the upper half of the orders bounds the truncation error.
         size, corners = float(np.sqrt((alpha**2).sum()) / a), float(terms[orders > orders[-1] / 2].sum())
         third = np.array([1.0, 1.0, 0.0]) * (abs(terms.sum()) * size + abs(corners)) / k
-        return Expansion(a * one, k * path.indentation_depth, k * one, np.outer(one, alpha), np.outer(third, one))
+        return Expansion(
+            a * steps, k * path.indentation_depth, k * steps, np.outer(steps, alpha), np.outer(third, steps)
+        )
 
     def _raised(self, shape: Raised, path: ContactPath) -> Expansion:
         """Radius, force F + S, stiffness k + dS/ddelta and the edge's harmonics at each depth, to second order."""
@@ -209,8 +211,10 @@ class Expanded:
         count = int(_PER_OCTAVE * np.log2(flat.max() / flat.min())) + 4
         nodes = flat if flat.size <= max(count, _MOST_RADII) else np.geomspace(flat.min(), flat.max(), count)
         solved = [self.harmonics(a) for a in nodes.tolist()]
-        phi = np.array([one.density_at_edge(shape, a) for one, a in zip(solved, nodes.tolist(), strict=True)])
-        rows = np.stack([phi[:, 1:] / scale(nodes)[:, None], [one.growth for one in solved]])
+        phi = np.array(
+            [equations.density_at_edge(shape, a) for equations, a in zip(solved, nodes.tolist(), strict=True)]
+        )
+        rows = np.stack([phi[:, 1:] / scale(nodes)[:, None], [equations.growth for equations in solved]])
         if nodes is not flat:
             rows = CubicSpline(np.log(nodes), rows, axis=1)(np.log(flat))
         rows[0] *= scale(flat)[:, None]

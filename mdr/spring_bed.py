@@ -97,7 +97,7 @@ class Springs:
         return cls(contact_kernel(layer), unit_of(layer), contact_modulus(layer), tip_of(indenter), sizes)
 
     def at_sizes(self, sizes: Sizes) -> Self:
-        """The same springs at another resolution."""
+        """Springs of the same scene at another resolution."""
         return replace(self, sizes=sizes)
 
     @cached_property
@@ -122,16 +122,16 @@ class Springs:
     def at(self, radii: ArrayLike, excess: FloatArray | None = None) -> SpringValues:
         """y_1, g, K, M at radii > 0 [m], shape (n,); near a flat end of radius b pass `excess` = a - b [m], exact."""
         x = np.atleast_1d(np.asarray(radii, dtype=np.float64))
-        found = SpringValues(*np.empty((4, x.size)))
+        values = SpringValues(*np.empty((4, x.size)))
         for index, punch, resolvent, _ in self._rows(x):
             a = x[index]
             moments = self.tip.moments(a, punch.shape[1], self.sizes.extra)
             y1 = 1 + resolvent[:, 0]
             alone = self.tip.transform(a) if excess is None else self.tip.transform_beyond(excess[index])
             transform = alone + (resolvent * moments).sum(axis=1)
-            found.y1[index], found.g[index] = y1, transform / y1
-            found.K[index], found.M[index] = a * punch[:, 0], a * (punch * moments).sum(axis=1)
-        return found
+            values.y1[index], values.g[index] = y1, transform / y1
+            values.K[index], values.M[index] = a * punch[:, 0], a * (punch * moments).sum(axis=1)
+        return values
 
     def _rows(self, x: FloatArray) -> Iterator[Rows]:
         """Flat punches of radii [m], a block and an octave at a time."""

@@ -40,7 +40,7 @@ class TablePunches:
     """Flat punches of all radii by tables, with the interface of `bem.equation.FlatPunches`.
 
     Attributes:
-        source: Of the tables.
+        source: Settings of the tables.
         layer: Layer that they are of.
         is_coarser: Whether these are the punches that state errors.
     """
@@ -57,8 +57,8 @@ class TablePunches:
     def at(self, ratios: FloatArray) -> Iterator[Rows]:
         """Punches and resolvents at ratios a/h, shape (n,), rung after rung."""
         rung = np.searchsorted(np.array(RUNGS[:-1]), ratios)
-        for one in np.unique(rung).tolist():
-            index = np.flatnonzero(rung == one)
+        for number in np.unique(rung).tolist():
+            index = np.flatnonzero(rung == number)
             y1, density, slope = self.table(float(ratios[index].max())).at(ratios[index])
             n = np.arange(density.shape[1])
             degree = np.sqrt(4 * n + 1)
@@ -82,7 +82,7 @@ class TableRadius(Radius):
     """A^-1 = (1 + R)^T (1 + R) of one contact radius in the polynomials b_n.
 
     Args:
-        punches: Of all radii.
+        punches: Flat punches of all radii.
         ratio: a/h.
     """
 
@@ -139,7 +139,7 @@ class TableSprings(Springs):
 
     @property
     def coarse(self) -> Springs:
-        """The same springs, which cost little."""
+        """These springs, which cost little."""
         return self
 
     @property

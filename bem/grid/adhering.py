@@ -43,7 +43,7 @@ class SampledPunches:
         end: u at the largest radius.
         power: m.
         growth: Chebyshev coefficients of ln(kappa), shape (n,).
-        series: Of the coefficients of Q, shape (n, m).
+        series: Chebyshev coefficients of the coefficients of Q, shape (n, m).
     """
 
     thickness: float
@@ -54,7 +54,7 @@ class SampledPunches:
 
     @classmethod
     def up_to(cls, pressing: Pressing, radius: float, nodes: int) -> SampledPunches:
-        """From discs at Chebyshev points."""
+        """Interpolates flat punches on discs at Chebyshev points up to a radius [m]."""
         h, x = pressing.layer.surface.thickness, series.chebpts2(nodes)
         if pressing.layer.is_half_space:
             return cls(1.0, 1.0, 1, np.zeros(2), np.ones((1, 1)))
@@ -62,17 +62,17 @@ class SampledPunches:
         radii = h * np.expm1(end * (0.5 + 0.5 * x[1:]) ** power)
         radii[-1] = radius
         flat = [pressing.punch(a) for a in radii.tolist()]
-        growth = np.asarray(series.chebfit(x, np.log([1.0, *(one.growth for one in flat)]), nodes - 1), np.float64)
-        found = cls(h, end, power, growth, np.ones((1, 1)))
+        growth = np.asarray(series.chebfit(x, np.log([1.0, *(disc.growth for disc in flat)]), nodes - 1), np.float64)
+        growths = cls(h, end, power, growth, np.ones((1, 1)))
         degree = flat[-1].degree - pressing.fewer
         rows = [np.eye(degree + 1)[0]]
-        for a, one in zip(radii.tolist(), flat, strict=True):
-            near = found.at(a)
-            rows.append(one.series(degree, sqrt(near.growth + near.growth_slope)))
-        return replace(found, series=series.chebfit(x, np.array(rows), nodes - 1))
+        for a, disc in zip(radii.tolist(), flat, strict=True):
+            near = growths.at(a)
+            rows.append(disc.series(degree, sqrt(near.growth + near.growth_slope)))
+        return replace(growths, series=series.chebfit(x, np.array(rows), nodes - 1))
 
     def at(self, radius: float) -> Punches:
-        """About one radius [m]."""
+        """Interpolated flat punches about one radius [m]."""
         u = log1p(radius / self.thickness)
         share = (u / self.end) ** (1.0 / self.power)
         x, steepness = 2.0 * share - 1.0, 2.0 * share / (self.power * u) * radius / (self.thickness + radius)
@@ -118,7 +118,7 @@ class AdheringIndenter:
     def equilibria(self, radius: FloatArray) -> FloatArray:
         """Depth [m] and force [N] at radii [m], shape (2, n)."""
         states, E = map(self.at, radius.tolist()), contact_modulus(self.scene.layer)
-        return np.array([(one.depth, E * one.load) for one in states]).T
+        return np.array([(state.depth, E * state.load) for state in states]).T
 
     def at(self, radius: float) -> PressedState:
         """The equilibrium at a radius [m], whose edge bears phi, Eq. (40)."""
@@ -158,9 +158,9 @@ def largest_radius(scene: Scene, pressing: Pressing) -> float:
     radius = GROWTH * max(min(balance, FIRST_RATIO * scene.layer.thickness), indenter.flat_radius)
     coarse = replace(pressing, cells=min(FIRST_CELLS, pressing.cells))
     while radius < indenter.max_radius:
-        found = AdheringIndenter.up_to(scene, coarse, radius, NODES // 2).branch
-        wanted = found.strength if values is None else BEYOND * max(float(values.max()), 0.0)
-        if found.at(quantity, found.end) > wanted:
+        trial = AdheringIndenter.up_to(scene, coarse, radius, NODES // 2).branch
+        wanted = trial.strength if values is None else BEYOND * max(float(values.max()), 0.0)
+        if trial.at(quantity, trial.end) > wanted:
             return radius
         radius *= GROWTH
     return indenter.max_radius

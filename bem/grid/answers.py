@@ -54,7 +54,7 @@ class FieldSequence:
     """Fields of every step of a path.
 
     Attributes:
-        steps: Of each step.
+        steps: Fields of each step.
     """
 
     steps: Sequence[ContactFields]
@@ -73,9 +73,9 @@ class GridSolver:
     """One scene on one grid and its coarser companion.
 
     Attributes:
-        scene: What is solved.
+        scene: Scene that is solved.
         pressing: Layer, indenter and discs.
-        settings: As the answer reports them.
+        settings: Settings that the answer reports.
         log: Stage log.
     """
 
@@ -99,8 +99,8 @@ class GridSolver:
                     refuse_falling(fine, state.radius)
                 pairs.append((self._pressed(fine, state, solved), self._pressed(fine.coarser(), *coarse)))
         with self.log.stage("fields"):
-            for one, other in pairs:
-                one.refuse_pulling(other)
+            for fields, other in pairs:
+                fields.refuse_pulling(other)
         return self._path(pairs, adheres=False)
 
     @staticmethod
@@ -110,15 +110,15 @@ class GridSolver:
 
     def adhering(self) -> ContactPath:
         """Contacts with adhesion at prescribed radii, or depths or forces in their order."""
-        found, other = (self._followed(contacts) for contacts in self._branches())
-        return self._path(list(zip(found, other, strict=True)), adheres=True)
+        fine, coarse = (self._followed(contacts) for contacts in self._branches())
+        return self._path(list(zip(fine, coarse, strict=True)), adheres=True)
 
     def _followed(self, contacts: AdheringIndenter) -> list[ContactFields]:
         """What is prescribed is inserted as it is: a flat punch may be held below its fold."""
         loading = self.scene.loading
         values = np.array(loading.values)  # type: ignore[attr-defined]
         radius = values if isinstance(loading, ContactRadii) else followed(contacts, values)
-        found = []
+        contact_fields = []
         for a, value in zip(radius.tolist(), values.tolist(), strict=True):
             state = contacts.at(a)
             if isinstance(loading, IndentationDepths):
@@ -126,13 +126,13 @@ class GridSolver:
             elif isinstance(loading, NormalForces):
                 load = value / contact_modulus(self.scene.layer)
                 state = state._replace(depth=(load + state.moment) / state.stiffness)
-            found.append(self._adhering(contacts.pressing, state))
-        return found
+            contact_fields.append(self._adhering(contacts.pressing, state))
+        return contact_fields
 
     def _adhering(self, pressing: Pressing, state: PressedState) -> ContactFields:
         # A flat end holds the front: its density is what the contact bears, not what adhesion could.
-        held = state.radius == self.scene.indenter.flat_radius
-        edge = state.depth * state.edge_flat if held else edge_density(self.scene, state.radius)
+        is_pinned = state.radius == self.scene.indenter.flat_radius
+        edge = state.depth * state.edge_flat if is_pinned else edge_density(self.scene, state.radius)
         return ContactFields(pressing, state, state, edge)
 
     def detachment(self) -> DetachmentPath:
@@ -143,7 +143,7 @@ class GridSolver:
         radius = np.asarray(start * np.linspace(1.0, 0.0, STATES, endpoint=False) ** 2, dtype=np.float64)
         (depth, force), (other_depth, other_force) = (contacts.equilibria(radius) for contacts in pair)
         places = [float(contacts.branch.position(np.array([start]))[0]) for contacts in pair]
-        scalars, others = (one.branch.pull_off(control, y) for one, y in zip(pair, places, strict=True))
+        scalars, others = (indenter.branch.pull_off(control, y) for indenter, y in zip(pair, places, strict=True))
         floor = self._floor(radius)
         errors = {
             "indentation_depth": self._stated(depth, other_depth, floor, path=True),
@@ -168,7 +168,7 @@ class GridSolver:
         )
 
     def _branches(self) -> tuple[AdheringIndenter, AdheringIndenter]:
-        """On the fine and on the coarser grid."""
+        """Adhering equilibria on the fine and on the coarser grid."""
         fine = self.pressing
         with self.log.stage("first_guess"):
             radius = largest_radius(self.scene, fine)
@@ -181,8 +181,8 @@ class GridSolver:
 
     def _path(self, pairs: Sequence[tuple[ContactFields, ContactFields]], *, adheres: bool) -> ContactPath:
         """The answer, with errors of its fields, unless the indenter touches outside a contact."""
-        found, other = (self._values([pair[i].state for pair in pairs]) for i in (0, 1))
-        errors = self._errors(found, other, adheres=adheres)
+        rows, other = (self._values([pair[i].state for pair in pairs]) for i in (0, 1))
+        errors = self._errors(rows, other, adheres=adheres)
         shared = np.maximum(errors["indentation_depth"], errors["normal_force"])
         with self.log.stage("field_errors"):
             pressure, displacement = np.array([field_changes(*pair) for pair in pairs]).T
@@ -191,40 +191,40 @@ class GridSolver:
         path = ContactPath(
             **self._common(errors),
             notes=("values are followed in their order, from out of contact",) if adheres else (),
-            fields=FieldSequence([one for one, _ in pairs]),
-            **dict(zip(ContactPath.ARRAYS, found, strict=True)),
+            fields=FieldSequence([fine for fine, _ in pairs]),
+            **dict(zip(ContactPath.ARRAYS, rows, strict=True)),
         )
         return refuse_touching_path(path)
 
     def _values(self, states: Sequence[PressedState]) -> FloatArray:
         """Rows of `ContactPath.ARRAYS`, shape (4, n)."""
         E = contact_modulus(self.scene.layer)
-        return np.array([(one.radius, one.depth, E * one.load, E * one.stiffness) for one in states]).T
+        return np.array([(state.radius, state.depth, E * state.load, E * state.stiffness) for state in states]).T
 
     def _common(self, errors: dict[str, FloatArray]) -> dict[str, Any]:
         cost = self.log.cost(unknowns=self.pressing.cells**2 // 4)
         numbers = {"cost": cost, "stages": self.log.records, "error_estimate": errors}
         return {"scene": self.scene, "method": "bem", "settings": self.settings} | numbers
 
-    def _errors(self, found: FloatArray, other: FloatArray, *, adheres: bool) -> dict[str, FloatArray]:
+    def _errors(self, rows: FloatArray, coarse_rows: FloatArray, *, adheres: bool) -> dict[str, FloatArray]:
         """Stated errors by name; none of what is prescribed, and only the floor of a stiffness at a given radius."""
         is_punch = isinstance(self.scene.indenter, FlatPunch) and not adheres
         is_given = is_punch or isinstance(self.scene.loading, ContactRadii)
         errors = {}
-        for name, one, two in zip(ContactPath.ARRAYS, found, other, strict=True):
+        for name, row, coarse_row in zip(ContactPath.ARRAYS, rows, coarse_rows, strict=True):
             is_stationary = not is_given and name in ("indentation_depth", "normal_force")
-            floor = self._floor(found[0], is_stationary=is_stationary)
+            floor = self._floor(rows[0], is_stationary=is_stationary)
             if is_punch or (is_given and name == "contact_stiffness"):
-                floor = np.full(found.shape[1], self._least)
-            errors[name] = self._stated(one, two, floor, path=adheres)
+                floor = np.full(rows.shape[1], self._least)
+            errors[name] = self._stated(row, coarse_row, floor, path=adheres)
         exact = [PRESCRIBED[type(self.scene.loading)], *(["contact_radius"] if is_punch else [])]
-        return errors | {name: np.zeros(found.shape[1]) for name in exact}
+        return errors | {name: np.zeros(rows.shape[1]) for name in exact}
 
     @staticmethod
-    def _stated(one: FloatArray, other: FloatArray, floor: FloatArray | float, *, path: bool = False) -> FloatArray:
+    def _stated(values: FloatArray, other: FloatArray, floor: FloatArray | float, *, path: bool = False) -> FloatArray:
         """Values of one path are relative to its largest magnitude."""
-        scale = np.abs(one).max() if path else one
-        return stated_error(one, other, scale=scale, floor=floor, sequence=path)
+        scale = np.abs(values).max() if path else values
+        return stated_error(values, other, scale=scale, floor=floor, sequence=path)
 
     @property
     def _least(self) -> float:

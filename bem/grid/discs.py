@@ -54,10 +54,10 @@ class Disc:
 
     Attributes:
         cells: Cells across the grid.
-        boundary: Of the operators that it serves.
+        boundary: Boundary of the operators of layers.
         contact: Covered cells, shape (m, m), m = cells/2.
         pressure: p/E* under a unit depth of the half-space, same shape.
-        operator: Of the half-space.
+        operator: Operator of the half-space.
     """
 
     cells: int
@@ -132,11 +132,11 @@ class Punch:
     Attributes:
         disc: The cells.
         layer: The layer.
-        threads: Of the transforms.
+        threads: Number of threads of the transforms.
         radius: a [m].
         pressure: p_1/E* under a unit depth, shape (m, m).
         growth: kappa = k_N/(2 E* a), k_bar of Eq. (10).
-        degree: Of Q, the quotient of p_1 and the half-space's pressure; zero on the half-space.
+        degree: Degree of Q, the quotient of p_1 and the half-space's pressure; zero on the half-space.
     """
 
     disc: Disc

@@ -98,10 +98,10 @@ class ContactFields:
         rings, quotient = self._rings
         other_rings, other = coarser._rings
         marks = [self.radius, *(k for k in self.pressing.indenter.kinks if k < self.radius)]
-        away = np.min([np.abs(rings - mark / self.radius) for mark in marks], axis=0) * self.punch.disc.radius
+        distance = np.min([np.abs(rings - mark / self.radius) for mark in marks], axis=0) * self.punch.disc.radius
         near = np.abs(rings[:, None] - other_rings) * coarser.punch.disc.radius < NEARBY
         on_both = (near & (other < -PULLED * other.max())).any(axis=1) & (quotient < -PULLED * quotient.max())
-        for place in self.radius * rings[on_both & (away > BESIDE_KINKS)]:
+        for place in self.radius * rings[on_both & (distance > BESIDE_KINKS)]:
             raise no_single_circle(self.radius, f"would be pulled at r = {place:g} m")
         for place in self.radius * rings[on_both]:
             raise Unresolved(
@@ -167,16 +167,16 @@ class ContactFields:
         return answer if layer.has_elastic_base else np.where(distance < REACH * h, answer, 0.0)
 
 
-def field_changes(one: ContactFields, other: ContactFields) -> tuple[float, float]:
+def field_changes(fine: ContactFields, coarse: ContactFields) -> tuple[float, float]:
     """Change of pressure and displacement between two grids; all of them where only one grid is in contact.
 
     Pressures at equal r/a in the norm weighted with r (a^2 - r^2); the largest change of displacements outside the
     contact, relative to depth or height at the edge.
     """
-    if one.radius == 0.0 or other.radius == 0.0:
-        return (0.0, 0.0) if one.radius == other.radius else (1.0, 1.0)
-    p, q = (np.sqrt(1.0 - INSIDE**2) * of.pressure(INSIDE * of.radius) for of in (one, other))
-    r = OUTSIDE * max(one.radius, other.radius)
-    apart = one.surface_displacement(r) - other.surface_displacement(r)
-    scale = max(abs(one.state.depth), float(one.pressing.indenter.height(one.radius)))
+    if fine.radius == 0.0 or coarse.radius == 0.0:
+        return (0.0, 0.0) if fine.radius == coarse.radius else (1.0, 1.0)
+    p, q = (np.sqrt(1.0 - INSIDE**2) * of.pressure(INSIDE * of.radius) for of in (fine, coarse))
+    r = OUTSIDE * max(fine.radius, coarse.radius)
+    apart = fine.surface_displacement(r) - coarse.surface_displacement(r)
+    scale = max(abs(fine.state.depth), float(fine.pressing.indenter.height(fine.radius)))
     return float(np.linalg.norm(p - q) / np.linalg.norm(p)), float(np.abs(apart).max() / scale)

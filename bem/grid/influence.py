@@ -54,7 +54,7 @@ class PointResponse:
     """V(rho) of one layer, rho = r/h.
 
     Attributes:
-        smooth: What FFTLog computes, over ln rho.
+        smooth: Smooth part of V over ln rho, computed by FFTLog.
         limit: 1 - chi at q = 0, one on a rigid base.
         logarithm: c_1 in chi = 1 + c_1/q + ....
     """
@@ -97,7 +97,7 @@ def rectangle_influence(offsets: int) -> FloatArray:
 
 
 def layer_influence(offsets: int, layer: ElasticLayer, cell_size: float) -> FloatArray:
-    """The same for any layer, cells of `cell_size` [m], shape (offsets + 1, offsets + 1)."""
+    """Displacements at cell offsets on any layer by a unit pressure on one cell of `cell_size` [m]."""
     influence = rectangle_influence(offsets)
     if layer.is_half_space:
         return influence

@@ -31,9 +31,9 @@ class GridOperator:
 
     Attributes:
         forward: Filter of the convolution.
-        symbol: Its eigenvalues.
+        symbol: Eigenvalues of the convolution.
         inverse: Filter of the preconditioner.
-        inverse_symbol: Its eigenvalues.
+        inverse_symbol: Eigenvalues of the preconditioner.
     """
 
     forward: CosineFilter | FourierFilter

@@ -65,7 +65,7 @@ class Punches(NamedTuple):
         growth: kappa.
         growth_slope: dkappa/d(ln a).
         series: Chebyshev coefficients of Q in 2 r^2/a^2 - 1, shape (n,).
-        series_slope: Their derivatives by ln(a).
+        series_slope: Derivatives of these coefficients by ln(a).
     """
 
     growth: float
@@ -79,7 +79,9 @@ class Punches(NamedTuple):
         share, squared = np.cos(psi), self.growth + self.growth_slope
         # No node lies within the flat end by a rounding.
         r = np.clip(radius * share, indenter.flat_radius, radius)
-        Q, change = (chebyshev.chebval(2.0 * share**2 - 1.0, one) for one in (self.series, self.series_slope))
+        Q, change = (
+            chebyshev.chebval(2.0 * share**2 - 1.0, coefficients) for coefficients in (self.series, self.series_slope)
+        )
         by_height = 2.0 * radius * share * indenter.height(r) * weights
         by_slope = 2.0 * radius * share**2 * indenter.slope_at(r) * weights
         moment_slope = float(by_height @ (Q + change) / radius + by_slope @ Q)
@@ -109,8 +111,8 @@ class Pressing:
         indenter: The profile.
         cells: Cells across the grid.
         boundary: "free" or "periodic".
-        threads: Of the transforms.
-        step: Of ln(a), see `STEP`.
+        threads: Number of threads of the transforms.
+        step: Step of ln(a), see `STEP`.
         fewer: Degrees that Q lacks, see `FEWER`.
     """
 
@@ -123,7 +125,7 @@ class Pressing:
     fewer: int = 0
 
     def coarser(self) -> Pressing:
-        """On half as many cells, with twice the step and fewer degrees."""
+        """The same indenter on half as many cells, with twice the step and fewer degrees."""
         return replace(self, cells=self.cells // 2, step=2.0 * self.step, fewer=FEWER)
 
     def punch(self, radius: float, cells: int | None = None, near: float | None = None) -> Punch:
@@ -135,7 +137,7 @@ class Pressing:
         return punch(self.layer, radius, cells or self.cells, "periodic" if thin else self.boundary, self.threads)
 
     def punches(self, radius: float) -> Punches:
-        """With slopes from half as many cells, whose errors are smooth functions of the radius."""
+        """Flat punches about a radius [m], slopes by half as many cells, whose errors are smooth in the radius."""
         flat = self.punch(radius)
         if self.layer.is_half_space:
             return Punches(1.0, 0.0, np.ones(1), np.zeros(1))
@@ -146,7 +148,8 @@ class Pressing:
         # phi_1 varies as the series on these cells, about its value by the stiffness.
         fitted = float(here.series(degree).sum())
         inside, outside = (
-            one.series(degree, edge / fitted * float(one.series(degree).sum())) / one.growth for one in (inner, outer)
+            disc.series(degree, edge / fitted * float(disc.series(degree).sum())) / disc.growth
+            for disc in (inner, outer)
         )
         series = flat.series(degree, edge)
         # Q/kappa varies slowly where both go with a power of the radius.
@@ -199,8 +202,8 @@ def equilibrium(
 
     Args:
         pressing: The indenter on discs.
-        prescribed: What is.
-        value: Its value, positive; a force over E*.
+        prescribed: Name of the prescribed quantity.
+        value: Prescribed value [m or m^2], positive; a force over E*.
         near: A guess; from discs of `FIRST_CELLS` by default.
 
     Returns:
@@ -226,8 +229,8 @@ def equilibrium(
             half = state.edge_flat**2 * change
             k, M = state.stiffness + half, state.moment + half * state.depth
             depth = value if prescribed == "indentation_depth" else (value + M) / k
-            moved = PressedState(state.radius + change, k + half, M + half * depth, state.edge_flat, depth)
-            return moved, state, (excess, exponent)
+            contact = PressedState(state.radius + change, k + half, M + half * depth, state.edge_flat, depth)
+            return contact, state, (excess, exponent)
     raise NotConvergedError(f"no contact radius was found at {prescribed} = {value:g}", {"change": abs(change)})
 
 

@@ -36,7 +36,7 @@ class ShapeState:
     """A contact of a shape.
 
     Attributes:
-        cells: On the grid, at the same depth or at a unit depth of a flat punch.
+        cells: Cells in contact on the grid, at the same depth or at a unit depth of a flat punch.
         cell_size: s [m].
         depth: delta [m].
         load: F/E* [m^2].
@@ -69,8 +69,8 @@ class ShapeState:
     def pressure(self, radius: FloatArray, angle: FloatArray) -> FloatArray:
         """p/E* between the centres of cells, scaled to the load."""
         scale, r = self.load / (self.cells.load * self.cell_size**2), radius / self.cell_size
-        found = self.cells.pressure_at(r * np.cos(angle), r * np.sin(angle))
-        return np.where(radius < self.outline(angle), scale * found, 0.0)
+        values = self.cells.pressure_at(r * np.cos(angle), r * np.sin(angle))
+        return np.where(radius < self.outline(angle), scale * values, 0.0)
 
 
 def _cosines(shape: Shape) -> range:
@@ -83,7 +83,7 @@ class OutlinedFields:
     """Outline and pressure of every step of a path.
 
     Attributes:
-        states: Of each step.
+        states: Contact of each step.
         modulus: E* [Pa].
     """
 
@@ -106,8 +106,8 @@ class ShapeSolver:
     Attributes:
         scene: The problem.
         points: Cells across the mean contact.
-        threads: Of the transforms.
-        settings: As the answer reports them.
+        threads: Number of threads of the transforms.
+        settings: Settings that the answer reports.
         log: Stage log.
     """
 
@@ -128,7 +128,7 @@ class ShapeSolver:
             )
         units = np.array([1.0, 1.0, modulus, modulus])
         rows, others = (
-            units[:, None] * np.array([(one.radius, one.depth, one.load, one.stiffness) for one in states]).T
+            units[:, None] * np.array([(state.radius, state.depth, state.load, state.stiffness) for state in states]).T
             for states in (fine, coarse)
         )
         return ContactPath(
@@ -187,8 +187,8 @@ class ShapeSolver:
         # The ratio varies so little with the depth that cells twice as wide suffice.
         low, high = (self._pair(shape, 2.0 * s, mean._replace(depth=mean.depth * (1.0 + e))) for e in (-STEP, STEP))
         change = (high[0].load / high[1].load - low[0].load / low[1].load) / (2.0 * STEP * mean.depth)
-        moved = np.array([shaped.moment(n) - round_.moment(n) for n in _cosines(shape)]) * s * s / pi
-        square = np.append(moved[0], 2.0 * moved[1:])
+        moments = np.array([shaped.moment(n) - round_.moment(n) for n in _cosines(shape)]) * s * s / pi
+        square = np.append(moments[0], 2.0 * moments[1:])
         square[0] += mean.radius**2
         load = mean.load * ratio if by_depth else value
         stiffness = mean.stiffness * ratio + mean.load * change
@@ -196,7 +196,7 @@ class ShapeSolver:
 
     def _pair(self, shape: Raised, cell_size: float, mean: PressedState) -> tuple[CellContact, CellContact]:
         """The shape and its mean on the same cells."""
-        shaped, round_ = (self._cells(one, mean.depth, cell_size, mean.radius) for one in (shape, shape.mean))
+        shaped, round_ = (self._cells(indenter, mean.depth, cell_size, mean.radius) for indenter in (shape, shape.mean))
         return shaped, round_
 
     def _cells(self, indenter: Profile, depth: float, cell_size: float, radius: float) -> CellContact:
@@ -213,8 +213,8 @@ class ShapeSolver:
         """Stated errors of what is not prescribed."""
         floors = self.points**-1.5 * np.array([COUNTED, SHARED, SHARED, SHARED])
         errors = {
-            name: stated_error(one, two, scale=one, floor=floor, sequence=False)
-            for name, one, two, floor in zip(ContactPath.ARRAYS, rows, others, floors, strict=True)
+            name: stated_error(row, other, scale=row, floor=floor, sequence=False)
+            for name, row, other, floor in zip(ContactPath.ARRAYS, rows, others, floors, strict=True)
         }
         if isinstance(self.scene.indenter, Flat):
             errors["contact_radius"] = np.zeros(rows.shape[1])
@@ -223,9 +223,9 @@ class ShapeSolver:
         return errors | {"pressure": SAFETY * np.array([_pressure_change(*pair) for pair in pairs]) + shared}
 
 
-def _pressure_change(one: ShapeState, other: ShapeState) -> float:
+def _pressure_change(fine: ShapeState, coarse: ShapeState) -> float:
     """Largest change of pressures over their mean between two grids."""
     angle = np.linspace(0.0, 2.0 * pi, ANGLES)[:, None]
-    radius = INSIDE * one.outline(angle)
-    change = one.pressure(radius, angle) - other.pressure(radius, angle)
-    return float(np.abs(change).max()) * pi * one.radius**2 / one.load
+    radius = INSIDE * fine.outline(angle)
+    change = fine.pressure(radius, angle) - coarse.pressure(radius, angle)
+    return float(np.abs(change).max()) * pi * fine.radius**2 / fine.load

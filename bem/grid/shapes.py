@@ -48,7 +48,7 @@ class CellContact:
 
     @property
     def copies(self) -> int:
-        """Times that the grid represents the surface: 4 for a quadrant."""
+        """Number of congruent parts of the surface, of which the grid is one: 4 for a quadrant."""
         return 4 if float(self.angle[0, 0]) > 0.0 else 1
 
     @property
@@ -90,7 +90,7 @@ def pressed_cells(
         radius: First guess of the contact [m].
         cell_size: s [m].
         whole: Whether the shape has no mirror symmetry in x.
-        threads: Of the transforms.
+        threads: Number of threads of the transforms.
         flat: Whether all cells within the outline are in contact.
     """
     half = ceil(MARGIN * radius / cell_size)

@@ -63,7 +63,7 @@ class CosineFilter:
 
 
 class FourierFilter:
-    """The same on the whole grid, for fields without symmetry; shape (cells, cells).
+    """Filter of the whole grid, for fields without symmetry; shape (cells, cells).
 
     Attributes:
         cells: Cells along a side of the grid.

@@ -63,7 +63,7 @@ class _Local(NamedTuple):
 
     @classmethod
     def at(cls, layer: GradedLayer, z: NDArray[Any]) -> _Local:
-        """Of a layer at depths z."""
+        """Local constants of a layer at depths z."""
         nu, turns, modulus = layer.ratio_at(z), layer.ratio_slope(z), layer.youngs_modulus
         return cls(nu, turns, modulus.slope(z, 1.0) / modulus.at(z, 1.0) - turns / (1 + nu))
 
@@ -92,7 +92,7 @@ class GradedKernel:
 
         c_1 = [(2 - nu) G'/G + nu']/(2 (1 - nu)) at the surface; the others are fitted.
         """
-        nu, turns, stiffens = (float(one) for one in _Local.at(self.layer, np.array(0.0)))
+        nu, turns, stiffens = (float(value) for value in _Local.at(self.layer, np.array(0.0)))
         first = ((2 - nu) * stiffens + turns) / (2 * (1 - nu))
         x = np.cos(np.linspace(0.0, np.pi / 2.4, 24)) / _FAR
         rest = self.one_minus_chi(1 / x) - first * x
@@ -120,12 +120,12 @@ class GradedKernel:
         """
         start = np.minimum(1.0, deep / np.abs(k))
         R = np.where(start < 1.0, 0.0, self._at_base(k))
-        found: list[_Followed] = []
+        reflections: list[_Followed] = []
         for low, high in self.stretches(start)[::-1]:
             upwards = _integrated(partial(self._slope, k), R, high, low)
-            found.append(lambda share, upwards=upwards: upwards(1.0 - share))  # type: ignore[misc]
+            reflections.append(lambda share, upwards=upwards: upwards(1.0 - share))  # type: ignore[misc]
             R = upwards(1.0)
-        return found[::-1]
+        return reflections[::-1]
 
     def stretches(self, start: FloatArray) -> list[tuple[FloatArray, FloatArray]]:
         """Beginnings and ends of depths between breakpoints, down to `start`, shape (n,) each."""
@@ -137,14 +137,17 @@ class GradedKernel:
     def _at_base(self, k: NDArray[Any]) -> NDArray[Any]:
         """R = 4 beta (C + C_0~)^-1 - 1 at the base."""
         nu, base = float(self.layer.ratio_at(1.0)), self.layer.support
-        own, side, face = 2 * (1 - nu), 1 - 2 * nu, base
+        diagonal, side, face = 2 * (1 - nu), 1 - 2 * nu, base
         if isinstance(base, ElasticBase):
             G = float(self.layer.youngs_modulus.at(1.0, 1.0)) / (1 + nu)
             softer = G * (1 + base.poissons_ratio) / base.youngs_modulus
             (uu, uw), _ = softer * half_space(base.poissons_ratio, np.ones(()))
-            own, side, face = own + uu, side + uw, base.interface
-        size = 4 * (1 - nu) / (own**2 - side**2)
-        bonded, slips = (size * own - 1, -size * side, size * own - 1), (-1.0, 0.0, 4 * (1 - nu) / own - 1)
+            diagonal, side, face = diagonal + uu, side + uw, base.interface
+        size = 4 * (1 - nu) / (diagonal**2 - side**2)
+        bonded, slips = (
+            (size * diagonal - 1, -size * side, size * diagonal - 1),
+            (-1.0, 0.0, 4 * (1 - nu) / diagonal - 1),
+        )
         return np.outer(bonded if face == "bonded" else slips, np.ones_like(k))
 
     def _slope(self, k: NDArray[Any], _: float, z: FloatArray, R: NDArray[Any]) -> NDArray[Any]:
@@ -176,16 +179,16 @@ class GradedKernel:
         """`transfers` at some wave numbers; zero on stretches below the reach of the waves."""
         reflected = self.reflection(k, _FADED + DEEP)
         stretches = self.stretches(np.minimum(1.0, (_FADED + DEEP) / k))
-        found = np.zeros((k.size, 4, len(self.layer.breakpoints) + 1, _NODES))
+        transfers = np.zeros((k.size, 4, len(self.layer.breakpoints) + 1, _NODES))
         uw, ww = _unreflected(reflected[0](0.0))
         d = np.array([-uw, 1 - ww])  # (1 + R)^-1 (0, 1)
         for number, ((low, high), R) in enumerate(zip(stretches, reflected, strict=True)):
             downwards = _integrated(partial(self._fading, k, R), d, low, high)
             for i, share in enumerate(_SHARES.tolist()):
                 nu = self.layer.ratio_at(low + (high - low) * share)
-                found[:, :, number, i] = np.transpose(_fields(nu, R(share), downwards(share)))
+                transfers[:, :, number, i] = np.transpose(_fields(nu, R(share), downwards(share)))
             d = downwards(1.0)
-        return found.reshape(k.size, -1)
+        return transfers.reshape(k.size, -1)
 
     def _fading(self, k: FloatArray, R: _Followed, share: float, z: FloatArray, d: FloatArray) -> FloatArray:
         """d/dz of d exp(kz)."""
@@ -227,8 +230,8 @@ class GradedDescent:
         high = np.minimum(self._ends[i + 1], np.maximum((_FADED + DEEP) / self.k, low + 1e-9))
         gap = np.clip((z - low) / (high - low), 0.0, 1.0)[:, None] - _SHARES
         weights = _WEIGHTS / np.where(gap == 0, 1e-200, gap)
-        found = np.einsum("ks,kfs->fk", weights, self._rows[:, :, i]) / weights.sum(axis=1)
-        return np.asarray(found * np.where(self.k * z < _FADED, np.exp(-self.k * z), 0.0))
+        values = np.einsum("ks,kfs->fk", weights, self._rows[:, :, i]) / weights.sum(axis=1)
+        return np.asarray(values * np.where(self.k * z < _FADED, np.exp(-self.k * z), 0.0))
 
 
 def _unreflected(R: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
@@ -259,8 +262,8 @@ def _integrated(rate: _Rate, start: NDArray[Any], begin: FloatArray, end: FloatA
         z = begin + (end - begin) * share
         return np.ravel((end - begin) * rate(share, z, y.reshape(start.shape)))
 
-    found = solve_ivp(slope, (0.0, 1.0), start.ravel(), "DOP853", dense_output=True, rtol=TOLERANCE, atol=ABSOLUTE)
-    values = found.sol
-    if not found.success or values is None:
-        raise NotConvergedError(f"the graded layer was not integrated over its depth: {found.message}")
+    solution = solve_ivp(slope, (0.0, 1.0), start.ravel(), "DOP853", dense_output=True, rtol=TOLERANCE, atol=ABSOLUTE)
+    values = solution.sol
+    if not solution.success or values is None:
+        raise NotConvergedError(f"the graded layer was not integrated over its depth: {solution.message}")
     return lambda way: np.asarray(values(way).reshape(start.shape))

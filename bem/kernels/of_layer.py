@@ -69,8 +69,10 @@ def _of_stack(layer: LayerStack) -> StackKernel:
         softer = (1 + unit.poissons_ratio) / (1 + nu)
         return Sheet(thickness / unit.thickness, modulus / unit.youngs_modulus * softer, nu, face == "unbonded")
 
-    own = zip(layer.sublayers, faces, strict=True)
-    sheets = tuple(sheet(one.thickness, one.youngs_modulus, one.poissons_ratio, face) for one, face in own)
+    parts = zip(layer.sublayers, faces, strict=True)
+    sheets = tuple(
+        sheet(sublayer.thickness, sublayer.youngs_modulus, sublayer.poissons_ratio, face) for sublayer, face in parts
+    )
     return StackKernel(sheets, sheet(inf, elastic.youngs_modulus, elastic.poissons_ratio) if elastic else None)
 
 
@@ -90,7 +92,7 @@ def _to_digits(value: object) -> object:
     if isinstance(value, float):
         return float(f"{value:.{_DIGITS}g}")
     if isinstance(value, np.ndarray):
-        return np.array([float(f"{one:.{_DIGITS}g}") for one in value.tolist()])
+        return np.array([float(f"{number:.{_DIGITS}g}") for number in value.tolist()])
     return _without_roundings(value) if isinstance(value, Record) else value
 
 

@@ -123,10 +123,10 @@ class Step(NamedTuple):
         det = uu * ww - uw**2
         return np.asarray((below + det * adjoint) / (1 + (K * below).sum(axis=(0, 1)) + self.free_determinant * det))
 
-    def on_top(self, own: Matrix, below: Matrix, *, slips: bool) -> Matrix:
+    def on_top(self, compliance: Matrix, below: Matrix, *, slips: bool) -> Matrix:
         """C of the upper face: N, or what is asked of it instead, and A M A^T of the layers below."""
         M = self.joined(below, slips=slips)
-        return np.asarray(own + np.einsum("ij...,jk...,lk...->il...", self.through, M, self.through))
+        return np.asarray(compliance + np.einsum("ij...,jk...,lk...->il...", self.through, M, self.through))
 
     def down(self, below: Matrix, shear: FloatArray, normal: FloatArray, *, slips: bool) -> Transfer:
         """The lower face under tractions of the upper one."""
@@ -169,7 +169,7 @@ class StackKernel:
     """Kernel of layers on a rigid base or on an elastic half-space; without layers, of the half-space.
 
     Attributes:
-        sheets: From the top.
+        sheets: Layers from the top.
         base: The half-space below, of infinite thickness; None for a rigid base.
     """
 
@@ -191,7 +191,7 @@ class StackKernel:
 
     @property
     def poissons_ratio(self) -> float:
-        """Of the surface material."""
+        """Poisson's ratio of the surface material."""
         return (*self.sheets, self.base)[0].poissons_ratio  # type: ignore[union-attr]
 
     @property
@@ -220,21 +220,21 @@ class StackKernel:
             C = half_space(self.poissons_ratio, k)
             return C if part == "glued" else 0 * C
         top = self.sheets[0]
-        own = Step.of(top.thickness * k, top.poissons_ratio)
-        return own.on_top(getattr(own, part), self.below(k)[0], slips=top.slips_below)
+        step = Step.of(top.thickness * k, top.poissons_ratio)
+        return step.on_top(getattr(step, part), self.below(k)[0], slips=top.slips_below)
 
     def below(self, k: NDArray[Any]) -> list[Matrix]:
         """C of all that lies below each layer, in units of that layer."""
         C = half_space(self.base.poissons_ratio, k) if self.base else np.zeros((2, 2, *np.shape(k)))
-        unit, found = self.base.shear_modulus if self.base else 1.0, []
+        unit, compliances = self.base.shear_modulus if self.base else 1.0, []
         for sheet in reversed(self.sheets):
             C = C * (sheet.shear_modulus / unit)
-            found.append(C)
-            if len(found) < len(self.sheets):
-                own = Step.of(sheet.thickness * k, sheet.poissons_ratio)
-                C = own.on_top(own.glued, C, slips=sheet.slips_below)
+            compliances.append(C)
+            if len(compliances) < len(self.sheets):
+                step = Step.of(sheet.thickness * k, sheet.poissons_ratio)
+                C = step.on_top(step.glued, C, slips=sheet.slips_below)
             unit = sheet.shear_modulus
-        return found[::-1]
+        return compliances[::-1]
 
     def descent(self, k: FloatArray) -> StackDescent:
         """The inside at wave numbers k, shape (n,)."""
@@ -254,8 +254,8 @@ class StackDescent:
         self._tops = np.concatenate([[0.0], self._faces])
         self._loads = [(np.zeros_like(k), np.ones_like(k))]
         for sheet, below in zip(kernel.sheets, self._below, strict=True):
-            own = Step.of(sheet.thickness * k, sheet.poissons_ratio)
-            self._loads.append(own.down(below, *self._loads[-1], slips=sheet.slips_below)[2:])
+            step = Step.of(sheet.thickness * k, sheet.poissons_ratio)
+            self._loads.append(step.down(below, *self._loads[-1], slips=sheet.slips_below)[2:])
 
     def places(self, z: FloatArray) -> NDArray[np.intp]:
         """Twice the number of the layer that holds each depth, and one more on its lower face.
@@ -268,13 +268,13 @@ class StackDescent:
         return 2 * layer + (z >= np.append(self._faces, inf)[layer] * (1 - _ROUNDINGS))
 
     def material(self, place: int, z: FloatArray) -> Material:
-        """Of depths z at one place."""
+        """Material at depths z of one place."""
         sheet = (*self.kernel.sheets, self.kernel.base)[place // 2]
         assert sheet is not None
         return Material(sheet.shear_modulus, sheet.poissons_ratio, 0.0, 0.0, place < 2)
 
     def at(self, place: int, z: FloatArray) -> Transfer:
-        """Of depths z at one place, shape (m, 1): arrays of shape (m, n)."""
+        """Transfer functions at depths z of one place, shape (m, 1): arrays of shape (m, n)."""
         number, on_face = divmod(place, 2)
         depth, load = self.k * (z - self._tops[number]), self._loads[number]
         if number == len(self.kernel.sheets):
