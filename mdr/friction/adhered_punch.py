@@ -26,7 +26,7 @@ from contact.records.validation import FloatArray
 from mdr.inside import wave_rule
 
 # Wave number beyond which layers add nothing, exp(-2k); with half of it 1e-9.
-_REACH = 21.5
+REACH = 21.5
 # Panels shrink towards an end by this ratio, so many times: exp(i eps ln(1 - t)) is integrated to 1e-16; with half as
 # many to 1e-8.
 _RATIO, _LEVELS = 0.15, 17
@@ -37,6 +37,8 @@ _BESIDE = 1 + 1e-6
 
 ComplexArray: TypeAlias = NDArray[np.complex128]
 Rule: TypeAlias = tuple[FloatArray, FloatArray, FloatArray]
+# Phi and (1 - t^2) Phi' at t = 1 - rest, from t and rest.
+Density: TypeAlias = Callable[[FloatArray, FloatArray], tuple[ComplexArray, ComplexArray]]
 
 
 def towards_one(count: int, levels: int = 0) -> Rule:
@@ -46,9 +48,7 @@ def towards_one(count: int, levels: int = 0) -> Rule:
     return 1 - rest, rest, w
 
 
-def abel(
-    s: FloatArray, square: FloatArray, rule: Rule, density: Callable[[FloatArray, FloatArray], tuple[ComplexArray, ...]]
-) -> FloatArray:
+def abel(s: FloatArray, square: FloatArray, rule: Rule, density: Density) -> FloatArray:
     """p and q at s in 4 G/(pi a), shape (2, n), from Phi and (1 - t^2) Phi'; square = 1 - s^2."""
     s, square, (v, rest, w) = s[:, None], square[:, None], rule
     t = np.maximum(np.sqrt(s * s + square * v * v), 1e-100)
@@ -57,8 +57,8 @@ def abel(
     p = (phi - slope / t).real
     if s.min(initial=1.0) < _NEAR_AXIS:
         near = np.maximum(s, _NEAR_AXIS)
-        beside = abel(near[:, 0], np.where(s < near, 1 - near**2, square)[:, 0], rule, density)[1]
-        return np.array([p @ w / np.sqrt(square[:, 0]), beside * (s / near)[:, 0]])
+        shear = abel(near[:, 0], np.where(s < near, 1 - near**2, square)[:, 0], rule, density)[1]
+        return np.array([p @ w / np.sqrt(square[:, 0]), shear * (s / near)[:, 0]])
     q = (s / t * (phi - slope / t + short * (1 + t) * phi / t**2)).imag
     return np.asarray(np.array([p @ w, q @ w]) / np.sqrt(square[:, 0]))
 
@@ -94,10 +94,10 @@ class Adhered:
     """The punch of radius a.
 
     Args:
-        kernel: Of the layer.
+        kernel: Kernel of the layer.
         a: Radius in units of the kernel.
-        extra: Added to the sizes of the discretisation.
-        far: Largest place over a at which waves are asked for.
+        extra: Increase of the sizes of the discretisation.
+        far: Largest radius over a at which `beside` is evaluated.
     """
 
     def __init__(self, kernel: StackKernel, a: float, extra: int = 0, far: float = 1.0) -> None:
@@ -119,7 +119,7 @@ class Adhered:
         self.condition = float(np.linalg.cond(matrix))
 
     def _waves(self, far: float) -> tuple[FloatArray, FloatArray]:
-        k, w = wave_rule(_REACH, self.a * (1 + far), self.kernel.longest, self.nodes)
+        k, w = wave_rule(REACH, self.a * (1 + far), self.kernel.longest, self.nodes)
         return k * self.a, w * self.a
 
     def _basis(self, k: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -130,11 +130,11 @@ class Adhered:
         return size * (plus + minus), size * (plus - minus)
 
     def _of_layer(self, far: float) -> FloatArray:
-        """The layer's matrix; keeps wave numbers, weights times D, and transforms for the fields."""
+        """Matrix of the layer, shape (n, n). Wave numbers, weights times D, and transforms are stored for fields."""
         self.k, w = self._waves(far)
         self.cosine, self.sine = self._basis(self.k)
-        self.extra = [w * one for one in self.kernel.beyond_half_space(self.k / self.a)]
-        uu, uw, ww = (4 / np.pi * one for one in self.extra)
+        self.extra = [w * compliance for compliance in self.kernel.beyond_half_space(self.k / self.a)]
+        uu, uw, ww = (4 / np.pi * weight for weight in self.extra)
         mixed = (self.cosine * uw) @ self.sine.T
         return np.asarray((self.cosine * ww) @ self.cosine.T + (self.sine * uu) @ self.sine.T + mixed + mixed.T)
 
@@ -199,19 +199,21 @@ class Adhered:
     def beside(self, s: FloatArray) -> ComplexArray:
         """G at places s = x/a > 0: analytic across s = 1.
 
-        Beside the punch the transform of the surface leaves Re[((s + 1)/(s - 1))^(i eps) G] of the depth; within it
+        Outside the punch the depth less the transform of the surface is Re[((s + 1)/(s - 1))^(i eps) G]. Within it
         G = sqrt(kap) g.
         """
-        found: ComplexArray = np.asarray(np.sqrt(self.kap) * self.polynomial(s)[0])
+        G: ComplexArray = np.asarray(np.sqrt(self.kap) * self.polynomial(s)[0])
         out = s > _BESIDE
         far, (t, rest, w) = s[out][:, None], self.rule
         phi, nearness = self.density(t, rest)[0] * w, 1 / ((far - 1 + rest) * (far + t))
         hilbert = -(far[:, 0] * (nearness @ phi.real) + 1j * (nearness @ (t * phi.imag)))
-        left = 1 - 2j / np.pi * self.eta * hilbert
+        remaining = 1 - 2j / np.pi * self.eta * hilbert
         if not self.kernel.is_half_space:
             uu, uw, ww = self.extra
             p, q = self.c @ self.cosine, self.c @ self.sine
             waves = far * self.k
-            left = left - 2 / np.pi * (np.cos(waves) @ (ww * p + uw * q) + 1j * np.sin(waves) @ (uu * q + uw * p))
-        found[out] = left * np.exp(-1j * self.eps * np.log((far + 1) / (far - 1)))[:, 0]
-        return np.asarray(found)
+            remaining = remaining - 2 / np.pi * (
+                np.cos(waves) @ (ww * p + uw * q) + 1j * np.sin(waves) @ (uu * q + uw * p)
+            )
+        G[out] = remaining * np.exp(-1j * self.eps * np.log((far + 1) / (far - 1)))[:, 0]
+        return G

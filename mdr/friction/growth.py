@@ -3,7 +3,7 @@
     g_hs(x) = int_0^x M(x; a) d delta(a),   F = int k_stick d delta,   M = Re[((x + a)/(x - a))^(i eps) G(x; a)]
 
 with G of `Adhered.beside`, a polynomial of x and a. Between radii where the profile is not analytic, d delta/du is
-u^(lead - 1) times a polynomial of u, a = start + length u^power, found by least squares. Lengths in units of the
+u^(lead - 1) times a polynomial of u, a = start + length u^power, by least squares. Lengths in units of the
 kernel.
 """
 
@@ -20,7 +20,7 @@ from scipy.special import j0
 
 from bem.kernels.stack import StackKernel
 from contact.records.validation import FloatArray
-from mdr.friction.adhered_punch import Adhered, Rule, abel, towards_one
+from mdr.friction.adhered_punch import REACH, Adhered, ComplexArray, Density, Rule, abel, towards_one
 from mdr.inside import wave_rule
 from mdr.profiles import Tip
 
@@ -58,7 +58,7 @@ class Punches:
     def _fitted(self, x: FloatArray, values: NDArray[np.inexact]) -> NDArray[np.inexact]:
         return np.asarray(chebyshev.chebfit(2 * x / self.end - 1, values, x.size - 1))
 
-    def at(self, a: FloatArray) -> NDArray[np.complex128]:
+    def at(self, a: FloatArray) -> ComplexArray:
         """Coefficients in x of G(x; a), first axis."""
         return np.asarray(chebyshev.chebval(2 * a / self.end - 1, self._table))
 
@@ -75,7 +75,15 @@ def punches_of(kernel: StackKernel, end: float, extra: int) -> Punches:
 
 @dataclass(frozen=True)
 class Stretch:
-    """Radii start + (end - start) u^power, on which d delta/du is u^(lead - 1) times `count` polynomials of u."""
+    """Radii start + (end - start) u^power, on which d delta/du is u^(lead - 1) times a polynomial of u.
+
+    Attributes:
+        start: First radius.
+        end: Last radius.
+        power: Power of u.
+        lead: Exponent of the depth at the first radius.
+        count: Number of coefficients of the polynomial.
+    """
 
     start: float
     end: float
@@ -88,10 +96,10 @@ class Stretch:
         length, (v, rest, w) = self.end - self.start, rule
         first, last = (np.clip((x - self.start) / length, 0, 1) ** (1 / self.power) for x in (low, high))
         u = first + (last - first) * (v if to_high else rest)
-        way = length * (last - first) * rest * (1.0 if self.power == 1 else u + (last if to_high else first))
-        way = way + (max(0.0, high - self.end) if to_high else max(0.0, self.start - low))
+        distance = length * (last - first) * rest * (1.0 if self.power == 1 else u + (last if to_high else first))
+        distance = distance + (max(0.0, high - self.end) if to_high else max(0.0, self.start - low))
         rows = ((last - first) * w * u ** (self.lead - 1))[:, None] * chebyshev.chebvander(2 * u - 1, self.count - 1)
-        return self.start + length * u**self.power, np.maximum(way, 1e-300), rows
+        return self.start + length * u**self.power, np.maximum(distance, 1e-300), rows
 
 
 class Growth:
@@ -115,11 +123,8 @@ class Growth:
         count = int(max(usual, min(usual + _UNKNOWNS_PER_ROOT * self.punches.root, _MOST)))
         self._follow(tip.exponent, count + extra)
 
-    def _height(self, x: FloatArray | float) -> FloatArray:
-        return self.tip.transform(np.asarray(x, dtype=np.float64) * self.unit) / self.unit
-
     def _follow(self, lead: float, count: int) -> None:
-        """Solve g_hs(x) = int_0^x M d delta for d delta on one new after another, by least squares.
+        """Solve g_hs(x) = int_0^x M d delta for d delta on each stretch in turn, by least squares.
 
         The number of equations is 1.25 times that of the unknowns; `lead` is the exponent of delta at the tip.
         """
@@ -127,13 +132,14 @@ class Growth:
         ends = [flat, *(b / unit for b in self.tip.breaks if flat < b / unit < self.end), self.end]
         self.parts: list[tuple[Stretch, FloatArray]] = []
         for low, high in pairwise(ends):
-            new = Stretch(low, high, 2 if low else 1, 1.0 if low else lead, count)
+            stretch = Stretch(low, high, 2 if low else 1, 1.0 if low else lead, count)
             u = _nodes(int(1.25 * count))
-            x = low + (high - low) * u**new.power
-            known = np.array([sum(self._followed(s, y) @ c for s, c in self.parts) for y in x.tolist()])
-            scale = u**-new.lead
-            rows = scale[:, None] * np.array([self._followed(new, y) for y in x.tolist()])
-            self.parts.append((new, np.linalg.lstsq(rows, scale * (self._height(x) - known), rcond=None)[0]))
+            x = low + (high - low) * u**stretch.power
+            known = np.array([sum(self._followed(part, y) @ c for part, c in self.parts) for y in x.tolist()])
+            scale = u**-stretch.lead
+            rows = scale[:, None] * np.array([self._followed(stretch, y) for y in x.tolist()])
+            height = self.tip.transform(x * unit) / unit
+            self.parts.append((stretch, np.linalg.lstsq(rows, scale * (height - known), rcond=None)[0]))
 
     def _followed(self, stretch: Stretch, x: float) -> FloatArray:
         """int M(x; a) d delta over the radii of one stretch up to x, per coefficient of d delta."""
@@ -155,54 +161,52 @@ class Growth:
 
     def _beyond(self, x: float, a: float, rule: Rule) -> list[tuple[FloatArray, FloatArray, FloatArray]]:
         """Quadrature from x to a on each stretch: radii, their distances from x, and d delta."""
-        reached = [(s, c) for s, c in self.parts if s.end > x and s.start < a]
-        found = [(s.steps(x, a, rule, to_high=False), c) for s, c in reached]
-        return [(size, gap, rows @ c) for (size, gap, rows), c in found]
+        reached = [(stretch, c) for stretch, c in self.parts if stretch.end > x and stretch.start < a]
+        nodes = [(stretch.steps(x, a, rule, to_high=False), c) for stretch, c in reached]
+        return [(size, gap, rows @ c) for (size, gap, rows), c in nodes]
 
     def tractions(self, r: FloatArray, a: float) -> FloatArray:
         """p and q over E* at radii r < a of the contact of radius a, shape (2, n): sums over punches larger than r."""
-        found, of, (_, rest, w) = np.zeros((2, r.size)), self.punches.largest, self.rule
+        tractions, (_, rest, w) = np.zeros((2, r.size)), self.rule
         squared = 1 - rest**2, rest**2, 2 * rest * w  # tractions of a punch are 1/sqrt(gap)
         for i, x in enumerate(r.tolist()):
             for size, gap, step in self._beyond(x, a, squared):
-                density = _Densities(self.punches, size)
-                found[:, i] += abel(x / size, gap * (size + x) / size**2, self.rule, density) @ (step / size)
-        return 2 * of.beta / np.pi * found
+                density = self._unit_densities(size[:, None], self.punches.at(size)[..., None])
+                tractions[:, i] += abel(x / size, gap * (size + x) / size**2, self.rule, density) @ (step / size)
+        return 2 * self.punches.largest.beta / np.pi * tractions
+
+    def _unit_densities(self, size: FloatArray, columns: ComplexArray) -> Density:
+        """Phi and (1 - t^2) Phi' of unit punches of these sizes at t = 1 - rest, from their columns of the table."""
+        eps, end = self.punches.largest.eps, self.punches.end
+        slopes = chebyshev.chebder(columns) * 2 / end
+
+        def density(t: FloatArray, rest: FloatArray) -> tuple[ComplexArray, ComplexArray]:
+            y = 2 * t * size / end - 1
+            g, change = (chebyshev.chebval(y, coefficients, tensor=False) for coefficients in (columns, slopes))
+            rho = np.exp(1j * eps * np.log((1 + t) / rest)) / np.sqrt(self.punches.largest.kap)
+            return rho * g, rho * (2j * eps * g + rest * (1 + t) * size * change)
+
+        return density
 
     def displacement(self, r: FloatArray, a: float) -> FloatArray:
         """u_z at radii r > a outside the contact of radius a, from the density summed over all punches."""
-        of, (v, rest, w) = self.punches.largest, self.rule
+        punch, (v, rest, w) = self.punches.largest, self.rule
         t = a * v
         phi = a * w * np.array([self._density(x, a) for x in t.tolist()])
-        near = 1 / np.sqrt(((r - a)[:, None] + a * rest) * (r[:, None] + t)) @ phi.real
-        added: FloatArray | float = 0.0
+        half_space = 1 / np.sqrt(((r - a)[:, None] + a * rest) * (r[:, None] + t)) @ phi.real
+        layer: FloatArray | float = 0.0
         if not self.kernel.is_half_space:
-            k, weight = wave_rule(21.5, a + float(r.max()), self.kernel.longest, of.nodes)
+            k, weight = wave_rule(REACH, a + float(r.max()), self.kernel.longest, punch.nodes)
             _, uw, ww = self.kernel.beyond_half_space(k)
             angle = np.multiply.outer(k, t)
             load = ww * (np.cos(angle) @ phi.real) + uw * (np.sin(angle) @ phi.imag)
-            added = j0(np.multiply.outer(r, k)) @ (weight * load)
-        return np.asarray(2 / np.pi * (2 * of.beta * near + added))
+            layer = j0(np.multiply.outer(r, k)) @ (weight * load)
+        return np.asarray(2 / np.pi * (2 * punch.beta * half_space + layer))
 
     def _density(self, x: float, a: float) -> complex:
         """Phi at x, summed over all punches larger than x."""
-        of, total = self.punches.largest, 0j
+        punch, total = self.punches.largest, 0j
         for size, gap, step in self._beyond(x, a, self.rule):
             G = chebyshev.chebval(2 * x / self.punches.end - 1, self.punches.at(size))
-            total += (np.exp(1j * of.eps * np.log((size + x) / gap)) * G) @ step
-        return complex(total / np.sqrt(of.kap))
-
-
-class _Densities:
-    """Phi and (1 - t^2) Phi' of unit punches of given sizes, each at its own t, `short` = 1 - t, from the table."""
-
-    def __init__(self, punches: Punches, size: FloatArray) -> None:
-        self.of, self.end, self.size = punches.largest, punches.end, size[:, None]
-        self.columns = punches.at(size)[..., None]
-        self.slopes = chebyshev.chebder(self.columns) * 2 / punches.end
-
-    def __call__(self, t: FloatArray, short: FloatArray) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
-        y = 2 * t * self.size / self.end - 1
-        g, change = (chebyshev.chebval(y, f, tensor=False) for f in (self.columns, self.slopes))
-        rho = np.exp(1j * self.of.eps * np.log((1 + t) / short)) / np.sqrt(self.of.kap)
-        return rho * g, rho * (2j * self.of.eps * g + short * (1 + t) * self.size * change)
+            total += (np.exp(1j * punch.eps * np.log((size + x) / gap)) * G) @ step
+        return complex(total / np.sqrt(punch.kap))

@@ -1,6 +1,6 @@
 """Contact under full stick: equilibria under prescribed radii, depths or forces, reached by loading alone.
 
-Errors: what a coarser discretisation changes (`contact.stated`), and rounding times the condition of the equation.
+Errors: the change on a coarser discretisation (`contact.stated`), and rounding times the condition of the equation.
 """
 
 from __future__ import annotations
@@ -36,9 +36,9 @@ from mdr.friction.growth import Growth
 from mdr.profiles import Tip, tip_of
 from mdr.spring_bed import State
 
-# Unknowns that the companion has less: with half as many two resolutions agree by accident.
+# Unknowns of the answer less those of its companion: with half as many two resolutions agree by accident.
 _MORE = 6
-# Where the first trial radius does not reach the wanted depth or force, the next is this much larger.
+# Ratio of the next trial radius to one that does not reach the prescribed depth or force.
 _FURTHER = 1.3
 # Roundings of growth, of a punch, and of both per condition of the punch's matrix; half of them are exceeded at times.
 _OF_GROWTH, _OF_PUNCH, _PER_CONDITION = 50.0, 20.0, 10.0
@@ -57,26 +57,28 @@ def solve_stick(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[str
     log, extra = StageLog(), flat_punch.sizes.extra
     solve = _pressed if isinstance(scene.indenter, FlatPunch) else _grown
     with log.stage("stick"):
-        own, coarser = solve(scene, extra + _MORE), solve(scene, extra)
+        answer, coarser = solve(scene, extra + _MORE), solve(scene, extra)
     return ContactPath(
         scene=scene,
         method="mdr",
         settings=settings,
-        cost=log.cost(unknowns=own.unknowns),
+        cost=log.cost(unknowns=answer.unknowns),
         stages=log.records,
-        contact_radius=own.state.radius,
-        indentation_depth=own.state.depth,
-        normal_force=own.state.force,
-        contact_stiffness=own.state.stiffness,
-        error_estimate=_errors(scene, own, coarser),
-        fields=own,
+        contact_radius=answer.state.radius,
+        indentation_depth=answer.state.depth,
+        normal_force=answer.state.force,
+        contact_stiffness=answer.state.stiffness,
+        error_estimate=_errors(scene, answer, coarser),
+        fields=answer,
     )
 
 
-def _errors(scene: Scene, own: Stuck, coarser: Stuck) -> dict[str, FloatArray]:
-    """Of what was not prescribed."""
-    pairs = zip(own.state, coarser.state, strict=True)
-    radius, depth, force, stiffness = (stated_error(one, other, scale=one, floor=own.floor) for one, other in pairs)
+def _errors(scene: Scene, answer: Stuck, coarser: Stuck) -> dict[str, FloatArray]:
+    """Relative errors of radius, depth, force and stiffness, zero where they are prescribed."""
+    pairs = zip(answer.state, coarser.state, strict=True)
+    radius, depth, force, stiffness = (
+        stated_error(fine, coarse, scale=fine, floor=answer.floor) for fine, coarse in pairs
+    )
     if not max(depth.max(), force.max()) <= _LARGEST_ERROR:
         raise NotConvergedError(f"growth under full stick is resolved to {max(depth.max(), force.max()):.1g} only")
     by_depth, by_force = (isinstance(scene.loading, kind) for kind in (IndentationDepths, NormalForces))
@@ -100,13 +102,13 @@ class Stuck:
     """States of a stuck contact, and its surface fields at every step.
 
     Attributes:
-        state: Equilibria.
+        state: Radius, depth, force and stiffness at every step.
         modulus: E* [Pa].
         unit: Length of the kernel [m].
-        contact: A flat punch under a depth of one, or a growth, lengths in units of the kernel.
-        tip: The profile.
+        contact: Flat punch under a depth of one, or a growth, lengths in units of the kernel.
+        tip: Profile of the indenter.
         floor: Relative rounding error.
-        unknowns: Of all systems.
+        unknowns: Number of unknowns of all systems.
     """
 
     state: State
@@ -128,44 +130,42 @@ class Stuck:
     def _tractions(self, radius: FloatArray, step: int) -> FloatArray:
         """p and q [Pa], shape (2, n)."""
         a, depth = self.state.radius[step], self.state.depth[step] / self.unit
-        found, inside = np.zeros((2, radius.size)), radius < a
+        tractions, inside = np.zeros((2, radius.size)), radius < a
         if isinstance(self.contact, Adhered):
-            found[:, inside] = self.modulus * depth * self.contact.tractions(radius[inside] / a)
+            tractions[:, inside] = self.modulus * depth * self.contact.tractions(radius[inside] / a)
         else:
-            found[:, inside] = self.modulus * self.contact.tractions(radius[inside] / self.unit, a / self.unit)
-        return found
+            tractions[:, inside] = self.modulus * self.contact.tractions(radius[inside] / self.unit, a / self.unit)
+        return tractions
 
     def surface_displacement(self, radius: FloatArray, step: int) -> FloatArray:
         """w(r) [m]: the indenter's shape inside, Eq. (1)."""
         a, depth = self.state.radius[step], self.state.depth[step]
         inside = radius <= a
-        found, r = np.asarray(depth - self.tip.height(np.where(inside, radius, 0.0))), radius[~inside]
+        displacement, r = np.asarray(depth - self.tip.height(np.where(inside, radius, 0.0))), radius[~inside]
         if not r.size:
-            return found
+            return displacement
         if isinstance(self.contact, Adhered):
-            found[~inside] = depth * self.contact.displacement(r / a)
+            displacement[~inside] = depth * self.contact.displacement(r / a)
         else:
-            found[~inside] = self.unit * self.contact.displacement(r / self.unit, float(a) / self.unit)
-        return found
+            displacement[~inside] = self.unit * self.contact.displacement(r / self.unit, float(a) / self.unit)
+        return displacement
 
 
 def _pressed(scene: Scene, extra: int) -> Stuck:
-    """A flat punch."""
+    """States of a flat punch."""
     layer, tip, values = scene.layer, tip_of(scene.indenter), _values(scene)
     modulus, unit = contact_modulus(layer), tip.flat if layer.is_half_space else layer.surface.thickness
     punch = Adhered(stack_kernel(layer), tip.flat / unit, extra)
-    stiffness, same = 2 * modulus * unit * punch.stiffness, np.ones_like(values)
+    stiffness, ones = 2 * modulus * unit * punch.stiffness, np.ones_like(values)
     by_depth = isinstance(scene.loading, IndentationDepths)
-    loads = (values, stiffness * values) if by_depth else (values / stiffness, values)
-    state, floor = (
-        State(tip.flat * same, *loads, stiffness * same),
-        EPS * (_OF_PUNCH + _PER_CONDITION * punch.condition),
-    )
+    depth, force = (values, stiffness * values) if by_depth else (values / stiffness, values)
+    floor = EPS * (_OF_PUNCH + _PER_CONDITION * punch.condition)
+    state = State(tip.flat * ones, depth, force, stiffness * ones)
     return Stuck(state, modulus, unit, punch, tip, floor, punch.count)
 
 
 def _grown(scene: Scene, extra: int) -> Stuck:
-    """A tip, followed up to the largest radius of the loading.
+    """States of a tip, followed up to the largest radius of the loading.
 
     Raises:
         UnsupportedSceneError: A flat end that grows, on a compressible layer.
@@ -184,8 +184,8 @@ def _grown(scene: Scene, extra: int) -> Stuck:
     while True:
         unit = reach if layer.is_half_space else layer.surface.thickness
         scales = (unit, unit, modulus * unit**2, modulus * unit)
-        growth, wanted = Growth(kernel, tip, unit, reach / unit, extra), values / scales[prescribed]
-        if not prescribed or growth.states(np.array([growth.end]))[prescribed - 1][0] >= wanted.max():
+        growth, targets = Growth(kernel, tip, unit, reach / unit, extra), values / scales[prescribed]
+        if not prescribed or growth.states(np.array([growth.end]))[prescribed - 1][0] >= targets.max():
             break
         if reach >= tip.end:
             raise InvalidInput(
@@ -193,21 +193,21 @@ def _grown(scene: Scene, extra: int) -> Stuck:
                 "reached; ask for less or describe the indenter further out"
             )
         reach = min(_FURTHER * reach, tip.end)
-    radii = _radii(growth, prescribed - 1, wanted) if prescribed else wanted
-    found = [one * scale for one, scale in zip((radii, *growth.states(radii)), scales, strict=True)]
-    found[prescribed] = values
+    radii = _radii(growth, prescribed - 1, targets) if prescribed else targets
+    numbers = [number * scale for number, scale in zip((radii, *growth.states(radii)), scales, strict=True)]
+    numbers[prescribed] = values
     floor = EPS * (_OF_GROWTH + _PER_CONDITION * growth.punches.largest.condition)
-    return Stuck(State(*found), modulus, unit, growth, tip, floor, sum(c.size for _, c in growth.parts))
+    return Stuck(State(*numbers), modulus, unit, growth, tip, floor, sum(c.size for _, c in growth.parts))
 
 
-def _radii(growth: Growth, which: int, wanted: FloatArray) -> FloatArray:
+def _radii(growth: Growth, which: int, targets: FloatArray) -> FloatArray:
     """Radii at which the depth (0) or the force (1) is reached."""
 
     def missing(a: float, value: float) -> float:
         return float(growth.states(np.array([a]))[which][0]) - value
 
     ends = growth.parts[0][0].start, growth.end
-    return np.array([brentq(missing, *ends, (value,), xtol=1e-300, rtol=4 * EPS) for value in wanted.tolist()])
+    return np.array([brentq(missing, *ends, (value,), xtol=1e-300, rtol=4 * EPS) for value in targets.tolist()])
 
 
 def _first_reach(scene: Scene, tip: Tip) -> float:
@@ -224,5 +224,5 @@ def _first_reach(scene: Scene, tip: Tip) -> float:
 
     # Stop a share of 1e-12 before the indenter's end: at a sphere's equator the slope is infinite.
     low, high = math.log(1e-15 * min(room, 1.0)), math.log(room) - 1e-12
-    found = brentq(missing, low, high, xtol=1e-3) if missing(high) > 0.0 > missing(low) else high
-    return min(tip.flat + math.exp(found), tip.end)
+    excess = brentq(missing, low, high, xtol=1e-3) if missing(high) > 0.0 > missing(low) else high
+    return min(tip.flat + math.exp(excess), tip.end)

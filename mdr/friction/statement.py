@@ -1,11 +1,11 @@
-"""What friction would change of a frictionless answer: a bound, and the first order in its coefficient.
+"""The change of a frictionless answer by friction: a bound, and the first order in its coefficient.
 
 Reciprocity with the frictionless punch of the same radius a gives F = F_0(delta, a) - int q u_1 dA exactly, u_1 being
 the radial displacement of the surface under that punch for a depth of one, and |q| <= mu p. Hence
 |F - F_0(delta, a)| <= mu U(a) F with U = max |u_1|, at the true contact radius. F_0(delta, .) is largest at the
 frictionless radius a_0, so the upper bound needs no other. The lower one takes the least of it at radii around a_0 that
-full stick does not leave: measured there, not proved. u_1 is what `mdr.inside` finds at the surface, a polynomial of
-arcsin(r/a); its maximum is looked for at the roots of its derivative, since samples miss it.
+include those of full stick: measured there, not proved. u_1 at the surface is that of `mdr.inside`, a polynomial of
+arcsin(r/a). Its maximum is at an end or a root of its derivative. Samples miss it.
 """
 
 from __future__ import annotations
@@ -28,8 +28,8 @@ from mdr.equilibria import is_singular
 from mdr.inside import Body, field_sizes
 from mdr.spring_bed import Springs
 
-# Share of min(1, mu U) by which friction moves the radius at most. Full stick moved it by up to 0.14 of min(1, U), most
-# under a cone on a thick layer of nu = 0 (of 252: nu 0 to 1/2, a/h 0.1 to 10, both supports).
+# Largest relative change of the radius by friction over min(1, mu U). Full stick changes it by up to 0.14 of min(1, U),
+# most under a cone on a thick layer of nu = 0. Half of it excludes such radii.
 _RADIUS_SHARE = 0.2
 # Slip of less than this share of the largest has no direction; ten times as much would call small reversals one way.
 _NO_DIRECTION = 1e-3
@@ -40,10 +40,10 @@ class FrictionEffect:
     """Relative change of the force at the same depth, step by step.
 
     Attributes:
-        coefficient: mu.
-        lower: F/F_0 - 1 is at least this, shape (n,).
-        upper: And at most this; infinite where mu U >= 1, shape (n,).
-        first_order: Its value to first order in mu, shape (n,); 0 where `one_direction` is false.
+        coefficient: Coefficient of friction mu.
+        lower: Lower bound of F/F_0 - 1, shape (n,).
+        upper: Upper bound of F/F_0 - 1, shape (n,); infinite where mu U >= 1.
+        first_order: F/F_0 - 1 to first order in mu, shape (n,); 0 where `one_direction` is false.
         one_direction: Whether the whole surface slides one way, so that the first order is known, shape (n,).
     """
 
@@ -55,7 +55,7 @@ class FrictionEffect:
 
 
 def friction_effect(path: ContactPath, coefficient: float) -> FrictionEffect:
-    """Bound and first order of what dry friction changes of a frictionless path.
+    """Bound and first order of the change of the force of a frictionless path by dry friction.
 
     Args:
         path: Frictionless equilibria of any method, without adhesion.
@@ -73,7 +73,7 @@ def friction_effect(path: ContactPath, coefficient: float) -> FrictionEffect:
     stack_kernel(path.scene.layer)
     states = zip(path.contact_radius.tolist(), path.indentation_depth.tolist(), strict=True)
     steps = [_changes(path.scene, a, depth, coefficient) for a, depth in states]
-    lower, upper, first, one_way = (np.array(one) for one in zip(*steps, strict=True))
+    lower, upper, first, one_way = (np.array(values) for values in zip(*steps, strict=True))
     return FrictionEffect(coefficient, lower, upper, first, one_way)
 
 
@@ -81,13 +81,13 @@ def _changes(scene: Scene, a: float, depth: float, coefficient: float) -> tuple[
     """The fields of `FrictionEffect` at one state."""
     layer = scene.layer
     slip, largest, is_one_way = _slip(layer.in_own_units(), 1.0 if layer.is_half_space else a / layer.thickness)
-    springs, moved = Springs.of(layer, scene.indenter), coefficient * largest
-    share = _RADIUS_SHARE * min(1.0, moved)
+    springs, bound = Springs.of(layer, scene.indenter), coefficient * largest
+    share = _RADIUS_SHARE * min(1.0, bound)
     near = np.clip(a * (1 + share * np.array([0.0, -1.0, 1.0])), springs.tip.flat, springs.tip.end)
     forces = springs.state(near, springs.at(near), np.full(3, depth)).force
-    lower = min(1.0, float(forces.min() / forces[0])) / (1 + moved) - 1
+    lower = min(1.0, float(forces.min() / forces[0])) / (1 + bound) - 1
     first = coefficient * abs(_mean(scene, springs, a, depth, slip)) if is_one_way else 0.0
-    return lower, 1 / (1 - moved) - 1 if moved < 1 else math.inf, first, is_one_way
+    return lower, 1 / (1 - bound) - 1 if bound < 1 else math.inf, first, is_one_way
 
 
 @lru_cache(maxsize=256)
