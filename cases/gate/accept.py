@@ -163,9 +163,7 @@ def propose(
         InvalidInput: If the spread of a quantity was not measured.
     """
     old = {(a.scene, a.method): a for a in before.answers} if before else {}
-    solved = sorted(
-        (answer for answer in run.answers.of_case(case) if answer.solved), key=lambda answer: answer.identity
-    )
+    solved = (answer for answer in run.answers.of_case(case) if answer.solved)
     new = {
         (answer.scene, answer.method): _with_spreads(answer, old.get((answer.scene, answer.method)), spreads)
         for answer in solved
