@@ -61,7 +61,7 @@ def fit_uncertain(
         raise InvalidInput(f"uncertain {', '.join(sorted(fitted))}: the fit finds it; name inputs that are kept")
 
     def at(deviations: FloatArray) -> CurveFit:
-        changed = inputs.moved(scene, deviations)
+        changed = inputs.scene_at(scene, deviations)
         return fit_curve(changed, depth, force, parameters=parameters, confidence=confidence)
 
     middle = at(np.zeros(len(names)))

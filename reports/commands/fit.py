@@ -42,6 +42,8 @@ def fit_file(
     Raises:
         InvalidInput: For a wrong scene, curve, parameter or file.
     """
+    if uncertain and (number is None or until):
+        raise InvalidInput("--uncertain is for whole single curves; leave --map and --until out")
     check_outputs(outputs, {".csv": "CSV", **PICTURES})
     scene = load_scene(scene_file)
     if _relaxes(scene) and (number is None or uncertain or until):
