@@ -22,7 +22,7 @@ class UncertainFit:
 
     Attributes:
         fit: Fit at the middle of the inputs; its intervals include scatter, numerical error and inputs.
-        inputs: Uncertain inputs.
+        inputs: The uncertain inputs.
         changes: Change of each parameter per standard deviation of each input, [parameter][input].
     """
 
@@ -46,28 +46,28 @@ def fit_uncertain(
         scene: Tip and layer; uncertain ranges are replaced by their middles.
         depth: Measured depths [m], shape (n,).
         force: Measured forces [N], shape (n,).
-        uncertain: Text as of `read_inputs`, such as "radius=5%, thickness=4e-6..6e-6", or what that gives.
-        parameters: Fitted parameters, as `fit_curve` takes them.
-        confidence: Confidence level of the intervals.
+        uncertain: Text as for `read_inputs`, such as "radius=5%, thickness=4e-6..6e-6", or the inputs read from it.
+        parameters: Fitted parameters, as for `fit_curve`.
+        confidence: Confidence of the intervals.
 
     Raises:
-        InvalidInput: For what is no uncertain input of this scene, or is fitted; and as `fit_curve` does.
+        InvalidInput: For inputs that the scene does not have or that are fitted, and as `fit_curve` does.
         NotConvergedError: If a fit does not converge.
     """
     inputs = read_inputs(uncertain, scene) if isinstance(uncertain, str) else uncertain
-    fitted = {"youngs_modulus", *parameters} & {entry.name.rpartition(".")[2] for entry in inputs.inputs}
+    names = [uncertain_input.name for uncertain_input in inputs.inputs]
+    fitted = {"youngs_modulus", *parameters} & {name.rpartition(".")[2] for name in names}
     if fitted:
-        raise InvalidInput(f"uncertain {', '.join(sorted(fitted))}: the fit finds it; name what is held")
+        raise InvalidInput(f"uncertain {', '.join(sorted(fitted))}: the fit finds it; name inputs that are kept")
 
     def at(deviations: FloatArray) -> CurveFit:
         changed = inputs.scene_at(scene, deviations)
         return fit_curve(changed, depth, force, parameters=parameters, confidence=confidence)
 
-    middle = at(np.zeros(len(inputs.inputs)))
-    pairs = [(at(unit).values, at(-unit).values) for unit in np.eye(len(inputs.inputs))]
+    middle = at(np.zeros(len(names)))
+    pairs = [(at(unit).values, at(-unit).values) for unit in np.eye(len(names))]
     changes = {name: np.array([(up[name] - down[name]) / 2 for up, down in pairs]) for name in middle.values}
     spread = {name: float(inputs.spread(d[:, None])[0]) for name, d in changes.items()}
-    names = [entry.name for entry in inputs.inputs]
     return UncertainFit(
         fit=replace(middle, input_error=spread),
         inputs=inputs,

@@ -1,6 +1,6 @@
 """Force curves of indentation tests: one force curve per scene, fits of one curve, and of whole maps.
 
-Enters: a scene, and measured depths and forces. Leaves: moduli with intervals, and what formulas in use would say.
+Input: a scene, and measured depths and forces. Output: moduli with intervals, and moduli by formulas in use.
 Read `force_curve` first, then `contact_point` and `fit`.
 """
 

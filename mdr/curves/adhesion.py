@@ -37,9 +37,10 @@ _STRETCHES: Final = tuple(10.0 ** (k / 8) for k in range(-20, 11))
 _LOG_MODULI: Final = tuple(k / 4 for k in range(-20, 13))
 # Trial depths of the deepest point beyond pull-off, over the way in contact. Half as many start 15 % off.
 _DEPTHS: Final = tuple(0.9 * 1.12**k for k in range(-1, 12))
-# Depth of the dip over the scatter of its neighbours from which it is one. At half of it noise makes dips.
+# Least depth of a dip over the scatter of its neighbours. At half of it noise makes dips.
 _DIP: Final = 6.0
-# Share of the dip that the force at pull-off has: 5/9 under a paraboloid. Points above this share are not in contact.
+# Share of the dip from which on points are in contact. The force at pull-off is 5/9 of the dip under a paraboloid.
+# Half of it counts scatter before the jump as contact.
 _ATTACHED: Final = 0.3
 # Share of points in contact that may lie beyond the pull-off of the fit. At twice that wrong ends pass.
 _BEYOND: Final = 0.02

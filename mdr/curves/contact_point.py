@@ -6,13 +6,14 @@ quotient. So least squares run over d0, and one number u of a family of shapes, 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import takewhile
 from typing import Final, NamedTuple
 
 import numpy as np
 from scipy.optimize import leastsq
-from scipy.signal import correlate
 
 from contact import InvalidInput
 from contact.records.validation import FloatArray
@@ -38,7 +39,7 @@ NOT_WHITE: Final = 3.0
 
 @dataclass(frozen=True)
 class Data:
-    """One measured curve and what is linear in its fit.
+    """One measured curve and its background.
 
     Attributes:
         depth: Depths [m], shape (n,).
@@ -86,7 +87,7 @@ class Data:
         Where the modulus is not free it is 1.
         """
         phi = phi - (phi @ self.columns) @ self.columns.T
-        square = np.asarray(np.sum(phi * phi, axis=-1))
+        square = np.asarray(np.vecdot(phi, phi))
         modulus = np.ones_like(square)
         if has_free_modulus:
             product = np.maximum(phi @ self.remaining, 0.0)
@@ -136,7 +137,7 @@ def rough_indentation(data: Data) -> float:
         trials = np.geomspace(least, FURTHEST * travel, _TRIALS)
     x = np.maximum(coarse.depth - coarse.deepest + trials[:, None], 0.0)
     residuals = np.concatenate([coarse.fitted(power)[1] for power in (x, x * np.sqrt(x), x * x, x * x * x)])
-    best = int(np.argmin(np.sum(residuals**2, axis=1)))
+    best = int(np.argmin(np.vecdot(residuals, residuals)))
     check_contact(coarse, residuals[best], data.depth)
     return float(trials[best % trials.size])
 
@@ -188,12 +189,12 @@ def correlation_factor(residual: FloatArray) -> float:
     The sum ends at the first correlation within scatter (initial positive sequence, Geyer 1992).
     """
     n = residual.size
-    if n < 8 or not np.ptp(residual):
+    residual = residual - residual.mean()
+    square = float(residual @ residual)
+    if n < 8 or square == 0.0:
         return 1.0
-    products = correlate(residual - residual.mean(), residual - residual.mean())[n - 1 :]
-    rho = products[1 : n // 2] / products[0]
-    within_scatter = np.append(rho < NOT_WHITE / np.sqrt(n), True)
-    return 1.0 + 2.0 * float(rho[: np.argmax(within_scatter)].sum())
+    correlations = (float(residual[lag:] @ residual[:-lag]) / square for lag in range(1, n // 2))
+    return 1.0 + 2.0 * sum(takewhile(lambda rho: rho >= NOT_WHITE / math.sqrt(n), correlations))
 
 
 def trial_indentations(data: Data, rough: float, reach: float) -> FloatArray:
@@ -219,7 +220,7 @@ def least_squares(data: Data, family: Family, trials: Mapping[float, FloatArray]
     for u, points in trials.items():
         phi = family.shape(u)(data.depth - data.deepest + points[:, None])
         residuals = data.fitted(phi, has_free_modulus=family.has_free_modulus)[1]
-        squares = np.sum(residuals**2, axis=1)
+        squares = np.vecdot(residuals, residuals)
         best = int(np.argmin(squares))
         starts.append((float(squares[best]), float(points[best]), u))
     ends = [_polished(data, family, point, u) for _, point, u in sorted(starts)[:_STARTS]]

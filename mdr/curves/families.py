@@ -1,4 +1,4 @@
-"""What a fit may vary: force curves of a scene as a function of one further number u, F = E phi(d; u).
+"""Force curves of a scene as a function of one further number u that a fit varies, F = E phi(d; u).
 
 | fitted | u | E |
 |---|---|---|

@@ -1,4 +1,4 @@
-"""Young's modulus from one force curve or a map of them, with intervals, warnings, and what formulas in use would say.
+"""Young's modulus from one force curve or a map of them, with intervals, warnings, and moduli by formulas in use.
 
 Model: F = E phi(d - d0) + f0 + k (d - d0), with phi the force curve of the scene, of one family of shapes where more
 than E is fitted (`families`).
@@ -241,8 +241,8 @@ def _stated(scene: Scene, data: Data, fitted: Fitted, confidence: float) -> Curv
     values = dict(zip(names, parameters(x)[rows].tolist(), strict=True))
     warnings, notes = _words(scene, data, fitted, values)
     return with_intervals(
-        derivatives(model, x, steps)[:, rows],
-        derivatives(parameters, x, steps)[np.ix_(rows, rows)],
+        derivatives(model, x, steps, rows),
+        derivatives(parameters, x, steps, rows)[rows],
         pressed,
         values=values,
         confidence=confidence,
@@ -288,7 +288,7 @@ def _words(scene: Scene, data: Data, fitted: Fitted, values: dict[str, float]) -
 
 
 def _limited(fit: CurveFit, limit: Limit, data: Data) -> CurveFit:
-    """The fit up to the limit; twice, for the first one finds the contact point from all points."""
+    """The fit up to the limit; twice, for the first contact point is that of all points."""
     largest = math.nan
     for _ in range(2):
         deepest = fit.values.get("contact_point", 0.0) + limit.value

@@ -1,4 +1,4 @@
-"""Formulas in use for the modulus from force curves, each with its source: what a fit by them would have said.
+"""Formulas in use for the modulus from force curves, each with its source.
 
 All are F = E phi(d), with phi a power of the depth times a polynomial in a number x that compares depth and thickness.
 """
@@ -21,13 +21,13 @@ class Formula:
     """phi(d) = factor d^power (1 + c_1 x + c_2 x^2 + ...) with x = (d / length)^share.
 
     Attributes:
-        name: As people call it.
-        source: Where it is from.
-        factor: Of phi [m^(2 - power)].
-        power: Of the depth.
-        length: That the depth is compared with [m].
-        share: Power of that comparison.
-        coefficients: 1, c_1, c_2, ...
+        name: Usual name.
+        source: Publication.
+        factor: Factor of phi [m^(2 - power)].
+        power: Exponent of the depth.
+        length: Length to which the depth is compared [m].
+        share: Exponent of their ratio.
+        coefficients: Coefficients 1, c_1, c_2, ... of the polynomial.
     """
 
     name: str
@@ -79,7 +79,7 @@ def dimitriadis(nu: float, *, bonded: bool) -> tuple[float, ...]:
 
 
 def formulas_for(scene: Scene) -> tuple[Formula, ...]:
-    """The formulas that people use for this tip and support; none for other tips or layers of several materials."""
+    """The formulas in use for this tip and support; none for other tips or layers of several materials."""
     layer = scene.layer
     if not isinstance(layer, Layer):
         return ()
@@ -90,23 +90,23 @@ def formulas_for(scene: Scene) -> tuple[Formula, ...]:
     match scene.indenter:
         case Paraboloid(radius_of_curvature=radius) | Sphere(radius=radius):
             factor, length = 4 / (3 * compliance) * math.sqrt(radius), h**2 / radius
-            found = [Formula("Hertz", HERTZ, factor, 1.5)]
+            formulas = [Formula("Hertz", HERTZ, factor, 1.5)]
             if not layer.is_half_space:
                 # Where the last coefficient is in question, the one in use is taken.
                 in_use = DIMITRIADIS_BONDED if garcia else dimitriadis(nu, bonded=bonded)
-                found += [Formula("Dimitriadis", DIMITRIADIS, factor, 1.5, length, 0.5, in_use)]
+                formulas += [Formula("Dimitriadis", DIMITRIADIS, factor, 1.5, length, 0.5, in_use)]
             if garcia:
-                found += [Formula("Garcia", GARCIA, factor, 1.5, length, 0.5, GARCIA_PARABOLOID)]
+                formulas += [Formula("Garcia", GARCIA, factor, 1.5, length, 0.5, GARCIA_PARABOLOID)]
         case Cone(slope=slope):
             factor = 2 / (math.pi * slope * compliance)
-            found = [Formula("Sneddon", SNEDDON, factor, 2.0)]
+            formulas = [Formula("Sneddon", SNEDDON, factor, 2.0)]
             if garcia:
-                found += [Formula("Garcia", GARCIA, factor, 2.0, h * slope, 1.0, GARCIA_CONE)]
+                formulas += [Formula("Garcia", GARCIA, factor, 2.0, h * slope, 1.0, GARCIA_CONE)]
         case FlatPunch(radius=radius):
             factor = 2 * radius / compliance
-            found = [Formula("Sneddon", SNEDDON, factor, 1.0)]
+            formulas = [Formula("Sneddon", SNEDDON, factor, 1.0)]
             if garcia:  # x = a/h is a constant of the scene
-                found += [Formula("Garcia", GARCIA, factor * float(polyval(radius / h, GARCIA_PUNCH)), 1.0)]
+                formulas += [Formula("Garcia", GARCIA, factor * float(polyval(radius / h, GARCIA_PUNCH)), 1.0)]
         case _:
             return ()
-    return tuple(found)
+    return tuple(formulas)

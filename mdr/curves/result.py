@@ -180,9 +180,11 @@ class MapFit:
         return np.stack([low, self.of(lambda fit: fit.interval(fit.modulus_name)[1])])
 
 
-def derivatives(function: Callable[[FloatArray], FloatArray], x: FloatArray, steps: FloatArray) -> FloatArray:
-    """Derivatives of a function of shape (n,) by x, shape (n, p), by central differences."""
-    shifts = zip(np.diag(steps), 2 * steps, strict=True)
+def derivatives(
+    function: Callable[[FloatArray], FloatArray], x: FloatArray, steps: FloatArray, rows: Sequence[int]
+) -> FloatArray:
+    """Derivatives of a function of shape (n,) by some numbers x[rows], shape (n, p), by central differences."""
+    shifts = zip(np.diag(steps)[rows], 2 * steps[rows], strict=True)
     return np.stack([(function(x + shift) - function(x - shift)) / width for shift, width in shifts], axis=1)
 
 
@@ -215,8 +217,9 @@ def with_intervals(
     freedom = max(residual.size - jacobian.shape[1], 1)
     variance = float(residual @ residual) / freedom
     wider, lines = _widening(residual, pressed[order], variance)
-    lines = [*_bent_background(jacobian, values, depth), *lines]
-    raw = variance * wider * _inverse(jacobian)
+    inverse = _inverse(jacobian)
+    lines = [*_bent_background(jacobian, inverse, values, depth), *lines]
+    raw = variance * wider * inverse
     covariance = changes @ raw @ changes.T
     quantile = float(stdtrit(freedom, 0.5 + confidence / 2))
     errors = np.hypot(np.sqrt(np.maximum(np.diag(covariance), 0.0)), np.multiply(curvature, np.diag(raw)))
@@ -262,13 +265,15 @@ def _widening(residual: FloatArray, pressed: BoolArray, variance: float) -> tupl
     return correlated * larger, warnings
 
 
-def _bent_background(jacobian: FloatArray, values: Mapping[str, float], depth: FloatArray) -> list[str]:
+def _bent_background(
+    jacobian: FloatArray, inverse: FloatArray, values: Mapping[str, float], depth: FloatArray
+) -> list[str]:
     """Warning where the baseline is too short to distinguish a quadratic background from the contact."""
     if "tilt" not in values:
         return []
     row = next(i for i, name in enumerate(values) if is_modulus(name))
     square = ((depth - values.get("contact_point", 0.0)) / np.ptp(depth)) ** 2
-    ratio = _inverse(np.column_stack([jacobian, square]))[row, row] / _inverse(jacobian)[row, row]
+    ratio = _inverse(np.column_stack([jacobian, square]))[row, row] / inverse[row, row]
     text = (
         "the baseline is too short to show whether the background is straight: with a quadratic background the "
         f"interval of the modulus would be {min(math.sqrt(ratio), 999):.2g} times as wide; measure more points before "

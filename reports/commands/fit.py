@@ -1,4 +1,4 @@
-"""`contact-verify fit`: what its options mean, and what is printed and written of a fit."""
+"""`contact-verify fit`: the meaning of its options, and the tables and files of a fit."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -20,7 +20,7 @@ from reports.fit_tables import fit_csv, fit_table, formula_table, map_csv, map_f
 from reports.terminal import console, progress_bar, show_facts, show_table
 from reports.words import small
 
-# Means: all that is fitted by default in addition to the modulus.
+# Stands for all parameters that are fitted by default in addition to the modulus.
 ALL = "all"
 
 
@@ -37,7 +37,7 @@ def fit_file(
     outputs: Sequence[Path],
     **source: str,
 ) -> None:
-    """Fit one curve of a file, or all of a map where its number is None; print what was found, and write the files.
+    """Fit one curve of a file, or all of a map where its number is None; print the fit, and write the files.
 
     Raises:
         InvalidInput: For a wrong scene, curve, parameter or file.
@@ -60,38 +60,38 @@ def fit_file(
     curve, shares = curves[number], []
     with progress_bar("fitting"):
         if _relaxes(scene):
-            found = fit_history(scene, curve.time, curve.depth, curve.force, **options)
+            result = fit_history(scene, curve.time, curve.depth, curve.force, **options)
         elif uncertain:
             inputs = read_inputs(uncertain, scene, with_units=uses_units(scene_file))
-            carried = fit_uncertain(scene, curve.depth, curve.force, inputs, **options)
-            found, shares = carried.fit, [shares_table(carried)]
+            uncertain_fit = fit_uncertain(scene, curve.depth, curve.force, inputs, **options)
+            result, shares = uncertain_fit.fit, [shares_table(uncertain_fit)]
         else:
-            found = fit_curve(scene, curve.depth, curve.force, limit=read_limit(until), **options)
-    # Warnings come first: nobody reads them below the numbers.
-    show_facts([("warning", line) for line in found.warnings], on=console())
-    for table in (fit_table(found), *shares, formula_table(found)):
+            result = fit_curve(scene, curve.depth, curve.force, limit=read_limit(until), **options)
+    # Warnings are printed first, since they are overlooked below the numbers.
+    show_facts([("warning", line) for line in result.warnings], on=console())
+    for table in (fit_table(result), *shares, formula_table(result)):
         show_table(table, on=console())
-    facts = [("R^2 in contact", f"{found.r_squared:.6f}")]
-    facts += [("numerical error", f"{small(found.numerical_error)} of the modulus, included in its interval")]
-    facts += [("note", line) for line in (*found.notes, *curve.notes)]
+    facts = [("R^2 in contact", f"{result.r_squared:.6f}")]
+    facts += [("numerical error", f"{small(result.numerical_error)} of the modulus, included in its interval")]
+    facts += [("note", line) for line in (*result.notes, *curve.notes)]
     show_facts(facts, on=console())
-    pictures = picture_writers(lambda: _figures().fit_figure(found), key="fit")
-    write_outputs(outputs, {**csv_writer(lambda: fit_csv(found)), **pictures})
+    pictures = picture_writers(lambda: _figures().fit_figure(result), key="fit")
+    write_outputs(outputs, {**csv_writer(lambda: fit_csv(result)), **pictures})
 
 
 def _fit_map(scene: Scene, curves: list[Measured], outputs: Sequence[Path], **options: Any) -> None:
-    """Fit all curves of a map, print what was found, and write the files."""
-    depths, forces = ([getattr(one, name) for one in curves] for name in ("depth", "force"))
-    positions = np.array([one.position for one in curves])
+    """Fit all curves of a map, print the summary, and write the files."""
+    depths, forces = ([getattr(curve, name) for curve in curves] for name in ("depth", "force"))
+    positions = np.array([curve.position for curve in curves])
     with progress_bar("fitting curves") as progress:
-        found = fit_map(scene, depths, forces, positions=positions, progress=progress, **options)
-    show_facts(map_facts(found), on=console())
-    pictures = picture_writers(lambda: _figures().map_figure(found), key="fit")
-    write_outputs(outputs, {**csv_writer(lambda: map_csv(found)), **pictures})
+        fits = fit_map(scene, depths, forces, positions=positions, progress=progress, **options)
+    show_facts(map_facts(fits), on=console())
+    pictures = picture_writers(lambda: _figures().map_figure(fits), key="fit")
+    write_outputs(outputs, {**csv_writer(lambda: map_csv(fits)), **pictures})
 
 
 def fitted_parameters(scene: Scene, fit: str, also: str) -> tuple[str, ...]:
-    """Names of all that is fitted; where options name nothing, the default of elastic or of relaxing scenes."""
+    """Names of the fitted parameters; by default those of elastic or of relaxing scenes."""
     first, *others = DEFAULT_PARAMETERS
     if _relaxes(scene):
         first, others = "moduli,times", ["contact_point", "baseline"]

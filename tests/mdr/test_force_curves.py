@@ -92,33 +92,6 @@ def test_the_story_hertz_is_five_times_off_and_this_is_not():
     assert biases["Dimitriadis"] == pytest.approx(0.098, rel=0.0, abs=0.002)
 
 
-def test_on_a_half_space_hertz_is_right():
-    scene = Scene(
-        layer=Layer.half_space(youngs_modulus=1.0, poissons_ratio=0.5),
-        indenter=Paraboloid(radius_of_curvature=1e-5),
-        loading=IndentationDepths([1e-6]),
-    )
-    found = fit_curve(scene, DEPTH, 4e3 * formulas_for(scene)[0].per_modulus(DEPTH))
-    assert found.youngs_modulus == pytest.approx(4e3, rel=1e-8, abs=0.0)
-    assert found.formulas[0].bias == pytest.approx(0.0, rel=0.0, abs=1e-6)
-    assert not found.warnings
-
-
-def test_a_map_is_its_curves():
-    modulus, _, force = noisy(0.01, count=5, spread=0.5)
-    for baseline in (False, True):
-        names = ("youngs_modulus", "contact_point", "baseline")[: 2 + baseline]
-        together = fit_map(SCENE, DEPTH, force, parameters=names)
-        for i in range(5):
-            alone = fit_curve(SCENE, DEPTH, force[i], parameters=names)
-            # The squares are flat to a hundredth of a standard error where the contact point passes a datum.
-            errors = alone.standard_error
-            assert abs(together.youngs_modulus[i] - alone.youngs_modulus) < 0.01 * errors["youngs_modulus"]
-            assert abs(together.contact_point[i] - alone.values["contact_point"]) < 0.01 * errors["contact_point"]
-            assert together.standard_error[i] == pytest.approx(errors["youngs_modulus"], rel=1e-2, abs=0.0)
-    assert np.abs(together.youngs_modulus / modulus - 1.0).max() < 0.05
-
-
 def test_intervals_hold_as_often_as_they_say():
     """Of 1000 curves 95 % within three standard deviations of a binomial, 2.1 %."""
     modulus, _, force = noisy(0.01, count=1000, spread=0.5)

@@ -83,12 +83,6 @@ def test_the_command_reads_it_too(tmp_path, capsys):
     assert "has no curve 3; it has 1" in capsys.readouterr().err
 
 
-def test_a_map_is_its_curves_with_their_own_depths(tmp_path):
-    (curve,) = read_map(written(tmp_path, ".h5"))
-    depth, _ = read_curve(written(tmp_path, ".h5"))
-    np.testing.assert_array_equal(curve.depth, depth)
-
-
 @pytest.mark.parametrize(
     ("make", "message"),
     [
