@@ -156,7 +156,7 @@ def _show_answer(solution: Solution) -> None:
 
 def _notes(solution: Solution) -> list[tuple[str, str]]:
     """What smoothing a tip changes, and where the theory is valid."""
-    from cases.advice import validity_lines  # noqa: PLC0415 - MDR only where it is asked for
+    from cases.validity import validity_lines  # noqa: PLC0415 - MDR only where it is asked for
 
     told: list[tuple[str, str]] = []
     indenter = solution.scene.indenter
