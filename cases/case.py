@@ -244,15 +244,3 @@ class Case:
     def nightly_only(self) -> frozenset[tuple[str, str]]:
         """Return the scenes and methods that only the nightly suite solves."""
         return frozenset((scene.name, label) for scene in self.scenes for label in scene.nightly)
-
-
-def paper(module: str, text: str | None, /, **fields: Any) -> Case:
-    """Return the case of a module: the first line of its docstring is the title, the rest the text.
-
-    Args:
-        module: Name of the module, which is that of the case.
-        text: Docstring of the module.
-        fields: Others of `Case`.
-    """
-    title, _, body = (text or "").partition("\n")
-    return Case(name=module.rpartition(".")[2], title=title.strip().removesuffix("."), text=body.strip(), **fields)

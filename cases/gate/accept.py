@@ -3,7 +3,7 @@
 import math
 import os
 import subprocess
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -142,7 +142,14 @@ class Proposal:
 
 
 def propose(
-    run: Run, case: str, *, suites: tuple[str, ...], before: Baseline | None, spreads: Spreads, reason: str
+    run: Run,
+    case: str,
+    *,
+    suites: tuple[str, ...],
+    before: Baseline | None,
+    spreads: Spreads,
+    reason: str,
+    unsolved: Collection[tuple[str, str]] = (),
 ) -> Proposal:
     """Return what accepting a case as it ran would change.
 
@@ -153,15 +160,16 @@ def propose(
         before: Baseline accepted so far.
         spreads: Measured relative spread by method, scene and quantity.
         reason: Reason in the user's words.
+        unsolved: Scenes and methods that the run need not solve; what was accepted of them stays.
 
     Raises:
         InvalidInput: If the spread of a quantity was not measured.
     """
     old = {(a.scene, a.method): a for a in before.answers} if before else {}
-    solved = sorted(
-        (answer for answer in run.answers.of_case(case) if answer.solved), key=lambda answer: answer.identity
-    )
-    answers = tuple(_with_spreads(answer, old.get((answer.scene, answer.method)), spreads) for answer in solved)
+    solved = {(a.scene, a.method): a for a in run.answers.of_case(case) if a.solved}
+    new = {place: _with_spreads(answer, old.get(place), spreads) for place, answer in solved.items()}
+    left_as_accepted = {place: answer for place, answer in old.items() if place in unsolved}
+    answers = tuple(sorted((left_as_accepted | new).values(), key=lambda answer: answer.identity))
     judged = run.judged
     accepted = Accepted(
         case=case,
