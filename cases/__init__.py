@@ -6,7 +6,7 @@
 
 ``case`` says how a case is written, ``library`` holds the cases, one file each. ``run`` solves tasks, ``gate`` compares
 a run with accepted answers, ``foreign`` adds methods of installed packages, ``cost``, ``effects`` and
-``stress`` are studies; ``sweep``, ``advice``, ``accuracy`` and ``uncertain_fit`` answer single scenes.
+``stress`` are studies; ``sweep``, ``advice``, ``validity``, ``accuracy`` and ``uncertain_fit`` answer single scenes.
 
 ``solve(scene, accuracy=1e-4)`` tries methods from cheap to fine. `cases.run.propagation` carries the uncertainty of
 inputs to every quantity.

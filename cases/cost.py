@@ -44,8 +44,8 @@ class Cost(Study):
 
     def of_methods(self, methods: Collection[str], foreign: Iterable[MethodUse]) -> "Cost":
         """Return the study of these methods' settings, and of those of ``foreign`` ones."""
-        own = tuple(use for use in self.ladder if use.method in methods)
-        return replace(self, ladder=(*own, *foreign), cheap=())
+        settings = tuple(use for use in self.ladder if use.method in methods)
+        return replace(self, ladder=(*settings, *foreign), cheap=())
 
     def tasks(self, case: Case) -> Iterator[Task]:
         """Yield the reference and every timed setting."""
@@ -56,10 +56,10 @@ class Cost(Study):
 
     def records(self, case: Case, answers: Table) -> Iterator[CostOfAccuracy]:
         """Yield the finished study; nothing when an answer is missing or the reference itself has no numbers."""
-        own = [answers.get(task.identity) for task in self.tasks(case)]
-        if not own or None in own:
+        present = [answer for task in self.tasks(case) if (answer := answers.get(task.identity)) is not None]
+        if not present or len(present) < len(list(self.tasks(case))):
             return
-        reference, *timed = [one for one in own if one is not None]
+        reference, *timed = present
         if not reference.solved or not reference.quantities[self.quantity].error:
             return
         exact = reference.quantities[self.quantity]
@@ -128,7 +128,7 @@ def price_of_a_digit(cheap: Point, accurate: Point) -> float:
     """Return d log10(T) / d DoA between neighbours on the front: decades of time per digit of accuracy.
 
     Raises:
-        InvalidInput: unless the second setting is the more accurate one.
+        InvalidInput: Unless the second setting is the more accurate one.
     """
     if not bound_of(accurate) < bound_of(cheap):
         raise InvalidInput(f"{accurate.method} is not more accurate than {cheap.method}")

@@ -18,7 +18,7 @@ from typing import Any, Final
 
 from cases.case import Case, CaseScene
 from cases.claims import Agree, Approach, Changed, Claim, Equal, Zero
-from cases.declare.guarded_method import BrokenMethodError, build_guarded
+from cases.declare.guarded_method import build_guarded
 from cases.declare.methods import REFEREES, MethodUse, build, check_known, load, registered
 from contact import ContactError, ContactPath, ContactRadii, IndentationDepths, InvalidInput, Scene
 from contact.records.errors import shown
@@ -59,15 +59,7 @@ def claimed_accuracy(name: str) -> float:
     Raises:
         InvalidInput: If it is no number from zero to `LARGEST_CLAIM`.
     """
-    return check_claim(name, getattr(load(name), "claimed_accuracy", 0.0))
-
-
-def check_claim(name: str, claimed: Any) -> float:
-    """Return the accuracy that a method claims, as a number.
-
-    Raises:
-        InvalidInput: If it is no number from zero to `LARGEST_CLAIM`.
-    """
+    claimed = getattr(load(name), "claimed_accuracy", 0.0)
     is_number = isinstance(claimed, Real) and not isinstance(claimed, bool)
     if not is_number or not 0 <= claimed <= LARGEST_CLAIM:
         raise InvalidInput(
@@ -110,14 +102,13 @@ def _extended(case: Case, claim: Any, accuracies: Mapping[str, float]) -> Any:
         return replace(claim, methods=claim.methods or tuple(use.label for use in case.methods))
     if not isinstance(claim, Equal | Changed | Approach | Zero):
         return claim
-    methods = (*claim.methods, *accuracies) if claim.methods else ()
-    asked = max([claim.tolerance, *claim.tolerances.values()])
-    tolerances = {
-        name: HELD_TO * accuracy if accuracy and isinstance(claim, Equal) else asked
+    widest = max([claim.tolerance, *claim.tolerances.values()])
+    limits = {
+        name: min(widest, HELD_TO * accuracy) if accuracy and isinstance(claim, Equal) else widest
         for name, accuracy in accuracies.items()
     }
-    more = {name: min(asked, accuracy) for name, accuracy in tolerances.items()}
-    return replace(claim, methods=methods, tolerances={**claim.tolerances, **more})
+    methods = (*claim.methods, *accuracies) if claim.methods else ()
+    return replace(claim, methods=methods, tolerances={**claim.tolerances, **limits})
 
 
 def agreements_between(
@@ -205,11 +196,12 @@ def with_restated(case: Case, names: Iterable[str]) -> Case:
 
 
 def _twin(scene: CaseScene, names: tuple[str, ...]) -> CaseScene | None:
-    """The scene by depth, where a method takes it only so."""
+    """The scene by depth, where one of the methods takes it only so."""
     problem = scene.scene
     if not isinstance(problem.loading, ContactRadii) or problem.effects:
         return None
-    if not any(_only_by_depth(name, problem) for name in names):
+    by_depth = problem.replace(loading=IndentationDepths(values=problem.loading.values))
+    if not any(_supports(name, by_depth) and not _supports(name, problem) for name in names):
         return None
     try:
         path = build("mdr", {}).solve(problem)
@@ -225,15 +217,12 @@ def _twin(scene: CaseScene, names: tuple[str, ...]) -> CaseScene | None:
     )
 
 
-def _only_by_depth(name: str, problem: Scene) -> bool:
-    """Whether a method refuses the prescribed radii of a scene, but supports as many prescribed depths."""
-    by_depth = problem.replace(loading=IndentationDepths(values=problem.loading.values))  # type: ignore[attr-defined]  # radii
+def _supports(name: str, problem: Scene, *, broken: bool = False) -> bool:
+    """Whether a method supports a scene, or `broken` where `supports` itself fails: `solve` reports that error."""
     try:
-        method = build_guarded(name, {})
-        return not method.supports(problem) and bool(method.supports(by_depth))
+        return bool(build_guarded(name, {}).supports(problem))
     except ContactError:
-        # The error is reported when the scene is solved.
-        return False
+        return broken
 
 
 def _on_twins(case: Case, claim: Any, twins: Mapping[str, CaseScene]) -> Iterator[Agree]:
@@ -294,21 +283,15 @@ def beside(case: Case, methods: Collection[str], reference: str) -> Case:
         methods: Labels of the methods under test.
         reference: Label of the method that they are compared with.
     """
-    supported = {scene.name for scene in case.scenes if any(_supports(scene, label) for label in methods)}
+    supported = {
+        scene.name for scene in case.scenes if any(_supports(label, scene.scene, broken=True) for label in methods)
+    }
     restricted = case.only(
         lambda scene, use: use.label in methods or (use.label == reference and scene.name in supported)
     )
     uses = tuple(use for use in case.methods if use.label in (*methods, reference))
     claims = tuple(kept_claim for claim in case.claims for kept_claim in _about(claim, methods))
     return replace(restricted, methods=uses, claims=claims)
-
-
-def _supports(scene: CaseScene, label: str) -> bool:
-    """Whether the method supports the scene; True where `supports` raises, since `solve` then reports the error."""
-    try:
-        return bool(build_guarded(label, {}).supports(scene.scene))
-    except BrokenMethodError:
-        return True
 
 
 def _about(claim: Any, methods: Collection[str]) -> Iterator[Claim]:

@@ -104,18 +104,18 @@ def fields_at(path: ContactPath, sampling: Sampling) -> InsideFields:
 
 def _inside(path: ContactPath, sampling: Sampling) -> Iterator[tuple[str, Values]]:
     """Fields over depth, mean pressure and that over the smaller of a and h; stresses; residuals of laws."""
-    found, mean = fields_at(path, sampling), float(path.scale("pressure")[-1])
-    largest = max(float(np.abs(getattr(found, name)).max()) for name in GROUPS["stress_inside"][1])
+    inside, mean = fields_at(path, sampling), float(path.scale("pressure")[-1])
+    largest = max(float(np.abs(getattr(inside, name)).max()) for name in GROUPS["stress_inside"][1])
     length = min(float(path.contact_radius[-1]), path.scene.layer.thickness)
     scales = (abs(float(path.indentation_depth[-1])), mean, mean, mean / length)
     for (name, (stated, fields)), scale in zip(GROUPS.items(), scales, strict=True):
-        values: FloatArray = np.concatenate([getattr(found, field) for field in fields]) / scale
+        values: FloatArray = np.concatenate([getattr(inside, field) for field in fields]) / scale
         share = 1.0 if name == "displacement_inside" else largest / mean
-        own = (float(found.error_estimate[stated] * share),)
+        error = (float(inside.error_estimate[stated] * share),)
         at = _floats(np.arange(values.size))
-        yield name, Values(unit="1", scale=1.0, values=_floats(values), at=at, error=own)
-    error = (float(found.error_estimate["stress"] * largest),) * len(sampling.inside)
+        yield name, Values(unit="1", scale=1.0, values=_floats(values), at=at, error=error)
+    errors = (float(inside.error_estimate["stress"] * largest),) * len(sampling.inside)
     for name in STRESSES:
-        yield f"{name}_inside", Values(unit="Pa", scale=largest, values=_floats(getattr(found, name)), error=error)
+        yield f"{name}_inside", Values(unit="Pa", scale=largest, values=_floats(getattr(inside, name)), error=errors)
     for name, residual in residuals(path).items() if sampling.laws else ():
         yield name, Values(unit="1", scale=1.0, values=_floats(residual))

@@ -7,7 +7,7 @@ from dataclasses import fields, is_dataclass, replace
 from pathlib import Path
 from typing import Any, Final, TypeAlias
 
-from cases.case import Case, CaseScene
+from cases.case import Case
 from cases.declare.methods import MethodUse, build, load, registered
 from contact import InvalidInput
 from contact.records.errors import shown
@@ -76,19 +76,17 @@ def with_settings(case: Case, settings: Settings) -> Case:
         InvalidInput: If a method does not take them.
     """
     methods = tuple(_changed(use, settings, "") for use in case.methods)
-    scenes = tuple(_with(case, scene, settings) for scene in case.scenes)
-    return replace(case, methods=methods, scenes=scenes)
-
-
-def _with(case: Case, scene: CaseScene, settings: Settings) -> CaseScene:
-    uses = case.methods_of(scene)
-    changed = tuple(_changed(use, settings, scene.name) for use in uses)
-    return scene if changed == uses else replace(scene, methods=changed)
+    scenes = []
+    for scene in case.scenes:
+        uses = case.methods_of(scene)
+        changed = tuple(_changed(use, settings, scene.name) for use in uses)
+        scenes.append(scene if changed == uses else replace(scene, methods=changed))
+    return replace(case, methods=methods, scenes=tuple(scenes))
 
 
 def _changed(use: MethodUse, settings: Settings, scene: str) -> MethodUse:
-    name = use.method or use.label
-    asked = settings.get(name, {})
+    """The method with its settings for all scenes, then with those in the table of the scene."""
+    asked = settings.get(use.method or use.label, {})
     of_scene = asked.get(scene, {})
     wanted = {key: value for key, value in asked.items() if not isinstance(value, dict)}
     wanted |= of_scene if isinstance(of_scene, dict) else {}
@@ -106,14 +104,8 @@ def ladder(name: str, settings: Mapping[str, Any]) -> tuple[MethodUse, ...]:
     lengths = {len(values) for values in lists.values()}
     if len(lengths) > 1 or 0 in lengths:
         raise InvalidInput(f"settings of {name!r}: lists must have the same length, at least one entry")
-    each = [
-        {key: value[i] if key in lists else value for key, value in plain.items()}
-        for i in range(max(lengths, default=1))
-    ]
-    return tuple(
-        _checked(MethodUse(label=_words(settings_of_step), method=name, settings=settings_of_step))
-        for settings_of_step in each
-    )
+    steps = [plain | {key: values[step] for key, values in lists.items()} for step in range(max(lengths, default=1))]
+    return tuple(_checked(MethodUse(label=_words(step), method=name, settings=step)) for step in steps)
 
 
 def _words(settings: Mapping[str, Any]) -> str:
@@ -130,7 +122,7 @@ def _checked(use: MethodUse) -> MethodUse:
     except Exception as error:
         # A method of another package may raise anything.
         kind = load(name)
-        known = ", ".join(field.name for field in fields(kind) if field.init) if is_dataclass(kind) else ""
-        names = f"; it has {known or 'none'}" if is_dataclass(kind) else ""
-        raise InvalidInput(f"method {name!r} does not take {_words(use.settings)}: {error}{names}") from error
+        names = [field.name for field in fields(kind) if field.init] if is_dataclass(kind) else None
+        known = "" if names is None else f"; it has {', '.join(names) or 'none'}"
+        raise InvalidInput(f"method {name!r} does not take {_words(use.settings)}: {error}{known}") from error
     return use

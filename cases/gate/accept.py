@@ -7,6 +7,8 @@ from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+import numpy as np
+
 from cases.answers import Answer, Values
 from cases.gate.baseline import (
     OF_SPREAD,
@@ -88,40 +90,41 @@ class Change:
     new: Values | None
 
     @property
-    def largest(self) -> tuple[int, float] | None:
-        """The step that changed most, and new minus old there; None where nothing can be subtracted."""
+    def step(self) -> int | None:
+        """The step that changed most; None where nothing can be subtracted."""
         old, new = self.old, self.new
         if old is None or new is None or old.unit != new.unit or not 0 < len(old.values) == len(new.values):
             return None
-        changes = [x - b for x, b in zip(new.values, old.values, strict=True)]
-        step = max(range(len(changes)), key=lambda step: abs(changes[step]))
-        return step, changes[step]
+        return int(np.argmax(np.abs(np.subtract(new.values, old.values))))
 
     @property
     def values(self) -> tuple[float | None, float | None]:
         """Old and new value at that step."""
-        step = self.largest[0] if self.largest else 0
-        return tuple(q.values[step] if q is not None and q.values else None for q in (self.old, self.new))  # type: ignore[return-value]  # two
+        old, new = (q.values[self.step or 0] if q is not None and q.values else None for q in (self.old, self.new))
+        return old, new
 
     @property
     def in_tolerances(self) -> float | None:
         """New minus old over the permitted change; None where nothing can be subtracted."""
-        return self.largest[1] / permitted_change(self.old, self.largest[0]) if self.old and self.largest else None
+        return self._over(permitted_change(self.old, self.step)) if self.old and self.step is not None else None
 
     @property
     def in_stated_errors(self) -> float | None:
         """New minus old over the error stated now; None where the method states none, or zero."""
-        stated = self.new.error[self.largest[0]] if self.new and self.new.error and self.largest else 0.0
-        return self.largest[1] / stated if stated and self.largest else None
+        return self._over(self.new.error[self.step]) if self.new and self.new.error and self.step is not None else None
+
+    def _over(self, size: float) -> float | None:
+        old, new = self.values
+        return (new - old) / size if size and old is not None and new is not None else None
 
     @property
     def loosens(self) -> bool:
         """Whether later runs may differ more than before, or differ unseen."""
         if self.old is None or self.new is None:
             return self.old is not None
-        wider = _relative_width(self.new) > (1 + 1e-9) * _relative_width(self.old)
-        grown = relative_tolerance(self.new) > relative_tolerance(self.old)
-        return grown or (self.new.scale > self.old.scale and wider)
+        is_wider = _relative_width(self.new) > (1 + 1e-9) * _relative_width(self.old)
+        has_grown = relative_tolerance(self.new) > relative_tolerance(self.old)
+        return has_grown or (self.new.scale > self.old.scale and is_wider)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -163,13 +166,10 @@ def propose(
         InvalidInput: If the spread of a quantity was not measured.
     """
     old = {(a.scene, a.method): a for a in before.answers} if before else {}
-    solved = (answer for answer in run.answers.of_case(case) if answer.solved)
-    new = {
-        (answer.scene, answer.method): _with_spreads(answer, old.get((answer.scene, answer.method)), spreads)
-        for answer in solved
-    }
-    kept_rows = {place: answer for place, answer in old.items() if place in unsolved}
-    answers = tuple(sorted((kept_rows | new).values(), key=lambda answer: answer.identity))
+    solved = {(a.scene, a.method): a for a in run.answers.of_case(case) if a.solved}
+    new = {place: _with_spreads(answer, old.get(place), spreads) for place, answer in solved.items()}
+    left_as_accepted = {place: answer for place, answer in old.items() if place in unsolved}
+    answers = tuple(sorted((left_as_accepted | new).values(), key=lambda answer: answer.identity))
     judged = run.judged
     accepted = Accepted(
         case=case,
@@ -208,15 +208,17 @@ def _with_spreads(answer: Answer, old: Answer | None, spreads: Spreads) -> Answe
 
 
 def _changes(before: Baseline | None, after: Baseline) -> Iterator[Change]:
-    places: dict[tuple[str, str, str], list[Values | None]] = {}
-    for side, baseline in enumerate((before, after)):
-        for answer in baseline.answers if baseline else ():
-            for name, q in answer.quantities.items():
-                if not q.at:
-                    places.setdefault((answer.method, answer.scene, name), [None, None])[side] = q
-    for (method, scene, name), (old, new) in places.items():
-        if old != new:
-            yield Change(method=method, scene=scene, quantity=name, old=old, new=new)
+    old, new = (_quantities(baseline) for baseline in (before, after))
+    for place in dict.fromkeys([*old, *new]):
+        if old.get(place) != new.get(place):
+            method, scene, quantity = place
+            yield Change(method=method, scene=scene, quantity=quantity, old=old.get(place), new=new.get(place))
+
+
+def _quantities(baseline: Baseline | None) -> dict[tuple[str, str, str], Values]:
+    """Quantities along the steps by method, scene and name."""
+    answers = baseline.answers if baseline else ()
+    return {(a.method, a.scene, name): q for a in answers for name, q in a.quantities.items() if not q.at}
 
 
 def _lost(before: Baseline | None, after: Baseline) -> Iterator[str]:

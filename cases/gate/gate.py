@@ -2,7 +2,8 @@
 
 from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from typing import Any, TypeAlias
 
 from cases.answers import Answer, Values
 from cases.gate.baseline import AcceptedClaim, Baseline, permitted_change, stored_part
@@ -33,18 +34,8 @@ ABSENT = "solvers of others are optional: what is not installed is not compared"
 DIGITS = "one digit: repeats that differ by single roundings share about as many digits every time"
 
 Watched = Callable[[Answer], bool]
-
-
-@dataclass(frozen=True, kw_only=True)
-class _Check:
-    """One comparison with the accepted answer: what is compared, how it ended, its tolerance in the unit."""
-
-    what: str
-    judged: Judgement
-    basis: str
-    unit: str = "1"
-    tolerance: float = 1.0
-    expected: float | None = None
+# Case, scene and methods of a verdict.
+Place: TypeAlias = tuple[str, str, tuple[str, ...]]
 
 
 def gate(
@@ -102,14 +93,13 @@ def _of_case(
     for method, reason in absent.items():
         count = sum(len(answer.quantities) for answer in then.values() if answer.method == method)
         if count:
-            words = nothing_compared(Status.SKIP, f"{reason}; {count} accepted numbers are not compared")
-            yield _verdict(case, "", (method,), _Check(what="numbers", judged=words, basis=ABSENT))
+            judged = nothing_compared(Status.SKIP, f"{reason}; {count} accepted numbers are not compared")
+            yield _verdict((case, "", (method,)), "numbers", judged, ABSENT)
     for place in dict.fromkeys([*then, *now]):
         new, old = now.get(place), then.get(place)
         shown = new or old
         if shown is not None and shown.method not in absent and watched(shown):
-            for check in checks(new, old):
-                yield _verdict(case, shown.scene, (shown.method,), check)
+            yield from _of_answer((case, shown.scene, (shown.method,)), new, old)
     if baseline is not None:
         verdicts = [verdict for verdict in run.judged.verdicts if verdict.case == case]
         yield from _missing_claims(case, baseline.accepted.claims, verdicts, absent, methods)
@@ -125,25 +115,23 @@ def _not_installed(answers: Iterable[Answer]) -> dict[str, str]:
     return {method: reason for method, reason in named.items() if method not in asked}
 
 
-def checks(new: Answer | None, old: Answer | None) -> Iterator[_Check]:
-    """Yield the comparison of an answer with the accepted one: values, counters, the stated error that changed most."""
+def _of_answer(place: Place, new: Answer | None, old: Answer | None) -> Iterator[Verdict]:
+    """Compare an answer with the accepted one: values, counters, the stated error that changed most."""
     solved = stored_part(new) if new is not None and new.solved else None
-    before, after = ({} if one is None else one.quantities for one in (old, solved))
+    before, after = (answer.quantities if answer else {} for answer in (old, solved))
     for name in dict.fromkeys([*before, *after]):
-        now, then = after.get(name), before.get(name)
-        shown = then or now
-        if shown and not shown.at:
-            absent = _absent(name, now, then, new, old)
-            other = _Check(what=name, judged=absent, basis=VALUES, unit=shown.unit) if absent else None
-            yield other or _value(name, now or shown, then or shown, new, old)
+        q = before.get(name) or after[name]
+        if not q.at:
+            absent = _absent(name, after.get(name), before.get(name), new, old)
+            judged, more = (absent, {}) if absent else _worst_value(after[name], before[name], new, old)
+            yield _verdict(place, name, judged, VALUES, unit=q.unit, **more)
     if old is not None:
-        counts, counted = _counters(old), _counters(solved)
-        for name in sorted({*counts, *counted}):
-            value, accepted = counted.get(name), counts.get(name)
-            absent = _absent(name, value, accepted, new, old)
-            yield _count(name, value or 0, accepted, absent)
+        accepted, counted = _counters(old), _counters(solved)
+        for name in sorted({*accepted, *counted}):
+            absent = _absent(name, counted.get(name), accepted.get(name), new, old)
+            yield _count(place, name, counted.get(name, 0), accepted.get(name), absent)
         if solved is not None and solved.question == old.question:
-            yield from _stated(after, before)
+            yield from _stated(place, after, before)
 
 
 def _absent(what: str, now: object, then: object, new: Answer | None, old: Answer | None) -> Judgement | None:
@@ -159,8 +147,11 @@ def _absent(what: str, now: object, then: object, new: Answer | None, old: Answe
     return None
 
 
-def _value(name: str, now: Values, then: Values, new: Answer | None, old: Answer | None) -> _Check:
-    """Judge the worst step; another question, unit or number of steps cannot be compared."""
+def _worst_value(now: Values, then: Values, new: Answer | None, old: Answer | None) -> tuple[Judgement, dict[str, Any]]:
+    """Judgement of the worst step, its tolerance and accepted value.
+
+    Answers to another question, or with another unit or number of steps, cannot be compared.
+    """
     for what, a, b in (
         ("scene or settings", new and new.question, old and old.question),
         ("unit", now.unit, then.unit),
@@ -168,22 +159,20 @@ def _value(name: str, now: Values, then: Values, new: Answer | None, old: Answer
     ):
         if a != b:
             message = f"{what} changed: {a}, accepted {b}; accept the case if that was meant"
-            judged = nothing_compared(Status.INCOMPARABLE, message)
-            return _Check(what=name, judged=judged, basis=VALUES, unit=then.unit)
+            return nothing_compared(Status.INCOMPARABLE, message), {}
     permitted = [permitted_change(then, step) for step in range(len(then.values))]
     rows = zip(now.values, then.values, permitted, strict=True)
     steps = [judge_regression(x, b, permitted=most) for x, b, most in rows]
     worst = worst_judgement(steps)
     step = steps.index(worst)
-    more = {"tolerance": permitted[step], "expected": then.values[step]}
-    return _Check(what=name, judged=worst, basis=VALUES, unit=then.unit, **more)
+    return worst, {"tolerance": permitted[step], "expected": then.values[step]}
 
 
 def _counters(answer: Answer | None) -> dict[str, int]:
     return {} if answer is None else {UNKNOWNS: answer.unknowns, **answer.counters}
 
 
-def _count(name: str, value: int, accepted: int | None, absent: Judgement | None) -> _Check:
+def _count(place: Place, name: str, value: int, accepted: int | None, absent: Judgement | None) -> Verdict:
     """Judge a deterministic counter, which no noise on the machine changes; half a count permits not a single one."""
     permitted = permitted_count_change(name, accepted or 0)
     change = abs(value - (accepted or 0))
@@ -191,7 +180,7 @@ def _count(name: str, value: int, accepted: int | None, absent: Judgement | None
     fraction = change / permitted if permitted > 0 else float(change)
     judged = absent or decided(change <= permitted, float(value), fraction, message, Status.DIFF)
     expected = None if accepted is None else float(accepted)
-    return _Check(what=name, judged=judged, basis=COUNTS, tolerance=max(permitted, 0.5), expected=expected)
+    return _verdict(place, name, judged, COUNTS, tolerance=max(permitted, 0.5), expected=expected)
 
 
 def permitted_count_change(name: str, accepted: int) -> float:
@@ -199,7 +188,7 @@ def permitted_count_change(name: str, accepted: int) -> float:
     return 0.02 * accepted if name == UNKNOWNS else max(3.0, 0.2 * accepted)
 
 
-def _stated(now: dict[str, Values], then: dict[str, Values]) -> Iterator[_Check]:
+def _stated(place: Place, now: dict[str, Values], then: dict[str, Values]) -> Iterator[Verdict]:
     """Judge the stated error that changed most: it may neither grow nor shrink unnoticed."""
     judgements = {
         f"uncertainty of {name}": _stated_error(f"uncertainty of {name}", now[name], b)
@@ -209,7 +198,7 @@ def _stated(now: dict[str, Values], then: dict[str, Values]) -> Iterator[_Check]
     if judgements:
         worst = worst_judgement(list(judgements.values()))
         what = next(name for name, judged in judgements.items() if judged is worst)
-        yield _Check(what=what, judged=worst, basis=ERRORS, tolerance=LARGEST_RATIO, expected=1.0)
+        yield _verdict(place, what, worst, ERRORS, tolerance=LARGEST_RATIO, expected=1.0)
 
 
 def _stated_error(what: str, now: Values, then: Values) -> Judgement:
@@ -271,8 +260,8 @@ def _missing_claims(
             "with --loosen"
         )
         judged = nothing_compared(Status.INCOMPARABLE, message)
-        check = _Check(what=f"claim {claim.name!r}", judged=judged, basis=CLAIMS)
-        yield replace(_verdict(case, "", claim.methods, check), quantity=claim.quantity)
+        verdict = _verdict((case, "", claim.methods), f"claim {claim.name!r}", judged, CLAIMS)
+        yield replace(verdict, quantity=claim.quantity)
 
 
 def _stress_tests(case: str, tests: list[StressTest], accepted: Iterable[StressTest]) -> Iterator[Verdict]:
@@ -295,21 +284,33 @@ def _stress_tests(case: str, tests: list[StressTest], accepted: Iterable[StressT
             words = "; ".join(worse) or "no step lost, no more than one digit lost"
             judged = replace(judge_residual(float(len(worse)), tolerance=0.5, failure=Status.DIFF), message=words)
         expected = None if then is None else 0.0
-        check = _Check(what="steps and digits", judged=judged, basis=DIGITS, tolerance=0.5, expected=expected)
-        yield replace(_verdict(case, shown.name, (shown.method,), check), quantity=shown.quantity)
+        more: dict[str, Any] = {"tolerance": 0.5, "expected": expected}
+        verdict = _verdict((case, shown.name, (shown.method,)), "steps and digits", judged, DIGITS, **more)
+        yield replace(verdict, quantity=shown.quantity)
 
 
-def _verdict(case: str, scene: str, methods: tuple[str, ...], check: _Check) -> Verdict:
-    source, because = f"baselines/{case}.jsonl", "an accepted number should not change unnoticed"
-    own = {name: value for name, value in vars(check).items() if name in ("unit", "tolerance", "expected")}
+def _verdict(place: Place, what: str, judged: Judgement, basis: str, *, tolerance: float = 1.0, **more: Any) -> Verdict:
+    """The verdict of a comparison with an accepted result.
+
+    Args:
+        place: Case, scene and methods.
+        what: Name of the result.
+        judged: Judgement of the comparison.
+        basis: Choice of the tolerance.
+        tolerance: Largest permitted change.
+        more: Unit and accepted value.
+    """
+    case, scene, methods = place
+    because = "an accepted number should not change unnoticed"
     return Verdict(
         case=case,
-        claim=f"accepted {check.what}",
+        claim=f"accepted {what}",
         kind=Kind.REGRESSION,
         scene=scene,
         methods=methods,
-        quantity=check.what,
-        why=Why(Origin.OWN_EARLIER_OUTPUT, source, because, check.basis),
-        **own,
-        **vars(check.judged),
+        quantity=what,
+        tolerance=tolerance,
+        why=Why(Origin.OWN_EARLIER_OUTPUT, f"baselines/{case}.jsonl", because, basis),
+        **more,
+        **vars(judged),
     )

@@ -28,7 +28,7 @@ class ProcessDied(Exception):
     """The process that computed ended without a result."""
 
 
-class _Apart:
+class _Computer:
     """A process that computes calls."""
 
     def __init__(self) -> None:
@@ -38,7 +38,7 @@ class _Apart:
         self.results: SimpleQueue[Any] = SimpleQueue()
         self.reader = Thread(target=_read, args=(self.process.stdout, self.results.put), daemon=True)
         self.reader.start()
-        # The first result says that the process is there.
+        # The first result is sent when the process has started.
         self.results.get(timeout=STARTS)
 
     def call(self, function: Callable[..., Any], arguments: tuple[Any, ...], seconds: float) -> Any:
@@ -53,7 +53,8 @@ class _Apart:
         return self.results.get(timeout=seconds)
 
 
-_own: list[_Apart] = []
+# The process that serves this one, if it was needed already.
+_running: list[_Computer] = []
 
 
 def apart(function: Callable[..., Any], *arguments: Any, seconds: float) -> Any:
@@ -64,9 +65,9 @@ def apart(function: Callable[..., Any], *arguments: Any, seconds: float) -> Any:
         ProcessDied: If the process ended by itself.
     """
     try:
-        if not _own:
-            _own.append(_Apart())
-        result = _own[0].call(function, arguments, seconds)
+        if not _running:
+            _running.append(_Computer())
+        result = _running[0].call(function, arguments, seconds)
     except Empty:
         _end()
         raise TimeLimitReached from None
@@ -83,14 +84,14 @@ def apart(function: Callable[..., Any], *arguments: Any, seconds: float) -> Any:
 def _end() -> int:
     """Kill the process and return its exit code."""
     code = 0
-    for one in _own:
-        one.process.kill()
-        code = one.process.wait()
-        one.reader.join()
-        for stream in (one.process.stdin, one.process.stdout):
+    for computer in _running:
+        computer.process.kill()
+        code = computer.process.wait()
+        computer.reader.join()
+        for stream in (computer.process.stdin, computer.process.stdout):
             with suppress(OSError):
                 stream.close()  # type: ignore[union-attr]  # both are pipes
-    _own.clear()
+    _running.clear()
     return code
 
 
@@ -107,9 +108,9 @@ def _read(stream: BinaryIO, put: Callable[[Any], None]) -> None:
 def _serve() -> None:
     """Compute calls until the input ends, which it does with the parent, however that ends."""
     output = os.fdopen(os.dup(1), "wb")
-    # What a method prints is no result.
+    # The output of prints is no result.
     os.dup2(2, 1)
-    # What every call needs is there before a time limit runs.
+    # Imports that every call needs do not count for its time limit.
     import_module("cases.run.solve_task")
     calls: SimpleQueue[Any] = SimpleQueue()
     Thread(

@@ -35,9 +35,9 @@ def question(task: Task) -> str:
 def code(task: Task) -> str:
     """Return the hash of all else that the answer depends on: sources, versions, sampling, exact inputs."""
     module, attribute = location(task.use.method or task.use.label)
-    kept = [task.sampling, task.refined, task.timed, task.first, attribute, _sources(module)]
+    circumstances = [task.sampling, task.refined, task.timed, task.first, attribute, _sources(module)]
     exact = [scene_to_mapping(task.problem), task.use.settings]
-    return _digest(_text([kept, exact]).encode())
+    return _digest(_text([circumstances, exact]).encode())
 
 
 def _text(value: Any) -> str:

@@ -147,12 +147,12 @@ def run_cases(cases: Sequence[Case], options: RunOptions) -> Run:
 def _run(cases: Sequence[Case], options: RunOptions) -> Run:
     started, clock = datetime.now(UTC), time.perf_counter()
     jobs = [job_of(task) for task in plan(cases, timing=options.timing, only_costs=options.only_costs)]
-    kept = _kept(options, jobs)
+    reused = _reused(options, jobs)
     complete = True
     with (options.out / NAME).open("a", encoding="utf-8") as stream:
         run = _Run(options, stream, total=len(jobs))
         run.tell("planned", f"{len(cases)} case{'s' * (len(cases) != 1)}")
-        for job, answer in kept:
+        for job, answer in reused:
             run.answers[answer.identity] = answer
             run.tell("reused", job.task.label, answer.status, answer.reason)
         try:
@@ -215,22 +215,22 @@ def words_of(case: Case) -> CaseText:
     )
 
 
-def _kept(options: RunOptions, jobs: list[Job]) -> list[tuple[Job, Answer]]:
+def _reused(options: RunOptions, jobs: list[Job]) -> list[tuple[Job, Answer]]:
     """Answers of an earlier run that are used again; the file is written anew with them alone.
 
     They are those to the same question by the same code, but for time limits and breakdowns.
     """
     file = options.out / NAME
     earlier = Table(read_answers(file)) if options.resume and file.is_file() else Table()
-    kept = [
+    reused = [
         (job, answer)
         for job in jobs
         if (answer := earlier.get(job.task.identity)) is not None
         and answer.status not in (Status.TIMEOUT, Status.INVALID)
         and (answer.question, answer.code) == (job.question, job.code)
     ]
-    write_whole(file, "".join(answer.line() for _, answer in kept))
-    return kept
+    write_whole(file, "".join(answer.line() for _, answer in reused))
+    return reused
 
 
 def _tell_judged(run: _Run, judged: Judged, table: Table) -> None:

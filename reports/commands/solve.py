@@ -157,7 +157,7 @@ def _show_answer(solution: Solution) -> None:
 
 def _notes(solution: Solution) -> list[tuple[str, str]]:
     """Notes on the effect of a smoothed tip, and on the validity of the theory."""
-    from cases.advice import validity_lines  # noqa: PLC0415 - MDR only where it is asked for
+    from cases.validity import validity_lines  # noqa: PLC0415 - MDR only where it is asked for
 
     notes: list[tuple[str, str]] = []
     indenter = solution.scene.indenter

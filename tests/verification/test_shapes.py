@@ -6,7 +6,7 @@ from scipy.optimize import brentq
 from scipy.special import ellipe, ellipk
 
 from bem import Bem
-from cases.advice import validity_lines
+from cases.validity import validity_lines
 from contact import (
     ContactPath,
     ContactRadii,
