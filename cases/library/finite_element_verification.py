@@ -61,7 +61,7 @@ def punch_stiffness(pair: str, poissons_ratio: float) -> float:
     problem = uniform_layer(one_mesh(), PAIRS[pair], poissons_ratio)
     pressed = 2 * problem.top_nodes(1.0) + 1
     solver = problem.solver(np.concatenate([problem.supported_unknowns, pressed]))
-    values = np.zeros((len(solver.held), 1))
+    values = np.zeros((len(solver.prescribed), 1))
     values[-len(pressed) :] = 1.0
     return float(solver.reactions(solver.solve_displaced(values), pressed).sum())
 
