@@ -170,8 +170,8 @@ def panel_ends(law: SpringLaw, time: FloatArray, front: FloatArray) -> FloatArra
         some = (share < 0.5) & ((after > 0) | (before > 0))
         if not some.any():
             break
-        way = (share * (after - before))[some]
-        ends += [before[some] + way, after[some] - way]
+        distance = (share * (after - before))[some]
+        ends += [before[some] + distance, after[some] - distance]
     every = np.concatenate(ends)
     return np.unique(every[every > 0])
 

@@ -1,7 +1,7 @@
 """Layers that relax under a prescribed depth or force, Eqs. (47), (51) and (52).
 
 Loading, unloading with a receding front, and reloading over a surface that has not yet recovered: one bed of springs.
-A prescribed depth is followed as it is (`fronts`), a prescribed force by the depth that carries it (`force_control`).
+A prescribed depth is followed as it is (`fronts`), a prescribed force by the depth that balances it (`force_control`).
 Errors: the same history on finer springs with more of them, and with other steps in time.
 """
 
@@ -45,7 +45,7 @@ _FEWEST, _MOST = 0, 2
 # Degrees of the depth in a substep, of the answer and of its companion.
 _DEGREES = (6, 5)
 # Panels of the first march, marches at most, and the share of the largest depth by which the last one may differ.
-_FIRST_PANELS, _MOST_MARCHES, _STAYS = 32, 4, 1e-9
+_FIRST_PANELS, _MOST_MARCHES, _CHANGE = 32, 4, 1e-9
 # Share of the largest force below which a force is rounding and no contact.
 _NO_FORCE = 1e-12
 
@@ -55,7 +55,7 @@ def solve_history(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
 
     Raises:
         InvalidInput: If a force is negative, nothing is ever pressed, or the indenter ends before.
-        UnsupportedSceneError: If the contact would have a gap inside, or touch outside the contact.
+        UnsupportedSceneError: If the MDR profile falls within the contact, or the indenter would touch outside it.
         NotConvergedError: If a spring is touched and released without end, or no depth carries a force.
     """
     loading, log = scene.loading, StageLog()
@@ -182,6 +182,6 @@ def _marched(problem: Problem, steps: Steps, closed: FloatArray, before: March |
         stiff = springs._replace(weight=2 * problem.springs.modulus * springs.weight)
         last = march(problem.law, stiff, steps, closed, guess)
         change, guess, ends = float(np.abs(last.depth - guess).max()), last.depth, last.panel_ends(problem.law)
-        if change < _STAYS * deepest:
+        if change < _CHANGE * deepest:
             break
     return last, springs.g.size, change + last.load_error * deepest

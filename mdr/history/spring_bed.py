@@ -157,9 +157,9 @@ class Path(NamedTuple):
 
     Attributes:
         time: Instants [s], shape (n,).
-        depth: delta there [m], shape (n,).
+        depth: Depth delta at these instants [m], shape (n,).
         polynomials: Coefficients of the depth over the share of each interval [m], shape (n - 1, p + 1).
-        free: In which intervals the indenter is taken away, shape (n - 1,), or in none.
+        free: Whether the indenter is absent in each interval, shape (n - 1,); None if it never is.
     """
 
     time: FloatArray
@@ -189,7 +189,7 @@ class Passage(NamedTuple):
 
     Attributes:
         surface: Displacements u [m].
-        touching: Which springs are in contact.
+        touching: Whether each spring is in contact.
         edge: Positive in contact, negative outside, and smooth across the front. It is the force f in contact and the
             gap with its sign outside; of springs touched or released in this interval, f or gap without that event.
     """
@@ -205,10 +205,10 @@ class SpringBed:
 
     Attributes:
         law: Law of each spring.
-        g: MDR profile where they stand [m], shape (n,).
-        touching: Which are in contact, shape (n,).
-        surface: Displacement u of their ends [m], shape (n,).
-        strains: e_j [m], shape (m, n).
+        g: MDR profile at the springs [m], shape (n,).
+        touching: Whether each spring is in contact, shape (n,).
+        surface: Displacement u of the end of each spring [m], shape (n,).
+        strains: Strains e_j of the branches [m], shape (m, n).
     """
 
     law: SpringLaw
@@ -224,7 +224,7 @@ class SpringBed:
         return cls(law, g, surface > 0, surface, np.repeat(surface[None], law.weights.size, axis=0))
 
     def copy(self) -> SpringBed:
-        """The same springs, to be advanced on their own."""
+        """Copy of the springs that can be advanced independently."""
         return replace(self, touching=self.touching.copy(), surface=self.surface.copy(), strains=self.strains.copy())
 
     def release(self, span: float) -> None:

@@ -63,3 +63,17 @@ def test_a_long_step_is_many_short_ones(seed):
         later = advance(bed, start, end, time)
         assert_same_bed(later, in_short_steps(bed, start, end, time))
         bed, start = later, end
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_spring_forces_decrease_outwards_up_to_one_front_whatever_went_before(seed):
+    """Comparison of two springs: contact stays one disc, and an indenter without force rests on the spring g = 0."""
+    draw, profile = np.random.default_rng(seed), np.linspace(0.0, 1.0, 200) ** 2
+    bed, start = SpringBed.undeformed(random_law(draw), profile, 0.0), 0.0
+    for end in (1.0, *draw.uniform(-0.3, 1.0, 6)):
+        time = 10.0 ** draw.uniform(-2.0, 1.0)
+        bed = advance(bed, start, end, time)
+        assert np.all(np.diff(bed.touching.astype(int)) <= 0)
+        assert np.all(np.diff(bed.surface + profile) >= -1e-13)
+        assert np.all(np.diff(bed.forces((end - start) / time)[bed.touching]) <= 1e-13)
+        start = end
