@@ -3,14 +3,29 @@
 import inspect
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any, Final, Generic
+from typing import Any, Final, Generic, overload
 
 import numpy as np
 from typing_extensions import TypeVar
 
 from cases.declare.methods import build, load
-from contact import InvalidInput, Method, NotConvergedError, Scene, Solution, Unsupported, UnsupportedSceneError
+from contact import (
+    ContactPath,
+    Detachment,
+    DetachmentPath,
+    HistoryPath,
+    Impact,
+    ImpactHistory,
+    InvalidInput,
+    Method,
+    NotConvergedError,
+    Scene,
+    Solution,
+    Unsupported,
+    UnsupportedSceneError,
+)
 from contact.answer.accuracy import asked_errors, shortfalls, told_where_less
+from contact.scene.loading import EquilibriumLoading, HistoryLoading
 
 AnswerT = TypeVar("AnswerT", bound=Solution, default=Solution)
 
@@ -37,6 +52,24 @@ class Outcome(Generic[AnswerT]):
     stated_error: float
 
 
+@overload
+def solve(
+    scene: Scene[EquilibriumLoading], *, accuracy: float, pressure_accuracy: float | None = None
+) -> Outcome[ContactPath]: ...
+@overload
+def solve(
+    scene: Scene[Detachment], *, accuracy: float, pressure_accuracy: float | None = None
+) -> Outcome[DetachmentPath]: ...
+@overload
+def solve(
+    scene: Scene[Impact], *, accuracy: float, pressure_accuracy: float | None = None
+) -> Outcome[ImpactHistory]: ...
+@overload
+def solve(
+    scene: Scene[HistoryLoading], *, accuracy: float, pressure_accuracy: float | None = None
+) -> Outcome[HistoryPath]: ...
+@overload
+def solve(scene: Scene[Any, Any], *, accuracy: float, pressure_accuracy: float | None = None) -> Outcome[Solution]: ...
 def solve(scene: Scene[Any, Any], *, accuracy: float, pressure_accuracy: float | None = None) -> Outcome[Any]:
     """Return the first answer that states no larger error than wanted.
 

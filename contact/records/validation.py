@@ -38,10 +38,20 @@ if TYPE_CHECKING:
         @overload
         def __get__(self, owner: object, kind: object) -> FloatArray: ...
         def __get__(self, owner: object | None, kind: object) -> FloatArray | Self: ...
-        def __set__(self, owner: object, value: Numbers) -> None: ...
+        def __set__(self, owner: object, value: Numbers | Sequence[str]) -> None: ...
+
+    class Scalar:
+        """A field given as a number, or as a text with a unit, and read as a float in SI."""
+
+        @overload
+        def __get__(self, owner: None, kind: object) -> Self: ...
+        @overload
+        def __get__(self, owner: object, kind: object) -> float: ...
+        def __get__(self, owner: object | None, kind: object) -> float | Self: ...
+        def __set__(self, owner: object, value: float | str) -> None: ...
 else:
-    # At run time the validators below convert, and the field is the array itself.
-    Vector = FloatArray
+    # At run time the validators below convert, and the field is the array or the number itself.
+    Vector, Scalar = FloatArray, float
 
 # Magnitudes outside these are refused, whatever their unit: products of four of them still fit into double precision.
 SMALLEST, LARGEST = 1e-75, 1e75
@@ -163,8 +173,8 @@ def in_range(low: float, high: float, remedy: str, unit: str | None = None) -> C
     return number(remedy, unit, low=low, high=high)
 
 
-PositiveLength = Annotated[float, *positive("give the length in metres", "m")]
-Modulus = Annotated[float, *positive("give the modulus in pascals", "Pa")]
+PositiveLength = Annotated[Scalar, *positive("give the length in metres", "m")]
+Modulus = Annotated[Scalar, *positive("give the modulus in pascals", "Pa")]
 PoissonsRatio = Annotated[float, *in_range(0.0, 0.5, "Poisson's ratio is 0.5 for incompressible materials")]
 
 

@@ -7,14 +7,14 @@ from typing import Annotated
 from pydantic import model_validator
 
 from contact.records.record import Record
-from contact.records.validation import Modulus, PoissonsRatio, PositiveLength, number
+from contact.records.validation import Modulus, PoissonsRatio, PositiveLength, Scalar, number
 from contact.scene.effects import Effect
 from contact.scene.layer import Layer, Support
 from contact.scene.loading import Loading
 from contact.scene.profiles import Paraboloid
 from contact.scene.scene import Scene
 
-_Radius = Annotated[float, *number("give the radius of curvature in metres", "m", above=True, infinite=True)]
+_Radius = Annotated[Scalar, *number("give the radius of curvature in metres", "m", above=True, infinite=True)]
 
 
 class CoatedPair(Record):

@@ -10,10 +10,10 @@ import numpy as np
 from pydantic import model_validator
 
 from contact.records.record import Record
-from contact.records.validation import FloatArray, Modulus, Vector, in_range, number, positive, vector
+from contact.records.validation import FloatArray, Modulus, Scalar, Vector, in_range, number, positive, vector
 
 _VISCOSITY = "give the viscosity in pascal seconds"
-_LongTermModulus = Annotated[float, *in_range(0.0, math.inf, "give the long-term shear modulus in pascals", "Pa")]
+_LongTermModulus = Annotated[Scalar, *in_range(0.0, math.inf, "give the long-term shear modulus in pascals", "Pa")]
 
 
 class Effect(Record):
@@ -61,7 +61,7 @@ class Adhesion(Effect):
     """
 
     work_of_adhesion: Annotated[
-        float, *in_range(0.0, math.inf, "give the work of adhesion in joules per square metre", "J/m^2")
+        Scalar, *in_range(0.0, math.inf, "give the work of adhesion in joules per square metre", "J/m^2")
     ]
 
 
@@ -89,7 +89,7 @@ class KelvinVoigt(Viscoelasticity):
     """
 
     shear_modulus: Modulus
-    viscosity: Annotated[float, *in_range(0.0, math.inf, _VISCOSITY, "Pa s")]
+    viscosity: Annotated[Scalar, *in_range(0.0, math.inf, _VISCOSITY, "Pa s")]
 
     @property
     def relaxation(self) -> Relaxation:
@@ -110,7 +110,7 @@ class StandardSolid(Viscoelasticity):
 
     long_term_shear_modulus: _LongTermModulus
     maxwell_shear_modulus: Modulus
-    viscosity: Annotated[float, *positive(_VISCOSITY, "Pa s")]
+    viscosity: Annotated[Scalar, *positive(_VISCOSITY, "Pa s")]
 
     @property
     def relaxation(self) -> Relaxation:

@@ -15,7 +15,6 @@ from contact.records.errors import refused, shown
 from contact.records.record import OneOf, Record
 from contact.records.validation import (
     FloatArray,
-    Modulus,
     PoissonsRatio,
     PositiveLength,
     Vector,
@@ -61,7 +60,7 @@ class _BetweenFaces(DepthFunction):
     """Base of those that are given by their values at both faces, whatever the thickness."""
 
     surface: Annotated[float, *positive(NO_ZERO, "Pa")]
-    base: Modulus
+    base: Annotated[float, *positive("give the modulus in pascals", "Pa")]
 
     def scaled(self, length: float, value: float) -> Self:
         return self.replace(surface=self.surface / value, base=self.base / value)

@@ -10,7 +10,7 @@ from pydantic import Discriminator, Field, Tag, model_validator
 
 from contact.records.errors import refused, shown
 from contact.records.record import Record
-from contact.records.validation import Modulus, PoissonsRatio, PositiveLength, number
+from contact.records.validation import Modulus, PoissonsRatio, PositiveLength, Scalar, number
 
 Support: TypeAlias = Literal["bonded", "unbonded"]
 Interface: TypeAlias = Literal["bonded", "unbonded"]
@@ -142,7 +142,7 @@ class Layer(ElasticLayer):
     REPLACED: ClassVar[Mapping[str, str]] = {"thickness": "half_space", "youngs_modulus": ""}
 
     thickness: Annotated[
-        float,
+        Scalar,
         *number(
             "give the thickness in metres; for an infinite one half_space = true in a file, Layer.half_space in Python",
             "m",

@@ -8,7 +8,7 @@ from typing import Annotated, Literal, TypeAlias
 from pydantic import model_validator
 
 from contact.records.record import Record
-from contact.records.validation import FloatArray, PositiveLength, Vector, positive, vector
+from contact.records.validation import FloatArray, PositiveLength, Scalar, Vector, positive, vector
 
 Controlled: TypeAlias = Literal["displacement", "force", "machine"]
 """What a detachment prescribes: depth, force, or the displacement of a machine that gives way."""
@@ -101,8 +101,8 @@ class Impact(Loading):
         velocity: Velocity v0 [m/s] at first touch, towards the layer.
     """
 
-    mass: Annotated[float, *positive("give the mass in kilograms", "kg")]
-    velocity: Annotated[float, *positive("give the approach velocity in metres per second", "m/s")]
+    mass: Annotated[Scalar, *positive("give the mass in kilograms", "kg")]
+    velocity: Annotated[Scalar, *positive("give the approach velocity in metres per second", "m/s")]
 
 
 class DepthHistory(Loading):

@@ -250,8 +250,6 @@ class Spheroconical(Sloped, Pointed):
 class Truncated(Profile):
     """A profile that is flat up to b, where its slope jumps."""
 
-    flat_radius: PositiveLength
-
     @property
     def kinks(self) -> tuple[float, ...]:
         return (self.flat_radius,)
@@ -265,6 +263,7 @@ class TruncatedCone(Sloped, Truncated):
         slope: Slope tan(theta) [-].
     """
 
+    flat_radius: PositiveLength
     slope: Slope
 
     def height(self, radius: ArrayLike) -> FloatArray:
@@ -282,6 +281,7 @@ class TruncatedParaboloid(Truncated):
         radius_of_curvature: Radius of curvature R [m].
     """
 
+    flat_radius: PositiveLength
     radius_of_curvature: PositiveLength
 
     def height(self, radius: ArrayLike) -> FloatArray:

@@ -28,6 +28,7 @@ from contact import (
     Scene,
     Solution,
     Tabulated,
+    TruncatedCone,
     load_scene,
 )
 from fem_reference import Fem
@@ -35,6 +36,9 @@ from mdr import Mdr
 
 LAYER = Layer(thickness=1e-3, youngs_modulus=1e6, poissons_ratio=0.5, support="bonded")
 BALL = Paraboloid(radius_of_curvature=0.01)
+UNITS = Layer(thickness="1 mm", youngs_modulus="1 MPa", poissons_ratio=0.5)
+TRUNCATED = TruncatedCone(flat_radius="5 um", slope=0.1)
+PRESSES = NormalForces(["50 mN"])
 STICKY = (Adhesion(work_of_adhesion=0.1),)
 
 # Whatever counts as numbers at run time counts for the type checker: lists, tuples, ranges, arrays.
@@ -72,7 +76,7 @@ if TYPE_CHECKING:
     assert_type(IntegralEquationMethod().solve(RADII), ContactPath)
 
     assert_type(solve(HIT, accuracy=1e-4).answer, ImpactHistory)
-    assert_type(solve(FORCES, accuracy=1e-4, within=1.0).answer, ContactPath)
+    assert_type(solve(FORCES, accuracy=1e-4, pressure_accuracy=1e-3).answer, ContactPath)
 
     # A scene from a file may have any loading.
     assert_type(load_scene("scene.toml").loading, Loading)

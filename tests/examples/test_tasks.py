@@ -95,7 +95,7 @@ def test_notes_of_an_answer_are_told(capsys):
     assert run(["solve", "measured_tip.toml"]) == 0
     out = " ".join(capsys.readouterr().out.split())
     depth = "warning: the depth is 0.1 of the layer's thickness"
-    for part in (depth, "smoothing changed the tip by at most", "dry friction with mu = 0.1 changes the force"):
+    for part in (depth, "smoothing changed the tip by at most", "Friction with mu = 0.1 changes the force"):
         assert part in out
     assert run(["solve", "afm_pyramid.toml"]) == 0
     assert "force and stiffness of second order in the deviation from a circle" in " ".join(
