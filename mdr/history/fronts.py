@@ -204,7 +204,7 @@ def layout(springs: Springs, radii: FloatArray, nodes: int) -> Layout:
     for low, high in pairwise(stretches):
         power = KINK_POWER if low else _AXIS_POWER
         share = ((inner[(inner > low) & (inner < high)] - low) / (high - low)) ** (1 / power)
-        v, w = panels(separate(np.append(share, [0.0, 0.5, 1.0]), _APART), nodes + springs.sizes.extra)
+        v, w = panels(separate(np.append(share, [0.0, 0.5, 1.0]), _APART), max(3, nodes + springs.sizes.extra))
         parts.append(np.array([low - flat + (high - low) * v**power, w * (high - low) * power * v ** (power - 1)]))
     excess, weight = np.concatenate(parts, axis=1)
     values = springs.at(flat + excess, excess)

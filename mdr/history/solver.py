@@ -39,9 +39,9 @@ from mdr.spring_bed import Springs
 # 1e-6 are stated.
 _NODES_OF_DEPTHS, _NODES = 14, 5
 # Substeps of a whole force history at the default accuracy, at least one in each interval. One digit more of accuracy
-# doubles them, at most twice; one digit less changes nothing.
+# doubles them, at most twice; one digit less halves them, at most once.
 _SUBSTEPS = 10
-_FEWEST, _MOST = 0, 2
+_FEWEST, _MOST = -1, 2
 # Degrees of the depth in a substep, of the answer and of its companion.
 _DEGREES = (6, 5)
 # Panels of the first march, marches at most, and the share of the largest depth by which the last one may differ.
