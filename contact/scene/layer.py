@@ -126,6 +126,10 @@ class ElasticLayer(Record):
         return type(self).__name__
 
 
+_THICKNESS = "give the thickness in metres; for an infinite one half_space = true in a file, Layer.half_space in Python"
+Thickness = Annotated[Scalar, *number(_THICKNESS, "m", above=True, infinite=True)]
+
+
 class Layer(ElasticLayer):
     """An elastic layer on a rigid base.
 
@@ -141,15 +145,7 @@ class Layer(ElasticLayer):
     }
     REPLACED: ClassVar[Mapping[str, str]] = {"thickness": "half_space", "youngs_modulus": ""}
 
-    thickness: Annotated[
-        Scalar,
-        *number(
-            "give the thickness in metres; for an infinite one half_space = true in a file, Layer.half_space in Python",
-            "m",
-            above=True,
-            infinite=True,
-        ),
-    ]
+    thickness: Thickness
     youngs_modulus: Modulus
     poissons_ratio: PoissonsRatio
     support: Support = "bonded"
