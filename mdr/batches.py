@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -30,9 +30,6 @@ from mdr.equilibria import solve_elastic
 from mdr.many_layers import equilibria_on_layers, takes_part
 from mdr.own_units import OwnUnits, is_power_law, own_units
 
-if TYPE_CHECKING:
-    from mdr.impact.solver import ImpactResults
-
 Progress: TypeAlias = Callable[[int, int], None]
 # Numbers of scenes, and the function that computes the rows of some of them.
 Group: TypeAlias = tuple[list[int], Callable[[list[int]], FloatArray]]
@@ -40,6 +37,27 @@ Group: TypeAlias = tuple[list[int], Callable[[list[int]], FloatArray]]
 _PRESCRIBED = (ContactRadii, IndentationDepths, NormalForces)
 # Scenes between two reports of progress.
 _CHUNK = 512
+
+
+@dataclass(frozen=True)
+class ImpactResults:
+    """Outcome of many impacts, each array of shape (n,).
+
+    Attributes:
+        coefficient_of_restitution: e [-].
+        contact_time: Duration of the contact [s].
+        peak_force: max F_N [N].
+        peak_depth: max delta [m].
+        peak_contact_radius: max a [m].
+        relative_error: Relative errors of these five, in this order, shape (5, n).
+    """
+
+    coefficient_of_restitution: FloatArray
+    contact_time: FloatArray
+    peak_force: FloatArray
+    peak_depth: FloatArray
+    peak_contact_radius: FloatArray
+    relative_error: FloatArray
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -83,9 +101,11 @@ def impacts(
     progress: Progress | None = None,
 ) -> ImpactResults:
     """Restitution, contact time and peaks of many impacts."""
-    from mdr.impact.solver import impact_batch  # noqa: PLC0415  # loaded only when asked for
+    from mdr.impact.solver import impact_groups  # noqa: PLC0415  # loaded only when asked for
 
-    return impact_batch(scenes, flat_punch, accuracy=accuracy, progress=progress)
+    found = _solved(scenes, impact_groups(scenes, flat_punch, accuracy), 10, progress, depth_row=3)
+    time, force, depth, radius = found[1:5]
+    return ImpactResults(found[0], time, force, depth, radius, relative_error=found[5:])
 
 
 @one_thread
@@ -132,8 +152,10 @@ def equilibria(scenes: Sequence[Scene], flat_punch: FlatPunchSource, *, progress
     )
 
 
-def _solved(scenes: Sequence[Scene], groups: Sequence[Group], rows: int, progress: Progress | None) -> FloatArray:
-    """Rows of numbers of every scene, the depth second, shape (rows, n); groups are solved by chunks.
+def _solved(
+    scenes: Sequence[Scene], groups: Sequence[Group], rows: int, progress: Progress | None, depth_row: int = 1
+) -> FloatArray:
+    """Rows of numbers of every scene, shape (rows, n); groups are solved by chunks.
 
     Raises:
         NotConvergedError: If an answer is not finite.
@@ -150,7 +172,7 @@ def _solved(scenes: Sequence[Scene], groups: Sequence[Group], rows: int, progres
     unknown = np.flatnonzero(~np.isfinite(found).all(axis=0))
     if unknown.size:
         raise NotConvergedError(f"scenes[{unknown[0]}]: no finite answer, nor of {unknown.size - 1} others")
-    for number, (scene, depth) in enumerate(zip(scenes, found[1].tolist(), strict=True)):
+    for number, (scene, depth) in enumerate(zip(scenes, found[depth_row].tolist(), strict=True)):
         try:
             refuse_deep(scene, depth)
         except UnsupportedSceneError as error:
