@@ -15,8 +15,7 @@ from typing import Any
 import numpy as np
 
 from bem import Bem
-from cases.referees.contact_mechanics import ContactMechanics
-from cases.referees.tamaas import Tamaas
+from cases.referees.grids import ContactMechanics, Tamaas
 from contact import IndentationDepths, Layer, Method, Paraboloid, Scene, Supported
 from mdr import Mdr
 

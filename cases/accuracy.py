@@ -25,10 +25,10 @@ class Outcome(Generic[AnswerT]):
     """An answer that states at most the error asked for.
 
     Attributes:
-        method: name in the method table.
-        settings: as the answer tells them.
-        answer: the solution.
-        stated_error: largest relative error that the answer states of what an accuracy is asked of.
+        method: Name in the method table.
+        settings: Settings that the answer reports.
+        answer: The solution.
+        stated_error: Largest relative error that the answer states of what an accuracy is asked of.
     """
 
     method: str
@@ -41,15 +41,15 @@ def solve(scene: Scene[Any, Any], *, accuracy: float, pressure_accuracy: float |
     """Return the first answer that states no larger error than wanted.
 
     Args:
-        scene: what is to be solved.
-        accuracy: largest relative error of radius, depth, force and stiffness, or of critical numbers, or of
+        scene: Scene to solve.
+        accuracy: Largest relative error of radius, depth, force and stiffness, or of critical numbers, or of
             restitution and peaks (`Solution.ASKED`). Other quantities that state more are named in the notes.
-        pressure_accuracy: largest relative error of the contact pressure; None if it does not matter.
+        pressure_accuracy: Largest relative error of the contact pressure; None if it does not matter.
 
     Raises:
-        InvalidInput: if an accuracy does not lie between 0 and 1.
-        UnsupportedSceneError: if no method models the scene.
-        NotConvergedError: if every answer states a larger error.
+        InvalidInput: If an accuracy does not lie between 0 and 1.
+        UnsupportedSceneError: If no method models the scene.
+        NotConvergedError: If every answer states a larger error.
     """
     for wanted in (accuracy, pressure_accuracy):
         if wanted is not None and not 0.0 < wanted < 1.0:
@@ -67,8 +67,8 @@ def solve(scene: Scene[Any, Any], *, accuracy: float, pressure_accuracy: float |
             continue
         stated = max(asked_errors(answer).values(), default=np.inf)
         if not shortfalls(answer, accuracy, pressure_accuracy):
-            told = told_where_less(answer, accuracy, pressure_accuracy)
-            return Outcome(method=method.name, settings=answer.settings, answer=told, stated_error=stated)
+            noted = told_where_less(answer, accuracy, pressure_accuracy)
+            return Outcome(method=method.name, settings=answer.settings, answer=noted, stated_error=stated)
         best = min(best, stated)
     if best < np.inf:
         message = f"accuracy = {accuracy:g}: answers to this scene state {best:.1e} at best; ask for less"

@@ -68,14 +68,14 @@ class Advice:
     @property
     def lines(self) -> list[str]:
         """The advice in sentences."""
-        found = [
+        sentences = [
             f"{part.part[:1].upper()}{part.part[1:]} {verdict} at {100 * self.accuracy:g} %: {part.line}"
             for verdict, parts in (("matters", self.needed), ("may be left out", self.droppable))
             for part in parts
         ]
         if len(self.droppable) > 1:
-            found.append(f"Without all of these at once a quantity changes by {100 * self.together:.2g} %.")
-        return [*found, *(number.line for number in self.numbers)]
+            sentences.append(f"Without all of these at once a quantity changes by {100 * self.together:.2g} %.")
+        return [*sentences, *(number.line for number in self.numbers)]
 
 
 def advise(method: Method, scene: Scene, accuracy: float) -> Advice:
@@ -97,8 +97,10 @@ def advise(method: Method, scene: Scene, accuracy: float) -> Advice:
     droppable = tuple(part for part in parts if part.may_be_dropped(accuracy))
     together, droppable = _together(method, whole, droppable, accuracy)
     needed = tuple(part for part in parts if part not in droppable)
-    found = numbers(scene, whole, accuracy)
-    return Advice(accuracy=accuracy, needed=needed, droppable=droppable, together=together, numbers=tuple(found))
+    scene_numbers = numbers(scene, whole, accuracy)
+    return Advice(
+        accuracy=accuracy, needed=needed, droppable=droppable, together=together, numbers=tuple(scene_numbers)
+    )
 
 
 def _together(
@@ -281,26 +283,26 @@ def validity_lines(scene: Scene, answer: Solution) -> list[str]:
         or not _largest(answer, "contact_radius")
     ):
         return []
-    found = [_tip_share(scene, answer)]
+    statements = [_tip_share(scene, answer)]
     try:
-        found += numbers(scene, answer, _USUAL_ACCURACY)
+        statements += numbers(scene, answer, _USUAL_ACCURACY)
     except (UnsupportedSceneError, NotConvergedError) as error:
         return [f"how far the theory reaches is not known: {error}"]
-    return [number.line for number in found if number is not None]
+    return [number.line for number in statements if number is not None]
 
 
 def numbers(scene: Scene, answer: Solution, accuracy: float) -> list[Number]:
     """The dimensionless numbers of a solved scene; an indenter that is not round counts as its round substitute."""
     if isinstance(scene.indenter, Shape):
         scene = scene.replace(indenter=scene.indenter.substitute)
-    found = [_thickness(scene, answer, accuracy), _strain(scene, answer), _friction(scene, answer)]
+    statements = [_thickness(scene, answer, accuracy), _strain(scene, answer), _friction(scene, answer)]
     if scene.effect(Adhesion) is not None:
-        found += _adhesion(scene, answer, accuracy)
+        statements += _adhesion(scene, answer, accuracy)
     if isinstance(scene.loading, Impact | DepthHistory | ForceHistory):
-        found += _relaxation(scene, _duration(answer), accuracy)
+        statements += _relaxation(scene, _duration(answer), accuracy)
     if isinstance(answer, ImpactHistory):
-        found.append(_inertia(scene, answer))
-    return [number for number in found if number is not None]
+        statements.append(_inertia(scene, answer))
+    return [number for number in statements if number is not None]
 
 
 def _thickness(scene: Scene, answer: Solution, accuracy: float) -> Number | None:

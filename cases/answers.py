@@ -23,12 +23,12 @@ class Values:
 
     Attributes:
         unit: SI unit, "1" for a ratio.
-        scale: size that errors are relative to, same unit; positive, so a zero crossing does no harm.
-        values: shape (n,).
-        error: what the method states. Of a quantity absolute, shape (n,); of a field one number, relative in its norm.
+        scale: Size that errors are relative to, same unit; positive, so a zero crossing does no harm.
+        values: Shape (n,).
+        error: Stated error. Of a quantity absolute, shape (n,); of a field one number, relative in its norm.
             Empty where it states none.
-        at: of a field the radii or numbers of its points, shape (n,); empty of a quantity.
-        spread: in a baseline, the largest relative difference between answers that should be equal.
+        at: Radii or numbers of the points of a field, shape (n,); empty for a quantity.
+        spread: Largest relative difference between answers that should be equal, in a baseline.
     """
 
     unit: str
@@ -51,25 +51,25 @@ class Answer:
     """One method on one scene: PASS with quantities, or another status with its reason.
 
     Attributes:
-        case: name of the case.
-        scene: name of the scene within the case.
-        method: label of the method in the case.
+        case: Name of the case.
+        scene: Name of the scene within the case.
+        method: Label of the method in the case.
         variant: "" for the scene itself, else what was changed ("doubling E doubles F", "grid nodes=8").
-        question: hash of the scene and of the settings asked for; equal on every processor.
-        code: hash of the sources and versions that answered.
+        question: Hash of the scene and of the settings asked for; equal on every processor.
+        code: Hash of the sources and versions that answered.
         status: PASS when solved.
-        reason: why not, one sentence.
-        settings: numerical settings that the answer reports.
-        quantities: by name, those along the steps and fields at points (`Values.at`).
-        shared: names of inputs (a flat-punch table, a kernel) that other methods may use as well.
-        seconds: processor time of the solution [s].
-        wall_seconds: duration of the solution [s].
-        memory: peak [bytes].
-        unknowns: of its largest system.
-        counters: factorisations, iterations, steps.
-        samples: seconds of each repeated solution of a timed task.
-        cold_seconds: first solution of a timed task, with empty caches.
-        notes: remarks of the method.
+        reason: Reason why it was not solved, one sentence.
+        settings: Numerical settings that the answer reports.
+        quantities: Quantities along the steps and fields at points (`Values.at`), by name.
+        shared: Names of inputs (a flat-punch table, a kernel) that other methods may use as well.
+        seconds: Processor time of the solution [s].
+        wall_seconds: Duration of the solution [s].
+        memory: Peak memory [bytes].
+        unknowns: Number of unknowns of its largest system.
+        counters: Factorisations, iterations, steps.
+        samples: Seconds of each repeated solution of a timed task.
+        cold_seconds: First solution of a timed task, with empty caches.
+        notes: Remarks of the method.
     """
 
     case: str
@@ -145,7 +145,7 @@ def read_answers(path: Path, skip: int = 0) -> Iterator[Answer]:
     """Yield the answers of a file after ``skip`` lines; a torn last line is left out, its writer was killed.
 
     Raises:
-        InvalidInput: naming the file and the line that holds no answer.
+        InvalidInput: Naming the file and the line that holds no answer.
     """
     for number, line in enumerate(path.read_bytes().splitlines(keepends=True)[skip:], skip + 1):
         if not line.endswith(b"\n"):

@@ -21,13 +21,13 @@ class Sampling:
     """Fields of an answer that a run records in addition to its quantities.
 
     Attributes:
-        ring_edges: the pressure of the last step is kept at the Gauss nodes of the rings between these radii [m];
+        ring_edges: The pressure of the last step is kept at the Gauss nodes of the rings between these radii [m];
             empty keeps no pressure.
         nodes: Gauss nodes on each ring.
-        scales: declared size of a quantity, by name; otherwise its largest magnitude.
-        inside: points of the body where fields of the last step are kept: r over the contact radius, z over the smaller
+        scales: Declared size of a quantity, by name; otherwise its largest magnitude.
+        inside: Points of the body where fields of the last step are kept: r over the contact radius, z over the smaller
             of contact radius and thickness; empty keeps none.
-        laws: whether the laws of elastic bodies are checked on these fields.
+        laws: Whether the laws of elastic bodies are checked on these fields.
     """
 
     ring_edges: tuple[float, ...] = ()
@@ -47,12 +47,12 @@ class CaseScene:
     """A scene of a case.
 
     Attributes:
-        name: unique within the case.
-        parameters: what sets it apart, for tables and figures.
-        scene: the problem.
-        sampling: what is kept of each answer.
-        methods: the methods that solve it; empty for those of the case.
-        nightly: labels of those that take too long for the suite "ci".
+        name: Unique within the case.
+        parameters: Parameters that distinguish the scene, for tables and figures.
+        scene: The problem.
+        sampling: Fields that are kept of each answer.
+        methods: The methods that solve it; empty for those of the case.
+        nightly: Labels of those that take too long for the suite "ci".
     """
 
     name: str
@@ -68,16 +68,16 @@ class Task:
     """One method on one scene of a case, or on a variant of it.
 
     Attributes:
-        case: name of the case.
-        scene: name of the scene within the case.
+        case: Name of the case.
+        scene: Name of the scene within the case.
         variant: "" for the scene itself, else what was changed ("doubled E", "grid nodes=8").
-        use: the method with the settings asked for; its label names it in the case.
-        problem: the scene that is solved.
-        refined: how often the method is refined before.
-        sampling: what is kept.
-        timed: whether the solution is repeated for its time, alone on the machine.
-        first: whether it is a first solution: imports are done before, caches are empty.
-        measure: computes fields of the answer from method and scene, in place of one solution.
+        use: The method with the settings asked for; its label names it in the case.
+        problem: The scene that is solved.
+        refined: Number of refinements of the method before it solves.
+        sampling: Fields that are kept.
+        timed: Whether the solution is repeated for its time, alone on the machine.
+        first: Whether it is a first solution: imports are done before, caches are empty.
+        measure: Computes fields of the answer from method and scene, in place of one solution.
     """
 
     case: str
@@ -111,16 +111,16 @@ class Case:
     """A question, the scenes that answer it, the methods that solve them and what is claimed of the answers.
 
     Attributes:
-        name: unique; letters, digits and underscores.
-        title: one line.
-        question: what a reader learns.
-        equations: of the source.
-        text: the paper's body: set-up, what to expect and why.
+        name: Unique; letters, digits and underscores.
+        title: One line.
+        question: Question that the case answers.
+        equations: Equations of the source.
+        text: The paper's body: set-up, what to expect and why.
         suites: "ci" (minutes) and "nightly"; "referees" runs outside solvers.
-        scenes: solved by every method.
-        methods: compared methods.
-        claims: what must hold and what is measured (`cases.claims.Study`).
-        restricted: whether only some of its methods are left; then nothing may be left to claim.
+        scenes: Solved by every method.
+        methods: Compared methods.
+        claims: Claims, and studies of what is measured (`cases.claims.Study`).
+        restricted: Whether only some of its methods are left; then nothing may be left to claim.
     """
 
     name: str
@@ -168,7 +168,7 @@ class Case:
         """Return the scene called ``name``.
 
         Raises:
-            InvalidInput: if the case has none of that name.
+            InvalidInput: If the case has none of that name.
         """
         if name not in self.by_name:
             raise InvalidInput(f"case {self.name} has no scene {name!r}; it has {', '.join(self.by_name)}")
@@ -182,7 +182,7 @@ class Case:
         """Return the method labelled ``label`` that solves ``scene``.
 
         Raises:
-            InvalidInput: if no such method does.
+            InvalidInput: If no such method does.
         """
         for use in self.methods_of(scene):
             if use.label == label:
@@ -220,17 +220,17 @@ class Case:
 
         Without a suite each scene keeps its ``nightly`` methods; studies of cost and effects are those of ci.
         """
-        claims = tuple(own for claim in self.claims if (own := claim.in_suite(suite)) is not None)
+        claims = tuple(study for claim in self.claims if (study := claim.in_suite(suite)) is not None)
         if suite != "ci":
             return replace(self, claims=claims)
-        left = replace(self, claims=claims, restricted=True)
-        return left.only(lambda scene, use: use.label not in scene.nightly)
+        restricted = replace(self, claims=claims, restricted=True)
+        return restricted.only(lambda scene, use: use.label not in scene.nightly)
 
     def only_methods(self, wanted: Collection[str]) -> "Case":
         """Return the case with the methods asked for (all if none is), without timings.
 
         Raises:
-            InvalidInput: if the case has none of the methods.
+            InvalidInput: If the case has none of the methods.
         """
         if not wanted:
             return self
@@ -238,21 +238,9 @@ class Case:
         if not methods:
             known = ", ".join(use.label for use in self.methods)
             raise InvalidInput(f"case {self.name} has no method {' or '.join(wanted)}; it has {known}; {HOW_TO_ADD}")
-        left = self.only(lambda _, use: use.label in wanted)
-        return replace(left, methods=methods, claims=tuple(claim for claim in self.claims if not claim.timed))
+        restricted = self.only(lambda _, use: use.label in wanted)
+        return replace(restricted, methods=methods, claims=tuple(claim for claim in self.claims if not claim.timed))
 
     def nightly_only(self) -> frozenset[tuple[str, str]]:
         """Return the scenes and methods that only the nightly suite solves."""
         return frozenset((scene.name, label) for scene in self.scenes for label in scene.nightly)
-
-
-def paper(module: str, text: str | None, /, **fields: Any) -> Case:
-    """Return the case of a module: the first line of its docstring is the title, the rest the text.
-
-    Args:
-        module: name of the module, which is that of the case.
-        text: its docstring.
-        fields: others of `Case`.
-    """
-    title, _, body = (text or "").partition("\n")
-    return Case(name=module.rpartition(".")[2], title=title.strip().removesuffix("."), text=body.strip(), **fields)

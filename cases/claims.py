@@ -46,8 +46,8 @@ class Study:
     """What a case needs in addition to its scenes: tasks, and verdicts and records of their answers.
 
     Attributes:
-        name: unique within the case.
-        nightly: whether it takes too long for the suite "ci".
+        name: Unique within the case.
+        nightly: Whether it takes too long for the suite "ci".
     """
 
     kind: ClassVar[str] = "study"
@@ -82,13 +82,13 @@ class Claim(Study, ABC):
     """Base of all claims, which are stated before anything is computed.
 
     Attributes:
-        quantity: what is compared.
-        tolerance: largest permitted error, relative.
-        why: why it should hold, and where its numbers come from.
-        scenes: names of the scenes it speaks about; empty for all.
-        methods: labels of the methods it speaks about; empty for every method that solves a scene.
-        tolerances: of methods that need another one, by label.
-        identities: of methods for which it holds by construction, by label: why; such checks are not counted.
+        quantity: Name of the quantity that is compared.
+        tolerance: Largest permitted error, relative.
+        why: Reasons of the claim, and the origin of its numbers.
+        scenes: Names of the scenes that it is about; empty for all.
+        methods: Labels of the methods that it is about; empty for every method that solves a scene.
+        tolerances: Tolerances of methods that need another one, by label.
+        identities: Reasons why it holds by construction, by label of the method; such checks are not counted.
     """
 
     kind: ClassVar[Kind]
@@ -112,7 +112,7 @@ class Claim(Study, ABC):
         """Refuse scenes that the case does not have, and named methods that solve none of the claim's scenes.
 
         Raises:
-            InvalidInput: naming the first of them.
+            InvalidInput: Naming the first of them.
         """
         scenes = [case.scene(name) for name in self.scenes] or case.scenes
         solving = {use.label for scene in scenes for use in case.methods_of(scene)}
@@ -203,10 +203,10 @@ class Claim(Study, ABC):
         )
 
 
-def numbers_of(found: Numbers, quantity: str) -> list[float]:
+def numbers_of(numbers: Numbers, quantity: str) -> list[float]:
     """Return the numbers of a quantity, one per step."""
-    own = found[quantity] if isinstance(found, Mapping) else found
-    return [float(value) for value in np.atleast_1d(np.asarray(own))]
+    values = numbers[quantity] if isinstance(numbers, Mapping) else numbers
+    return [float(value) for value in np.atleast_1d(np.asarray(values))]
 
 
 def first_missing(*answers: Answer, quantity: str = "") -> Judgement | None:
@@ -250,8 +250,8 @@ class Equal(PerScene):
     """The values along the steps equal expected ones, of a closed form or the literature.
 
     Attributes:
-        to: by name of the scene, or a function of the scene.
-        uncertain: printed inputs and how exact they are, as `read_inputs` takes them; the values may be off by as much
+        to: Expected values by name of the scene, or a function of the scene.
+        uncertain: Printed inputs and how exact they are, as `read_inputs` takes them; the values may be off by as much
             as they leave open.
     """
 
@@ -276,18 +276,18 @@ class Equal(PerScene):
         """Return the expected values on one scene."""
         if isinstance(self.to, Mapping) and scene.name not in self.to:
             raise InvalidInput(f"claim {self.name!r}: no expected value for scene {scene.name!r}")
-        found = self.to[scene.name] if isinstance(self.to, Mapping) else self.to(scene.scene)
-        return numbers_of(found, self.quantity)
+        numbers = self.to[scene.name] if isinstance(self.to, Mapping) else self.to(scene.scene)
+        return numbers_of(numbers, self.quantity)
 
     def needed(self, case: Case, scene: CaseScene, use: MethodUse) -> Iterator[Task]:
         """Yield the scene with each uncertain input one standard deviation up and down."""
         if not self.uncertain:
             return
         inputs, task = read_inputs(self.uncertain), case.task(scene, use)
-        for one, unit in zip(inputs.inputs, np.eye(len(inputs.inputs)), strict=True):
+        for uncertain, unit in zip(inputs.inputs, np.eye(len(inputs.inputs)), strict=True):
             for side, deviations in (("up", unit), ("down", -unit)):
-                problem = inputs.moved(task.problem, deviations)
-                yield task.changed(f"{self.name}, {one.name} {side}", problem)
+                problem = inputs.scene_at(task.problem, deviations)
+                yield task.changed(f"{self.name}, {uncertain.name} {side}", problem)
 
     def judged(self, scene: CaseScene, label: str, answer: Answer, others: list[Answer]) -> Judgement:
         """Judge the worst step."""
@@ -299,8 +299,8 @@ class Equal(PerScene):
         values, q = self.values(scene), answer.quantities[self.quantity]
         step = self._worst(scene, answer.method, answer, others)[1]
         size = max(abs(values[step]), q.scale if 0.0 in values else 0.0)
-        own = {answer.method: q.error[step] / size} if q.error or self.uncertain else {}
-        return own | ({"inputs": float(self._by_inputs(others)[step] / size)} if self.uncertain else {})
+        errors = {answer.method: q.error[step] / size} if q.error or self.uncertain else {}
+        return errors | ({"inputs": float(self._by_inputs(others)[step] / size)} if self.uncertain else {})
 
     def _worst(self, scene: CaseScene, label: str, answer: Answer, others: list[Answer]) -> tuple[Judgement, int]:
         values, q = self.values(scene), answer.quantities[self.quantity]
@@ -311,17 +311,17 @@ class Equal(PerScene):
         inputs: ArrayLike = COVERAGE * self._by_inputs(others) if self.uncertain else 0.0
         stated = np.hypot(q.error or (0.0,) * len(values), inputs)
         tolerance = self.tolerance_of(label)
-        found = [
+        judgements = [
             judge_exact(v, e, scale=scale, tolerance=tolerance, stated=float(u))
             for v, e, u in zip(q.values, values, stated, strict=True)
         ]
-        worst = worst_judgement(found)
-        return worst, found.index(worst)
+        worst = worst_judgement(judgements)
+        return worst, judgements.index(worst)
 
     def _by_inputs(self, others: list[Answer]) -> FloatArray:
         """Standard uncertainty of every step by the inputs."""
-        moved = [np.array(other.quantities[self.quantity].values) for other in others]
-        changes = np.array([(up - down) / 2 for up, down in zip(moved[::2], moved[1::2], strict=True)])
+        values = [np.array(other.quantities[self.quantity].values) for other in others]
+        changes = np.array([(up - down) / 2 for up, down in zip(values[::2], values[1::2], strict=True)])
         return read_inputs(self.uncertain).spread(changes)
 
     def expected(self, scene: CaseScene) -> float | None:
@@ -335,10 +335,10 @@ class Agree(PerScene):
     """Two methods give the same values, or the same field in a norm, their stated errors counted.
 
     Attributes:
-        fast: label of the method under test.
-        reference: label of the method that it is compared with.
-        norm: how fields are compared; empty of quantities, whose worst step counts.
-        refined: labels of methods that state no error of the field; the change on halving their discretisation length
+        fast: Label of the method under test.
+        reference: Label of the method that it is compared with.
+        norm: Norm in which fields are compared; empty for quantities, whose worst step counts.
+        refined: Labels of methods that state no error of the field; the change on halving their discretisation length
             takes its place.
     """
 
@@ -376,7 +376,7 @@ class Agree(PerScene):
     def judged(self, scene: CaseScene, label: str, answer: Answer, others: list[Answer]) -> Judgement:
         """Judge the field, or the worst step; without a stated error there is no pass."""
         judged, stated = self._compared(scene, [answer, *others])
-        silent = [one.method for one in (answer, others[0]) if one.method not in stated]
+        silent = [answered.method for answered in (answer, others[0]) if answered.method not in stated]
         if not silent or judged.status.is_failure:
             return judged
         message = f"{silent[0]} states no uncertainty of {self.quantity}: no verdict is possible"
@@ -401,11 +401,11 @@ class Agree(PerScene):
             if q.error
         }
         steps = [{label: float(u[i]) for label, u in stated.items()} for i in range(len(x))]
-        found = [
+        judgements = [
             judge_agreement(float((x[i] - y[i]) / size[i]), steps[i], tolerance=self.tolerance) for i in range(len(x))
         ]
-        worst = worst_judgement(found)
-        return worst, steps[found.index(worst)]
+        worst = worst_judgement(judgements)
+        return worst, steps[judgements.index(worst)]
 
     def _field(self, scene: CaseScene, answers: list[Answer]) -> tuple[Judgement, dict[str, float]]:
         fields = {answer.method: answer.quantities[self.quantity] for answer in answers[:2]}
@@ -449,7 +449,7 @@ class Changed(PerScene, ABC):
     """A claim on an answer and on that of a changed scene.
 
     Attributes:
-        change: from the scene to the other one.
+        change: Function that returns the changed scene.
     """
 
     kind: ClassVar[Kind] = Kind.INVARIANT
@@ -466,7 +466,7 @@ class Law(Changed):
     """A changed scene gives the same answer times known factors: the modulus doubled, the units changed.
 
     Attributes:
-        factors: expected answer of the changed scene over that of the original, by name of the quantity.
+        factors: Expected answer of the changed scene over that of the original, by name of the quantity.
     """
 
     factors: Mapping[str, float]
@@ -489,7 +489,7 @@ class Bound(Changed):
 
     Attributes:
         multiple: m in q(scene) >= m q(changed scene), of the scene; 1 by default.
-        at_most: whether it is a bound from above.
+        at_most: Whether it is a bound from above.
     """
 
     multiple: Callable[[Scene], float] | None = None
@@ -498,7 +498,7 @@ class Bound(Changed):
     def judged(self, scene: CaseScene, label: str, answer: Answer, others: list[Answer]) -> Judgement:
         """Judge what the quantity lacks."""
         multiple = 1.0 if self.multiple is None else self.multiple(scene.scene)
-        values, bounds = (one.quantities[self.quantity] for one in (answer, others[0]))
+        values, bounds = (answered.quantities[self.quantity] for answered in (answer, others[0]))
         sign = -1.0 if self.at_most else 1.0
         lacking = (
             max(0.0, sign * (multiple * least - value)) / bounds.scale
@@ -512,7 +512,7 @@ class Zero(PerScene):
     """A residual vanishes: one that the answers carry as a quantity, or one that is derived from an answer.
 
     Attributes:
-        derive: residuals of an answer on its scene, relative; by default the values of the quantity itself.
+        derive: Residuals of an answer on its scene, relative; by default the values of the quantity itself.
     """
 
     kind: ClassVar[Kind] = Kind.INVARIANT
@@ -539,11 +539,11 @@ class Approach(Claim):
     """Between the two last scenes the relative distance from a limit falls like a parameter to the formal order.
 
     Attributes:
-        scenes: names, the one closest to the limit last.
-        parameter: what tends to zero, for example h/a.
-        limit: the closed form the quantity's last step tends to.
-        formal_order: of the distance in the parameter.
-        largest: the relative distance of the last scene must not exceed this.
+        scenes: Names, the one closest to the limit last.
+        parameter: Parameter that tends to zero, for example h/a.
+        limit: The closed form the quantity's last step tends to.
+        formal_order: Order of the distance in the parameter.
+        largest: The relative distance of the last scene must not exceed this.
     """
 
     kind: ClassVar[Kind] = Kind.ORDER
@@ -568,7 +568,9 @@ class Approach(Claim):
         """Judge the sequence once for each method."""
         for scene, use in self.places(case):
             before = self.scenes_of(case)[-2]
-            near, far = (answers.get(case.task(one, case.use(one, use.label)).identity) for one in (scene, before))
+            near, far = (
+                answers.get(case.task(place, case.use(place, use.label)).identity) for place in (scene, before)
+            )
             if near is not None and far is not None:
                 judged = first_missing(far, near) or self._limit((before, scene), (far, near))
                 yield self.verdict(case, scene, use, near, judged=judged)

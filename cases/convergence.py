@@ -30,17 +30,17 @@ class Order(Claim):
     Fields count by root mean squares over their points.
 
     Attributes:
-        method: label of the method in the case.
-        ladder: settings of each refinement, coarsest first, in place of those of the case; several grids of one
+        method: Label of the method in the case.
+        ladder: Settings of each refinement, coarsest first, in place of those of the case; several grids of one
             refinement, whose errors scatter, count by their root mean square.
-        ratio: of the discretisation lengths of neighbours.
+        ratio: Ratio of the discretisation lengths of neighbours.
         formal_order: p_f of this case, quantity and mesh family; None claims spectral convergence.
-        least_digits: digits per refinement, for spectral convergence.
-        mesh_family: what the formal order belongs to.
-        against: the method whose answer is the reference: its label in the case, or one with settings of its own;
+        least_digits: Digits per refinement, for spectral convergence.
+        mesh_family: Family of meshes to which the formal order belongs.
+        against: The method whose answer is the reference: its label in the case, or one with settings of its own;
             empty for none.
-        reference_uncertainty: relative, of the reference; zero for what the method itself states.
-        floor: round-off floor, relative.
+        reference_uncertainty: Relative, of the reference; zero for what the method itself states.
+        floor: Round-off floor, relative.
     """
 
     kind: ClassVar[Kind] = Kind.ORDER
@@ -76,22 +76,22 @@ class Order(Claim):
 
     def judge(self, case: Case, answers: Table) -> Iterator[Verdict]:
         """Yield the verdict of each scene whose grids and reference were all run; the first failed answer fails it."""
-        for scene, use, found in self._answered(case, answers):
-            judged = first_missing(*found) or self._order(self._study(case, scene, use, found))
-            yield self.verdict(case, scene, use, found[0], judged=judged)
+        for scene, use, grids in self._answered(case, answers):
+            judged = first_missing(*grids) or self._order(self._study(case, scene, use, grids))
+            yield self.verdict(case, scene, use, grids[0], judged=judged)
 
     def records(self, case: Case, answers: Table) -> Iterator[Convergence]:
         """Yield the study of each scene whose grids were all solved."""
-        for scene, use, found in self._answered(case, answers):
-            if all(answer.solved for answer in found):
-                yield self._study(case, scene, use, found)
+        for scene, use, grids in self._answered(case, answers):
+            if all(answer.solved for answer in grids):
+                yield self._study(case, scene, use, grids)
 
     def _answered(self, case: Case, answers: Table) -> Iterator[tuple[CaseScene, MethodUse, list[Answer]]]:
         """Each scene whose grids and reference were all run, with these answers."""
         for scene, use in self.places(case):
-            found = [answers.get(task.identity) for task in self.needed(case, scene, use)]
-            if None not in found:
-                yield scene, use, [answer for answer in found if answer is not None]
+            grids = [answers.get(task.identity) for task in self.needed(case, scene, use)]
+            if None not in grids:
+                yield scene, use, [answer for answer in grids if answer is not None]
 
     def expected(self, scene: CaseScene) -> float | None:
         """Return the formal order."""
@@ -107,9 +107,9 @@ class Order(Claim):
     def _study(self, case: Case, scene: CaseScene, use: MethodUse, solved: list[Answer]) -> Convergence:
         rest = iter(solved)
         levels = [[next(rest) for _ in level] for level in self._levels(case, scene, use)][::-1]
-        found = [_last(level[0], self.quantity) for level in levels]
+        quantities = [_last(level[0], self.quantity) for level in levels]
         lengths = [self.ratio**level for level in range(1 - len(levels), 1)]
-        values, scale = [_size(q.values) for q in found], found[0].scale
+        values, scale = [_size(q.values) for q in quantities], quantities[0].scale
         reference, uncertainty, errors = None, self.reference_uncertainty, list[float]()
         if self.against:
             q = _last(next(rest), self.quantity)
@@ -123,10 +123,10 @@ class Order(Claim):
             scene=scene.name,
             method=self.method,
             quantity=self.quantity,
-            unit=found[0].unit,
+            unit=quantities[0].unit,
             refined=self.mesh_family,
             kind=kind,
-            grids=tuple(map(_shown, lengths, levels, found, shown)),
+            grids=tuple(map(_shown, lengths, levels, quantities, shown)),
             scale=scale,
             formal_order=self.formal_order,
             observed_order=order,
@@ -160,15 +160,15 @@ class Order(Claim):
             return [None] * len(values)
         formal = self.formal_order
         pairs = zip(pairwise(values), pairwise(lengths), strict=True)
-        found = (
+        indices = (
             grid_convergence_index(fine, coarse, b / a, order, formal, scale=scale) * max(abs(fine), scale)
             for (fine, coarse), (a, b) in pairs
         )
-        return [*found, None]
+        return [*indices, None]
 
     def _distance(self, level: Sequence[Answer], reference: FloatArray) -> float:
         """Root mean square distance of the grids of one refinement, at all points of a field."""
-        squares = [np.mean((np.array(_last(one, self.quantity).values) - reference) ** 2) for one in level]
+        squares = [np.mean((np.array(_last(grid, self.quantity).values) - reference) ** 2) for grid in level]
         return math.sqrt(sum(map(float, squares)) / len(level))
 
 
@@ -198,11 +198,11 @@ def behaviour(values: Sequence[float], floor: float) -> str:
     """Return the class of values, finest first, decided by the three finest.
 
     Args:
-        values: finest first.
-        floor: round-off floor, absolute; differences within ten times it say nothing about the order.
+        values: Finest first.
+        floor: Round-off floor, absolute; differences within ten times it say nothing about the order.
 
     Raises:
-        InvalidInput: if a value is not finite: such a sequence is INVALID, not divergent.
+        InvalidInput: If a value is not finite: such a sequence is INVALID, not divergent.
     """
     if not all(math.isfinite(value) for value in values):
         raise InvalidInput(f"a sequence of refinements must be finite, got {tuple(values)}")
@@ -234,11 +234,11 @@ def digits_per_refinement(errors: Sequence[float], floor: float) -> float | None
     """Return the mean number of digits gained per refinement until the floor; None where all grids lie there.
 
     Args:
-        errors: relative errors against the reference, finest first.
-        floor: below ten times this, round-off and the reference decide; finer grids say nothing more.
+        errors: Relative errors against the reference, finest first.
+        floor: Below ten times this, round-off and the reference decide; finer grids say nothing more.
 
     Raises:
-        InvalidInput: if an error is not finite or negative.
+        InvalidInput: If an error is not finite or negative.
     """
     if not all(math.isfinite(error) and error >= 0 for error in errors):
         raise InvalidInput(f"errors must be finite and not negative, got {tuple(errors)}")
@@ -257,7 +257,7 @@ def observed_order(values: Sequence[float], lengths: Sequence[float]) -> float:
     unique, and negative where the differences grow under refinement.
 
     Raises:
-        InvalidInput: unless there are three finite values at increasing lengths with two non-zero differences.
+        InvalidInput: Unless there are three finite values at increasing lengths with two non-zero differences.
     """
     if len(lengths) != 3 or not 0 < lengths[0] < lengths[1] < lengths[2] < math.inf:
         raise InvalidInput(f"lengths must be three positive numbers, finest first, got {tuple(lengths)}")

@@ -19,9 +19,9 @@ class Ablation(Study):
 
     Attributes:
         name: "effects" where a case has one such study.
-        scene: name of the scene.
-        methods: labels of the methods that solve it with and without.
-        slow: labels of those that do so in the nightly suite only.
+        scene: Name of the scene.
+        methods: Labels of the methods that solve it with and without.
+        slow: Labels of those that do so in the nightly suite only.
     """
 
     kind: ClassVar[str] = "effects"
@@ -74,8 +74,10 @@ def _effect(whole: Answer, part: str, less: Answer) -> Effect:
     """Effect of a part: the changes from the answer to the whole scene to that without the part, and its run time."""
     if not less.solved:
         return _unanswered(whole, part, less.reason)
-    found = changes(*({name: np.array(q.values) for name, q in one.quantities.items()} for one in (whole, less)))
-    return replace(_unanswered(whole, part, ""), seconds_without=less.seconds, changes=found)
+    relative = changes(
+        *({name: np.array(q.values) for name, q in answer.quantities.items()} for answer in (whole, less))
+    )
+    return replace(_unanswered(whole, part, ""), seconds_without=less.seconds, changes=relative)
 
 
 def _unanswered(whole: Answer, part: str, remark: str) -> Effect:

@@ -21,12 +21,12 @@ def read_record(adapter: TypeAdapter[T], path: Path, *, remedy: str) -> T:
     """Return the record in a JSON file.
 
     Args:
-        adapter: of the record's type, whose numbers are finite.
-        path: the file.
-        remedy: what a user does about a file that is refused.
+        adapter: Adapter of the record's type, whose numbers are finite.
+        path: The file.
+        remedy: Advice about a file that is refused.
 
     Raises:
-        InvalidInput: in one line, naming the first entry that fits no record, its value, and the remedy.
+        InvalidInput: Naming the first entry that fits no record, its value, and the remedy, in one line.
     """
     try:
         if (size := path.stat().st_size) > MAX_BYTES:

@@ -41,15 +41,15 @@ def with_registered(case: Case, chosen: Collection[str] | None = None) -> Case:
     """Return ``case`` with the registered methods of installed packages.
 
     Args:
-        case: with its own methods.
-        chosen: names of methods; None for every registered one but the outside solvers, which are asked by name.
+        case: Case with its own methods.
+        chosen: Names of methods; None for every registered one but the outside solvers, which are asked by name.
 
     Raises:
-        InvalidInput: if such a method cannot be imported, or claims an accuracy that is none.
+        InvalidInput: If such a method cannot be imported, or claims an accuracy that is none.
     """
-    own = {use.label for use in case.methods}
+    labels = {use.label for use in case.methods}
     asked = [name for name in registered() if name not in REFEREES] if chosen is None else chosen
-    names = [name for name in registered() if name in asked and name not in own]
+    names = [name for name in registered() if name in asked and name not in labels]
     return with_foreign_methods(case, {name: claimed_accuracy(name) for name in names})
 
 
@@ -57,7 +57,7 @@ def claimed_accuracy(name: str) -> float:
     """Return the relative accuracy that a registered method claims for itself, zero if it claims none.
 
     Raises:
-        InvalidInput: if it is no number from zero to `LARGEST_CLAIM`.
+        InvalidInput: If it is no number from zero to `LARGEST_CLAIM`.
     """
     return check_claim(name, getattr(load(name), "claimed_accuracy", 0.0))
 
@@ -66,7 +66,7 @@ def check_claim(name: str, claimed: Any) -> float:
     """Return the accuracy that a method claims, as a number.
 
     Raises:
-        InvalidInput: if it is no number from zero to `LARGEST_CLAIM`.
+        InvalidInput: If it is no number from zero to `LARGEST_CLAIM`.
     """
     is_number = isinstance(claimed, Real) and not isinstance(claimed, bool)
     if not is_number or not 0 <= claimed <= LARGEST_CLAIM:
@@ -84,8 +84,8 @@ def with_foreign_methods(case: Case, accuracies: Mapping[str, float]) -> Case:
     another. Orders of convergence belong to a mesh family, and residuals that are published to their method: they stay.
 
     Args:
-        case: with its own methods and claims.
-        accuracies: that the methods claim for themselves, relative, by name; zero where one claims none.
+        case: Case with its own methods and claims.
+        accuracies: Relative accuracies that the methods claim for themselves, by name; zero where one claims none.
     """
     if not accuracies:
         return case
@@ -93,7 +93,7 @@ def with_foreign_methods(case: Case, accuracies: Mapping[str, float]) -> Case:
     asked = with_restated(case, accuracies)
     scenes = (replace(scene, methods=(*scene.methods, *uses)) if scene.methods else scene for scene in asked.scenes)
     # The first claims of what is asked are the case's own, of its own scenes.
-    own = (_extended(case, claim, accuracies) for claim in asked.claims[: len(case.claims)])
+    extended = (_extended(case, claim, accuracies) for claim in asked.claims[: len(case.claims)])
     others = dict.fromkeys(label for claim in asked.claims if isinstance(claim, Agree) for label in _pair(claim))
     new = (
         claim
@@ -101,7 +101,7 @@ def with_foreign_methods(case: Case, accuracies: Mapping[str, float]) -> Case:
         for other in others
         for claim in agreements_between(asked, name, other, {name: accuracy}, everywhere=False)
     )
-    return replace(case, methods=(*case.methods, *uses), scenes=tuple(scenes), claims=(*own, *new))
+    return replace(case, methods=(*case.methods, *uses), scenes=tuple(scenes), claims=(*extended, *new))
 
 
 def _extended(case: Case, claim: Any, accuracies: Mapping[str, float]) -> Any:
@@ -112,8 +112,11 @@ def _extended(case: Case, claim: Any, accuracies: Mapping[str, float]) -> Any:
         return claim
     methods = (*claim.methods, *accuracies) if claim.methods else ()
     asked = max([claim.tolerance, *claim.tolerances.values()])
-    held = {name: HELD_TO * own if own and isinstance(claim, Equal) else asked for name, own in accuracies.items()}
-    more = {name: min(asked, own) for name, own in held.items()}
+    tolerances = {
+        name: HELD_TO * accuracy if accuracy and isinstance(claim, Equal) else asked
+        for name, accuracy in accuracies.items()
+    }
+    more = {name: min(asked, accuracy) for name, accuracy in tolerances.items()}
     return replace(claim, methods=methods, tolerances={**claim.tolerances, **more})
 
 
@@ -126,11 +129,11 @@ def agreements_between(
     MDR itself has to meet. Scenes stand in one claim unless their tolerances differ; no scene stands in two.
 
     Args:
-        case: with its own claims only.
-        first: label of the method under test.
-        second: label of the method that it is compared with.
-        accuracies: relative, that methods claim for themselves, by label.
-        everywhere: on every scene where the case compares any methods; otherwise where it compares ``second``.
+        case: Case with its own claims only.
+        first: Label of the method under test.
+        second: Label of the method that it is compared with.
+        accuracies: Relative accuracies that methods claim for themselves, by label.
+        everywhere: Whether every scene counts where the case compares any methods, not only ``second``.
     """
     compared: dict[str, dict[str, list[Agree]]] = {}
     for claim in case.claims:
@@ -174,7 +177,7 @@ def _deciding(claims: list[Agree], first: str, second: str) -> Agree:
     pair = [claim for claim in about[first] if claim in about[second]]
     if pair:
         return min(pair, key=attrgetter("tolerance"))
-    known = [min(found, key=attrgetter("tolerance")) for found in about.values() if found]
+    known = [min(claims_of_label, key=attrgetter("tolerance")) for claims_of_label in about.values() if claims_of_label]
     return max(known, key=attrgetter("tolerance")) if known else min(claims, key=attrgetter("tolerance"))
 
 
@@ -182,21 +185,23 @@ def with_restated(case: Case, names: Iterable[str]) -> Case:
     """Return the case with such twins of its scenes as one of the methods needs, and its own agreements on them last.
 
     Args:
-        case: with its own methods and claims.
-        names: of methods, as the table knows them.
+        case: Case with its own methods and claims.
+        names: Names of methods in the table.
     """
     twins = {scene.name: twin for scene in case.scenes if (twin := _twin(scene, tuple(names))) is not None}
     if not twins:
         return case
     # A claim about all scenes says nothing of their twins.
-    own = tuple(
+    restricted = tuple(
         replace(claim, scenes=tuple(scene.name for scene in claim.scenes_of(case)))
         if isinstance(claim, Claim)
         else claim
         for claim in case.claims
     )
     new = tuple(twin for claim in case.claims for twin in _on_twins(case, claim, twins))
-    return replace(case, scenes=(*case.scenes, *twins.values()), claims=(*own, *new))
+    compared = {name for claim in new for name in claim.scenes}
+    restated = (twin for twin in twins.values() if twin.name in compared)
+    return replace(case, scenes=(*case.scenes, *restated), claims=(*restricted, *new))
 
 
 def _twin(scene: CaseScene, names: tuple[str, ...]) -> CaseScene | None:
@@ -207,16 +212,16 @@ def _twin(scene: CaseScene, names: tuple[str, ...]) -> CaseScene | None:
     if not any(_only_by_depth(name, problem) for name in names):
         return None
     try:
-        found = build("mdr", {}).solve(problem)
+        path = build("mdr", {}).solve(problem)
     except ContactError:
         return None
-    if not isinstance(found, ContactPath):
+    if not isinstance(path, ContactPath):
         return None
     return replace(
         scene,
         name=f"{scene.name}{SUFFIX}",
         parameters={**scene.parameters, "restated": "depths that MDR finds for the prescribed radii"},
-        scene=problem.replace(loading=IndentationDepths(values=found.indentation_depth)),
+        scene=problem.replace(loading=IndentationDepths(values=path.indentation_depth)),
     )
 
 
@@ -243,11 +248,11 @@ def against(cases: Collection[Case], methods: Collection[str], others: Collectio
     """Return the cases that compare methods at all, each of ``methods`` compared with each of ``others``.
 
     Raises:
-        InvalidInput: if a method is unknown or compared with itself, or if no case compares methods.
+        InvalidInput: If a method is unknown or compared with itself, or if no case compares methods.
     """
     for label in (*methods, *others):
         check_known(label, (use.label for case in cases for use in case.methods))
-    pairs = [(one, other) for other in others for one in methods if one != other]
+    pairs = [(method, other) for other in others for method in methods if method != other]
     if not pairs:
         raise InvalidInput(f"--against {' '.join(others)}: name with --method what is compared with it")
     accuracies = {label: claimed_accuracy(label) for label in registered() if label in (*methods, *others)}
@@ -282,19 +287,20 @@ def _use(case: Case, scene: CaseScene, label: str) -> MethodUse:
 def beside(case: Case, methods: Collection[str], reference: str) -> Case:
     """Return the case with what is claimed of ``methods``, and ``reference`` on the scenes that one of them supports.
 
-    Nothing is claimed of the reference alone. Where no method supports any scene, all are compared: skipped by reason.
+    Nothing is claimed of the reference alone. A scene that no method supports is skipped with their reason.
 
     Args:
-        case: with all these methods.
-        methods: labels of those under test.
-        reference: label of the method that they are compared with.
+        case: Case with all these methods.
+        methods: Labels of the methods under test.
+        reference: Label of the method that they are compared with.
     """
     supported = {scene.name for scene in case.scenes if any(_supports(scene, label) for label in methods)}
-    compared = supported or {scene.name for scene in case.scenes}
-    left = case.only(lambda scene, use: use.label in methods or (use.label == reference and scene.name in compared))
+    restricted = case.only(
+        lambda scene, use: use.label in methods or (use.label == reference and scene.name in supported)
+    )
     uses = tuple(use for use in case.methods if use.label in (*methods, reference))
-    claims = tuple(own for claim in case.claims for own in _about(claim, methods))
-    return replace(left, methods=uses, claims=claims)
+    claims = tuple(kept_claim for claim in case.claims for kept_claim in _about(claim, methods))
+    return replace(restricted, methods=uses, claims=claims)
 
 
 def _supports(scene: CaseScene, label: str) -> bool:

@@ -32,15 +32,15 @@ def residuals(path: ContactPath) -> dict[str, FloatArray]:
     depths = min(a, layer.thickness) * np.array(DEPTHS)
     radius = WIDTH * a
     force = float(path.normal_force[-1])
-    found = {
+    by_law = {
         "force_balance_inside": _force_balance(inside, radius, depths, force),
         "dilatation_inside": _dilatation(path, inside, radius, depths) / (math.pi * a**2 * delta),
         "gradient_law_inside": _gradient_law(inside, 0.5 * a, depths) / mean,
         "surface_inside": _surface(path, inside, a) / mean,
     }
     if not layer.is_half_space:
-        found["base_inside"] = _base(path, inside, a, delta, mean)
-    return found
+        by_law["base_inside"] = _base(path, inside, a, delta, mean)
+    return by_law
 
 
 def _rule(ends: Sequence[float], panels: int = PANELS) -> tuple[FloatArray, FloatArray]:
@@ -104,7 +104,7 @@ def _surface(path: ContactPath, inside: Inside, a: float) -> FloatArray:
 
 def _base(path: ContactPath, inside: Inside, a: float, delta: float, mean: float) -> FloatArray:
     """u_z and u_r on a bonded base, u_z and sigma_rz on an unbonded one, over depth and mean pressure; all are zero."""
-    found = inside.at(a * np.array([0.2, 0.7, 1.2]), path.scene.layer.thickness)
+    fields = inside.at(a * np.array([0.2, 0.7, 1.2]), path.scene.layer.thickness)
     bonded = path.scene.layer.support == "bonded"
-    other = found.radial_displacement / delta if bonded else found.shear_stress / mean
-    return np.concatenate([found.axial_displacement / delta, other])
+    other = fields.radial_displacement / delta if bonded else fields.shear_stress / mean
+    return np.concatenate([fields.axial_displacement / delta, other])

@@ -15,9 +15,9 @@ class RingQuadrature:
     """Gauss nodes on concentric rings.
 
     Attributes:
-        edges: radii between the rings [m], shape (k + 1,).
-        radius: nodes [m], shape (k, n), increasing.
-        weight: weights of the area integral int 2 pi r dr [m^2], same shape.
+        edges: Radii between the rings [m], shape (k + 1,).
+        radius: Nodes [m], shape (k, n), increasing.
+        weight: Weights of the area integral int 2 pi r dr [m^2], same shape.
     """
 
     edges: FloatArray
@@ -48,7 +48,7 @@ def ring_quadrature(edges: Sequence[float], nodes: int = 8) -> RingQuadrature:
     ends of a contact pressure at the edge and at a kink cost no accuracy.
 
     Raises:
-        InvalidInput: unless the edges increase from a radius that is not negative.
+        InvalidInput: Unless the edges increase from a radius that is not negative.
     """
     radii = np.asarray(edges, dtype=np.float64)
     if radii.size < 2 or radii[0] < 0 or not np.all(np.diff(radii) > 0):

@@ -26,11 +26,11 @@ STRESSES = ("radial_stress", "axial_stress", "von_mises")
 
 def recorded(solution: Solution, sampling: Sampling) -> dict[str, Values]:
     """Return the quantities and fields that a run keeps of an answer, by name."""
-    found = quantities(solution, sampling)
+    values = quantities(solution, sampling)
     if isinstance(solution, ContactPath):
-        found |= _pressure(solution, sampling) if sampling.ring_edges else {}
-        found |= dict(_inside(solution, sampling)) if sampling.inside else {}
-    return found
+        values |= _pressure(solution, sampling) if sampling.ring_edges else {}
+        values |= dict(_inside(solution, sampling)) if sampling.inside else {}
+    return values
 
 
 def quantities(solution: Solution, sampling: Sampling) -> dict[str, Values]:

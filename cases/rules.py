@@ -41,7 +41,7 @@ def compared(error: float, stated: float, tolerance: float, *, strict: bool = Fa
         error: E, signed, relative.
         stated: u, what the methods state themselves, relative, not negative.
         tolerance: a requirement, fixed beforehand.
-        strict: whether u counts against a pass: between two methods.
+        strict: Whether u counts against a pass: between two methods.
     """
     positive_tolerance(tolerance)
     if not (math.isfinite(error) and math.isfinite(stated) and stated >= 0):
@@ -60,13 +60,13 @@ def judge_exact(value: float, expected: float, *, scale: float, tolerance: float
     if not (math.isfinite(value) and math.isfinite(expected)):
         return nothing_compared(Status.INVALID, f"value {value}, expected {expected}: both must be finite")
     size = max(abs(expected), scale)
-    error, own = (value - expected) / size, stated / max(abs(value), size)
-    status = compared(error, own, tolerance)
+    error, stated_relative = (value - expected) / size, stated / max(abs(value), size)
+    status = compared(error, stated_relative, tolerance)
     message = f"{value:.10g} against {expected:.10g}: relative error {error:.1e}, tolerance {tolerance:.0e}"
     if status is Status.INCONCLUSIVE:
-        message += f"; stated error {own:.1e}: refine"
-    elif abs(error) > own > 0:
-        message += f"; the stated error {own:.1e} does not cover it"
+        message += f"; stated error {stated_relative:.1e}: refine"
+    elif abs(error) > stated_relative > 0:
+        message += f"; the stated error {stated_relative:.1e} does not cover it"
     return Judgement(status=status, error=error, fraction=abs(error) / tolerance, message=message)
 
 
@@ -74,7 +74,7 @@ def judge_agreement(difference: float, stated: Mapping[str, float], *, tolerance
     """Judge a signed relative difference of two methods with the error that each states, by its label."""
     u = math.hypot(*stated.values()) if stated else 0.0
     status = compared(difference, u, tolerance, strict=True)
-    if status is Status.INVALID or any(own < 0 for own in stated.values()):
+    if status is Status.INVALID or any(error < 0 for error in stated.values()):
         return nothing_compared(Status.INVALID, f"difference {difference} with stated errors {dict(stated)}")
     message = f"relative difference {difference:+.1e}, uncertainty {u:.1e}, tolerance {tolerance:.0e}"
     if status is Status.INCONCLUSIVE:
@@ -126,7 +126,7 @@ def worst_judgement(judgements: Sequence[Judgement]) -> Judgement:
     """Return the judgement that decides: by status, then by fraction of the tolerance.
 
     Raises:
-        InvalidInput: without any judgement; nothing compared is no pass.
+        InvalidInput: Without any judgement; nothing compared is no pass.
     """
     if not judgements:
         raise InvalidInput("a claim compared nothing; give it at least one step, scene and method")
@@ -138,7 +138,7 @@ def positive_tolerance(tolerance: float) -> float:
     """Return the tolerance itself.
 
     Raises:
-        InvalidInput: unless it is positive and finite; a wrong sign or an infinite one would decide every check.
+        InvalidInput: Unless it is positive and finite; a wrong sign or an infinite one would decide every check.
     """
     if not (math.isfinite(tolerance) and tolerance > 0):
         raise InvalidInput(f"a tolerance must be positive and finite, got {tolerance}")

@@ -27,15 +27,15 @@ class Stamp:
 
     Attributes:
         started: UTC, ISO 8601.
-        wall_seconds: duration of the run.
-        revision: commit of the source; "unknown" outside a repository.
-        dirty: whether the working tree had changes.
-        python: version.
-        platform: operating system and machine.
-        processor: model name.
-        cores: processors this run could use.
-        threads: threads of each numerical library really loaded, by name ("openblas 0.3.27 Haswell": 1).
-        versions: of the packages computed with.
+        wall_seconds: Duration of the run.
+        revision: Commit of the source; "unknown" outside a repository.
+        dirty: Whether the working tree had changes.
+        python: Version.
+        platform: Operating system and machine.
+        processor: Model name.
+        cores: Processors this run could use.
+        threads: Threads of each numerical library really loaded, by name ("openblas 0.3.27 Haswell": 1).
+        versions: Versions of the packages computed with.
     """
 
     started: str
@@ -94,8 +94,8 @@ class Run:
     @property
     def statuses(self) -> tuple[Status, ...]:
         """Every status that counts: of verdicts, and of answers on the scenes of cases themselves."""
-        own = (answer.status for answer in self.answers if not answer.variant)
-        return (*own, *(verdict.status for verdict in self.judged.verdicts))
+        of_answers = (answer.status for answer in self.answers if not answer.variant)
+        return (*of_answers, *(verdict.status for verdict in self.judged.verdicts))
 
     @property
     def unjudged(self) -> tuple[str, ...]:
@@ -124,7 +124,7 @@ def read_run(folder: Path) -> Run:
     """Return the run in a folder.
 
     Raises:
-        InvalidInput: in one line, if there is none, or it cannot be read.
+        InvalidInput: If there is none, or it cannot be read, in one line.
     """
     if not (folder / RUN).is_file():
         raise InvalidInput(f"no {RUN} in {folder}; give the directory of a finished run")

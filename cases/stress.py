@@ -60,14 +60,14 @@ class Ladder(Study):
     """No step of a stress test fails silently; where it stops and how many digits are left is recorded.
 
     Attributes:
-        name: of the test, unique.
-        parameter: what is made harder, with its symbol.
-        values: from easy to hard.
-        scene: of a value.
-        quantity: whose last value is followed.
-        setting: of the method that takes the value; "" where the scene alone does.
-        methods: labels of those under test; empty for all of the case.
-        quick: whether the suite ci makes the test, by MDR alone.
+        name: Name of the test, unique.
+        parameter: Name of the parameter that is made harder, with its symbol.
+        values: Values of the parameter from easy to hard.
+        scene: Function that returns the scene of a value.
+        quantity: Quantity whose last value is followed.
+        setting: Setting of the method that takes the value; "" where the scene alone does.
+        methods: Labels of the methods under test; empty for all of the case.
+        quick: Whether the suite ci makes the test, by MDR alone.
     """
 
     kind: ClassVar[str] = "stress test"
@@ -118,8 +118,10 @@ class Ladder(Study):
         A step that is refused does not end the test, so that a hole in the middle is seen.
         """
         for use in self._uses(case):
-            found = [one for task in self._steps(case, use) if (one := answers.get(task.identity)) is not None]
-            if len(found) == len(self.values) and found[0].status is not Status.SKIP:
+            step_answers = [
+                answer for task in self._steps(case, use) if (answer := answers.get(task.identity)) is not None
+            ]
+            if len(step_answers) == len(self.values) and step_answers[0].status is not Status.SKIP:
                 yield StressTest(
                     case=case.name,
                     name=self.name,
@@ -127,7 +129,7 @@ class Ladder(Study):
                     unit="1",
                     method=use.label,
                     quantity=self.quantity,
-                    steps=tuple(map(_step, self.values, found)),
+                    steps=tuple(map(_step, self.values, step_answers)),
                 )
 
 
@@ -172,20 +174,20 @@ def no_silent_failure(test: StressTest) -> Verdict:
 
 def worse_than(test: StressTest, accepted: StressTest) -> list[str]:
     """Return the steps that are worse than accepted: refused, not solved, or with one correct digit less."""
-    taken = {step.value: step for step in test.steps}
-    found = []
+    steps = {step.value: step for step in test.steps}
+    worse = []
     for before in accepted.steps:
         if before.digits is None:
             continue
-        step = taken.get(
+        step = steps.get(
             before.value, Step(value=before.value, status=Status.INVALID, reason="not solved", digits=None)
         )
         place = f"{test.name}, {test.method}, {test.parameter} = {step.value:g}"
         if step.digits is None:
-            found.append(f"{place}: {step.reason or step.status}, but {before.digits:.1f} digits were accepted")
+            worse.append(f"{place}: {step.reason or step.status}, but {before.digits:.1f} digits were accepted")
         elif step.digits < before.digits - 1.0:
-            found.append(f"{place}: {step.digits:.1f} digits, but {before.digits:.1f} were accepted")
-    return found
+            worse.append(f"{place}: {step.digits:.1f} digits, but {before.digits:.1f} were accepted")
+    return worse
 
 
 # -- one step ---------------------------------------------------------------------------------------------------------
@@ -276,13 +278,13 @@ def _one_ulp(name: str, value: Any, draw: np.random.Generator) -> Any:
     if isinstance(value, DepthFunction):
         return value
     steps = draw.integers(-1, 2, np.shape(value))
-    moved = np.where(steps == 0, value, np.nextafter(value, np.where(steps > 0, np.inf, -np.inf)))
+    changed = np.where(steps == 0, value, np.nextafter(value, np.where(steps > 0, np.inf, -np.inf)))
     # Zero has no last place.
-    moved = np.where(np.asarray(value) == 0.0, value, moved)
+    changed = np.where(np.asarray(value) == 0.0, value, changed)
     if name == "poissons_ratio":
         # Exactly incompressible is another problem.
-        return float(min(float(moved), 0.5)) if value != 0.5 else 0.5
-    return moved if isinstance(value, np.ndarray) else float(moved)
+        return float(min(float(changed), 0.5)) if value != 0.5 else 0.5
+    return changed if isinstance(value, np.ndarray) else float(changed)
 
 
 def amid_other_steps(scene: Scene) -> Scene | None:
@@ -300,8 +302,8 @@ def amid_other_steps(scene: Scene) -> Scene | None:
 # -- laws of mechanics: relative residuals, zero for an exact answer of any method -------------------------------------
 def invariant_residuals(method: Method, answer: Solution) -> dict[str, float]:
     """The residual of each law that applies to the answer, by name."""
-    found = {name: law(method, answer) for name, law in LAWS.items()}
-    return {name: residual for name, residual in found.items() if residual is not None}
+    residuals = {name: law(method, answer) for name, law in LAWS.items()}
+    return {name: residual for name, residual in residuals.items() if residual is not None}
 
 
 def stiffer_layer(method: Method, answer: Solution) -> float | None:
@@ -320,8 +322,8 @@ def unbonded_layer_does_not_see_nu(method: Method, answer: Solution) -> float | 
     nu = 0.1 if layer.poissons_ratio > 0.2 else 0.4
     modulus = layer.contact_modulus * (1 - nu**2)
     other = Layer(thickness=layer.thickness, youngs_modulus=modulus, poissons_ratio=nu, support="unbonded")
-    again = method.solve(answer.scene.replace(layer=other))
-    return _distance(values_of(again, "normal_force"), answer.normal_force)
+    other_answer = method.solve(answer.scene.replace(layer=other))
+    return _distance(values_of(other_answer, "normal_force"), answer.normal_force)
 
 
 def pressure_carries_the_load(method: Method, answer: Solution) -> float | None:
@@ -365,8 +367,8 @@ def _pressure_is_known(answer: ContactPath) -> bool:
     return answer.fields is not None and bool(answer.contact_radius[-1] <= reach)
 
 
-def _distance(found: FloatArray, expected: FloatArray) -> float:
-    return float(np.max(np.abs(found - expected)) / np.max(np.abs(expected)))
+def _distance(values: FloatArray, expected: FloatArray) -> float:
+    return float(np.max(np.abs(values - expected)) / np.max(np.abs(expected)))
 
 
 LAWS: Mapping[str, Callable[[Method, Solution], float | None]] = {

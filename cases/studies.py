@@ -25,16 +25,16 @@ class Convergence:
     """A quantity of one scene and method under refinement, finest grid first.
 
     Attributes:
-        refined: what is refined; the formal order belongs to it.
-        kind: monotone, oscillatory, divergent, floor, too-few or spectral.
-        grids: finest first; errors are absolute.
-        scale: size that errors are relative to, unit of the quantity.
+        refined: Family of meshes or setting that is refined; the formal order belongs to it.
+        kind: Monotone, oscillatory, divergent, floor, too-few or spectral.
+        grids: Finest first; errors are absolute.
+        scale: Size that errors are relative to, unit of the quantity.
         formal_order: None of spectral convergence.
         observed_order: None where the class has none.
-        digits: per refinement, of spectral convergence; None otherwise.
-        reference: value at vanishing length; None without one.
-        reference_error: of it, absolute.
-        source: of the reference.
+        digits: Per refinement, of spectral convergence; None otherwise.
+        reference: Value at vanishing length; None without one.
+        reference_error: Absolute error of the reference.
+        source: Method or closed form that gives the reference.
     """
 
     case: str
@@ -59,12 +59,12 @@ class Point:
     """One setting of one method, timed: relative error, bound U = error + error of the reference, median seconds.
 
     Attributes:
-        setting: in words.
+        setting: Setting in words.
         error: None where the setting has no answer; the reason says why.
         bound: U, None as the error.
-        quartiles: of the seconds.
-        cold_seconds: first solution, with nothing kept from earlier ones.
-        on_front: no other setting of any method is at least as accurate and clearly faster.
+        quartiles: Lower and upper quartile of the seconds.
+        cold_seconds: First solution, with nothing kept from earlier ones.
+        on_front: No other setting of any method is at least as accurate and clearly faster.
     """
 
     method: str
@@ -86,9 +86,9 @@ class CostOfAccuracy:
     """Error against seconds of all methods on one scene; errors are relative, nothing is interpolated.
 
     Attributes:
-        reference: what errors are measured against, in words.
-        reference_error: relative, of it.
-        noise: relative spread of repeated times.
+        reference: Name of the reference solution that errors are measured against.
+        reference_error: Relative error of the reference.
+        noise: Relative spread of repeated times.
     """
 
     case: str
@@ -129,10 +129,10 @@ class Effect:
     """Cost of a part of a scene ("Adhesion", "finite thickness"), and change of the answer without it.
 
     Attributes:
-        seconds: processor time of a first solution of the whole scene [s].
-        seconds_without: the same without the part; None where the scene has no answer without it.
-        changes: relative change of each quantity without it, largest over the steps.
-        remark: why there is no answer without it, or "".
+        seconds: Processor time of a first solution of the whole scene [s].
+        seconds_without: Processor time without the part [s]; None where the scene has no answer without it.
+        changes: Relative change of each quantity without the part, largest over the steps.
+        remark: Reason why there is no answer without the part, or "".
     """
 
     case: str

@@ -83,10 +83,10 @@ def read_range(text: str, scene: Scene, *, with_units: bool = False) -> Swept:
     Raises:
         InvalidInput: For what is no such text, or no single number of the scene.
     """
-    found = _FORM.fullmatch(text)
-    if found is None:
+    match = _FORM.fullmatch(text)
+    if match is None:
         raise InvalidInput(f"over {shown(text)}: {_EXAMPLE}")
-    name, start, stop, count, log = found.groups()
+    name, start, stop, count, log = match.groups()
     part, field = place_of(scene, name, "over")
     record = part_of(scene, part)
     if isinstance(getattr(record, field), np.ndarray):

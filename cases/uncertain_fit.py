@@ -21,9 +21,9 @@ class UncertainFit:
     """A fit with its uncertain inputs.
 
     Attributes:
-        fit: at the middle of the inputs; its intervals hold scatter, numerical error and inputs.
-        inputs: each of them.
-        changes: of each parameter per standard deviation of each input, [parameter][input].
+        fit: Fit at the middle of the inputs; its intervals include scatter, numerical error and inputs.
+        inputs: Uncertain inputs.
+        changes: Change of each parameter per standard deviation of each input, [parameter][input].
     """
 
     fit: CurveFit
@@ -43,31 +43,31 @@ def fit_uncertain(
     """Fit as `mdr.curves.fit_curve` does, with the effect of uncertain inputs added to the intervals.
 
     Args:
-        scene: tip and layer; uncertain ranges are replaced by their middles.
-        depth: measured depths [m], shape (n,).
-        force: measured forces [N], shape (n,).
-        uncertain: text as of `read_inputs`, such as "radius=5%, thickness=4e-6..6e-6", or what that gives.
-        parameters: as for `fit_curve`.
-        confidence: of the intervals.
+        scene: Tip and layer; uncertain ranges are replaced by their middles.
+        depth: Measured depths [m], shape (n,).
+        force: Measured forces [N], shape (n,).
+        uncertain: Text as of `read_inputs`, such as "radius=5%, thickness=4e-6..6e-6", or what that gives.
+        parameters: Fitted parameters, as `fit_curve` takes them.
+        confidence: Confidence level of the intervals.
 
     Raises:
-        InvalidInput: for what is no uncertain input of this scene, or is fitted; and as `fit_curve` does.
-        NotConvergedError: if a fit does not converge.
+        InvalidInput: For what is no uncertain input of this scene, or is fitted; and as `fit_curve` does.
+        NotConvergedError: If a fit does not converge.
     """
     inputs = read_inputs(uncertain, scene) if isinstance(uncertain, str) else uncertain
-    fitted = {"youngs_modulus", *parameters} & {one.name.rpartition(".")[2] for one in inputs.inputs}
+    fitted = {"youngs_modulus", *parameters} & {entry.name.rpartition(".")[2] for entry in inputs.inputs}
     if fitted:
         raise InvalidInput(f"uncertain {', '.join(sorted(fitted))}: the fit finds it; name what is held")
 
     def at(deviations: FloatArray) -> CurveFit:
-        moved = inputs.moved(scene, deviations)
-        return fit_curve(moved, depth, force, parameters=parameters, confidence=confidence)
+        changed = inputs.scene_at(scene, deviations)
+        return fit_curve(changed, depth, force, parameters=parameters, confidence=confidence)
 
     middle = at(np.zeros(len(inputs.inputs)))
     pairs = [(at(unit).values, at(-unit).values) for unit in np.eye(len(inputs.inputs))]
     changes = {name: np.array([(up[name] - down[name]) / 2 for up, down in pairs]) for name in middle.values}
     spread = {name: float(inputs.spread(d[:, None])[0]) for name, d in changes.items()}
-    names = [one.name for one in inputs.inputs]
+    names = [entry.name for entry in inputs.inputs]
     return UncertainFit(
         fit=replace(middle, input_error=spread),
         inputs=inputs,

@@ -86,7 +86,7 @@ def changed(item: R, change: Callable[[Record, str, Any], Any]) -> R:
 def _changed_value(item: Record, name: str, value: Any, change: Callable[[Record, str, Any], Any]) -> Any:
     """A number, or the parts of a layer."""
     if isinstance(value, tuple):
-        return tuple(_changed_value(item, name, one, change) for one in value)
+        return tuple(_changed_value(item, name, part, change) for part in value)
     if isinstance(value, str):
         return value
     is_part = isinstance(value, Record) and not isinstance(value, DepthFunction)

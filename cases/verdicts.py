@@ -119,10 +119,10 @@ class Why:
     """Why a claim should be true; stated with the claim, before anything is computed.
 
     Attributes:
-        origin: of the expected number.
-        source: closed form, page and table, or method.
-        because: why the claim should hold.
-        tolerance: how the tolerance was chosen: theory, then a numerical error, then ten times a measured spread; never
+        origin: Origin of the expected number.
+        source: Closed form, page and table, or method.
+        because: Reason why the claim should hold.
+        tolerance: Choice of the tolerance: by theory, then a numerical error, then ten times a measured spread; never
             today's result.
     """
 
@@ -143,23 +143,23 @@ class Verdict:
     """A claim on one scene, judged.
 
     Attributes:
-        case: name of the case.
-        claim: name of the claim, unique within the case.
-        kind: what it compares with.
-        scene: name of the scene, or of the last of the scenes it speaks about.
-        methods: the method, or the two methods compared.
-        quantity: what is compared.
-        status: how it ended; decides the exit code.
-        error: measured relative error or difference, signed, or the observed order; None when nothing was compared.
-        expected: the number compared with; None where there is none.
-        tolerance: largest permitted error, same unit as the error.
-        fraction: error (of agreements: and stated errors) over tolerance, at most 1 passes; None as the error.
-        uncertainty: error that each method states, by its label, same unit as the error.
-        unit: of error, expected and tolerance; "1" where they are relative.
-        why: why it should hold.
-        shared: what both answers rest on; agreement says nothing about that.
-        message: what was seen, one sentence.
-        identity: why the comparison holds by construction, empty where it can fail; identities are not counted.
+        case: Name of the case.
+        claim: Name of the claim, unique within the case.
+        kind: Kind of the comparison.
+        scene: Name of the scene, or of the last of the scenes that the claim is about.
+        methods: Label of the method, or of the two methods compared.
+        quantity: Name of the quantity that is compared.
+        status: End of the comparison; decides the exit code.
+        error: Measured relative error or difference, signed, or the observed order; None when nothing was compared.
+        expected: Number compared with; None where there is none.
+        tolerance: Largest permitted error, same unit as the error.
+        fraction: Error (of agreements: plus stated errors) over tolerance, at most 1 passes; None where the error is.
+        uncertainty: Error that each method states, by its label, same unit as the error.
+        unit: Unit of error, expected and tolerance; "1" where they are relative.
+        why: Reasons of the claim.
+        shared: Names of code and data that both answers use; agreement says nothing about them.
+        message: Result in one sentence.
+        identity: Reason why the comparison holds by construction, empty where it can fail; identities are not counted.
     """
 
     case: str

@@ -9,11 +9,11 @@ from latex2mathml.converter import convert
 from sphinx.util.inspect import stringify_signature
 
 from cases.declare.registry import load_cases
-from reports.book import write_book, write_equations
+from reports.book import write_book
 
 HERE = Path(__file__).parent
 sys.path.insert(0, str(HERE.parent))  # scripts of the gallery import their common parts
-from docs.written import write_accuracy, write_case_figure, write_commands, write_tasks
+from docs.written import write_accuracy, write_case_figure, write_commands, write_equations, write_tasks
 
 write_book(load_cases().values(), HERE / "book")
 for case in load_cases():

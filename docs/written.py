@@ -3,25 +3,27 @@
 Accuracy and figures come from the accepted answers in `baselines/`; nothing is copied by hand.
 """
 
+import argparse
 import json
 import re
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from statistics import median
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from matplotlib.figure import Figure
-from typer.main import get_command
 
 from contact import load_scene
 from mdr import Mdr
-from reports.command_line import EXIT_CODES, app
+from reports.command_line import COMMANDS, EXIT_CODES, command_parser
 from reports.pictures import between, solution_figure
 from reports.style import figure_style, look_of, mark_decades, svg_text
 from reports.words import display_name
 
 ROOT = Path(__file__).resolve().parents[1]
+SOLVERS = ("contact", "bem", "mdr", "fem_reference")
+CITED = re.compile(r"Eqs?\. \((\d+)\)(?: to \((\d+)\))?(?:, \((\d+)\))?")
 # Differences below are drawn here: double precision has sixteen digits.
 SMALLEST = 1e-16
 
@@ -29,31 +31,31 @@ SMALLEST = 1e-16
 def write_commands(folder: Path) -> None:
     """Write a page per command, and their list."""
     folder.mkdir(parents=True, exist_ok=True)
-    commands = get_command(app).commands
-    for name, command in commands.items():
-        (folder / f"{name}.md").write_text(command_page(name, command), encoding="utf-8")
-    entries = "\n".join(f"| [{name}]({name}.md) | {_first(one.help)} |" for name, one in commands.items())
-    contents = "\n".join(commands)
+    parsers = {name: command_parser(name) for name in COMMANDS}
+    for name, parser in parsers.items():
+        (folder / f"{name}.md").write_text(command_page(name, parser), encoding="utf-8")
+    entries = "\n".join(f"| [{name}]({name}.md) | {_first(one.description)} |" for name, one in parsers.items())
+    contents = "\n".join(parsers)
     text = f"# Commands\n\n| command | what it does |\n|---|---|\n{entries}\n\n{EXIT_CODES}\n"
     (folder / "index.md").write_text(f"{text}\n```{{toctree}}\n:hidden:\n\n{contents}\n```\n", encoding="utf-8")
 
 
-def command_page(name: str, command: Any) -> str:
+def command_page(name: str, parser: argparse.ArgumentParser) -> str:
     """The help of one command as Markdown."""
-    required = [one for one in command.params if one.param_type_name == "argument"]
-    usage = " ".join(one.metavar or one.name.upper() for one in required)
-    rows = "\n".join(f"{_parameter(one)}\n: {_cell(one.help)}{_default(one)}\n" for one in command.params)
+    actions = parser._actions
+    usage = " ".join(str(one.metavar) for one in actions if not one.option_strings)
+    rows = "\n".join(f"{_parameter(one)}\n: {_cell((one.help or '').replace('%%', '%'))}\n" for one in actions)
     return (
-        f"# {name}\n\n{_text(command.help)}\n\n```text\ncontact-verify {name} {usage} [options]\n```\n\n"
+        f"# {name}\n\n{_text(parser.description)}\n\n```text\ncontact-verify {name} {usage} [options]\n```\n\n"
         f"{rows}\n{EXIT_CODES}\n"
     )
 
 
-def _text(text: str) -> str:
-    return (text or "").replace("\b", "").replace("\f", "").strip().replace("<", "&lt;")
+def _text(text: str | None) -> str:
+    return (text or "").strip().replace("<", "&lt;")
 
 
-def _first(text: str) -> str:
+def _first(text: str | None) -> str:
     return _cell(_text(text).split("\n\n")[0])
 
 
@@ -61,15 +63,8 @@ def _cell(text: str) -> str:
     return re.sub(r"(?<![\w`-])--[a-z-]+", r"`\g<0>`", " ".join(_text(text).split()).replace("|", "&#124;"))
 
 
-def _parameter(one: Any) -> str:
-    if one.param_type_name == "argument":
-        return f"`{one.metavar or one.name.upper()}`"
-    return ", ".join(f"`{name}`" for name in [*one.opts, *one.secondary_opts])
-
-
-def _default(one: Any) -> str:
-    shown = one.default not in (None, False, "", [], ()) and not callable(one.default) and not one.required
-    return f" Default: {one.default}." if shown and one.param_type_name == "option" else ""
+def _parameter(one: argparse.Action) -> str:
+    return ", ".join(f"`{name}`" for name in one.option_strings or [one.metavar])
 
 
 def write_tasks(folder: Path) -> None:
@@ -101,6 +96,28 @@ def _picture(file: Path, folder: Path) -> str:
         drawn = solution_figure(answer, None if finer is None else method.solve(finer))
         (folder / f"{file.stem}.svg").write_text(svg_text(drawn, key=file.stem), encoding="utf-8")
     return f"![{file.stem.replace('_', ' ')}]({file.stem}.svg)"
+
+
+def write_equations(root: Path, page: Path) -> None:
+    """Write the table of equations of the paper and the modules under `root` that cite them."""
+    page.parent.mkdir(parents=True, exist_ok=True)
+    modules: dict[int, dict[str, None]] = {}
+    for package in SOLVERS:
+        for path in sorted((root / package).rglob("*.py")):
+            for number in _cited(path.read_text(encoding="utf-8")):
+                modules.setdefault(number, {})[path.relative_to(root).as_posix()] = None
+    rows = "".join(
+        f"| ({number}) | {', '.join(f'`{file}`' for file in modules[number])} |\n" for number in sorted(modules)
+    )
+    page.write_text(f"| equation | modules |\n|---|---|\n{rows}", encoding="utf-8")
+
+
+def _cited(text: str) -> set[int]:
+    """The numbers of the equations that a text cites; "(36) to (38)" names three."""
+    numbers: set[int] = set()
+    for first, last, other in CITED.findall(text):
+        numbers |= set(range(int(first), int(last or first) + 1)) | ({int(other)} if other else set())
+    return numbers
 
 
 class Compared(NamedTuple):

@@ -33,17 +33,16 @@ from contact.records.validation import FloatArray
 from contact.scene.extent import radius_of_elongation
 from contact.stated import stated_error
 from mdr.admissible import is_touched_nowhere, refuse_touching_outside
-from mdr.contact_surface import Surface, surface_of
+from mdr.contact_surface import surface_of
 from mdr.equilibria import (
     CHECKED,
     PathFields,
     StatedError,
-    compared_displacement,
-    compared_pressure,
+    displacement_error,
     is_simple,
+    pressure_error,
     solve_elastic,
     springs_of,
-    surface_pair,
 )
 from mdr.radius_search import RadiusSearch, growing_radii, refuse_too_wide
 from mdr.spring_bed import Springs
@@ -278,20 +277,19 @@ def _field_errors(contacts: Adhesive, found: Triple, a_error: FloatArray) -> dic
     scale = float((load / (np.pi * radius**2)).max())
     steps = sorted({int(radius.argmin()), int(radius.argmax())})
 
-    def pair(step: int) -> list[Surface]:
-        return surface_pair(springs, float(radius[step]), float(depth[step]), is_singular=True)
+    def pressure() -> float:
+        states = [(float(radius[step]), float(depth[step])) for step in steps]
+        return max(pressure_error(springs, a, d, scale, is_singular=True) for a, d in states)
 
     def displacement() -> float:
-        widest = int(radius.argmax())
-        return compared_displacement(pair(widest)) * float(abs(depth[widest])) / size
+        a, d = float(radius.max()), float(depth[radius.argmax()])
+        return displacement_error(springs, a, d, is_singular=True) * abs(d) / size
 
     terms = values.g + np.abs(values.g - depth)
     near_edge = 2 / np.pi * np.abs(values.g - depth) * np.sqrt(2 * a_error * radius.max() / radius)
     size = max(float(np.abs(depth).max()), 1e-300)
     spread = 2 * springs.modulus * values.K * terms / (np.pi * radius**2) / scale
     return {
-        "pressure": lambda: (
-            max(compared_pressure(pair(step), scale) for step in steps) + (floor + a_error) * np.maximum(spread, 1.0)
-        ),
+        "pressure": lambda: pressure() + (floor + a_error) * np.maximum(spread, 1.0),
         "surface_displacement": lambda: displacement() + (floor * terms + near_edge) / size,
     }

@@ -7,6 +7,7 @@ computed for one full circle wrong, so they are refused.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from itertools import pairwise
 
 import numpy as np
@@ -24,8 +25,9 @@ _RADII = 40
 _DISTANCES = np.geomspace(0.02, 30.0, 14)
 # Breaks with such neighbourhoods; measured profiles have more, without sharp kinks.
 _MOST_BREAKS = 6
-# A contact pulls where its pressure is below minus this share of the mean. Roundings in the centre reach 1e-9.
-_LEAST_TENSION = 1e-7
+# A contact pulls where its pressure is below minus this share of the mean and below its stated error. Roundings in the
+# centre, which no stated error contains, reach 1e-9.
+_LEAST_TENSION = 1e-8
 # Overlap outside, relative to the depth, that is an error of the displacement.
 _OVERLAP = 1e-9
 
@@ -50,8 +52,13 @@ class PullingContact(UnsupportedSceneError):
         )
 
 
-def refuse_pulling(surface: Surface, force: float) -> None:
-    """Refuse a contact under a force [N] whose pressure is negative somewhere.
+def refuse_pulling(surface: Surface, mean: float, error: Callable[[], float]) -> None:
+    """Refuse a contact whose pressure is negative somewhere, by more than its stated error.
+
+    Args:
+        surface: The contact.
+        mean: Its mean pressure [Pa].
+        error: Computes the stated error of the pressure over the mean one.
 
     Raises:
         PullingContact: With the contact radius, the place and the size of the largest tension.
@@ -60,7 +67,6 @@ def refuse_pulling(surface: Surface, force: float) -> None:
     density = surface.density(a * np.linspace(0, 1, 81)[1:-1])
     if surface.tip.is_convex and surface.edge >= 0 and (np.diff(density) <= 0).all() and density[-1] >= surface.edge:
         return  # then p is an integral of positive terms
-    mean = force / (np.pi * a * a)
     radius = _radii(surface)
     pressure = surface.pressure(radius)
     low = 1 + np.flatnonzero((pressure[1:-1] <= pressure[:-2]) & (pressure[1:-1] <= pressure[2:]))
@@ -71,7 +77,7 @@ def refuse_pulling(surface: Surface, force: float) -> None:
         close = np.concatenate([(radius[low, None] + gap[:, None] * share).ravel() for gap in gaps])
         radius, pressure = np.append(radius, close), np.append(pressure, surface.pressure(close))
     lowest = int(pressure.argmin())
-    if pressure[lowest] < -_LEAST_TENSION * mean:
+    if pressure[lowest] < -_LEAST_TENSION * mean and pressure[lowest] < -error() * mean:
         raise PullingContact(a, float(radius[lowest]), -float(pressure[lowest]), mean)
 
 

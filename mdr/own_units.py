@@ -42,20 +42,19 @@ def is_power_law(indenter: Profile) -> bool:
     return isinstance(tip_of(indenter), PowerTip)
 
 
-def own_units(layer: ElasticLayer, indenter: Profile, length: float = 1.0) -> OwnUnits:
+def own_units(layer: ElasticLayer, indenter: Profile) -> OwnUnits:
     """A power law's problem in its own units.
 
     Args:
         layer: Layer, stack or half-space.
         indenter: Power law.
-        length: Unit of length [m] on the half-space, which has none of its own.
 
     Raises:
         TypeError: If the indenter is no power law.
     """
     if not is_power_law(indenter):
         raise TypeError(f"{type(indenter).__name__} is no power law")
-    length = length if layer.is_half_space else layer.thickness
+    length = 1.0 if layer.is_half_space else layer.thickness
     depth, stiffness = float(indenter.height(np.array([length]))[0]), contact_modulus(layer) * length
     return OwnUnits(layer.in_own_units(), _unit_power(tip_of(indenter).exponent), length, depth, stiffness)
 

@@ -93,7 +93,7 @@ def refuse_too_wide(springs: Springs, radius: float) -> None:
         )
     profile = springs.tip.profile
     if profile.ends_upright and radius * (1 + 4 * EPS) >= profile.max_radius:
-        raise InvalidInput(f"contact radius = {radius:g} m: {profile.upright_end}; stay a little below")
+        raise InvalidInput(f"contact radius = {radius:g} m: {profile.UPRIGHT_END}; stay a little below")
 
 
 class RadiusSearch:
@@ -225,7 +225,7 @@ class RadiusSearch:
                 "up to which contacts are answered; press less"
             )
         if profile.ends_upright:
-            raise InvalidInput(f"loading.values = {wanted:g}: {profile.upright_end}; press less")
+            raise InvalidInput(f"loading.values = {wanted:g}: {profile.UPRIGHT_END}; press less")
         raise InvalidInput(
             f"loading.values = {wanted:g}: the indenter ends at a radius of {profile.max_radius:g} m, where "
             f"{reached:g} is reached; ask for less or describe the indenter further out"

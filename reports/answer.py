@@ -67,7 +67,7 @@ def solution_table(solution: Solution) -> Table:
 
 
 def _digits(rows: Iterable[tuple[str, ...]]) -> str:
-    """Which digits of a table are right."""
+    """Sentence about the digits of a table that are right."""
     return BRACKETS if any("(" in cell for row in rows for cell in row) else "All digits printed are right."
 
 
@@ -115,7 +115,7 @@ def difference_table(solution: Solution, other: Solution) -> Table:
     """The largest difference of each quantity of two answers to one scene, and the errors that both state.
 
     Raises:
-        InvalidInput: if the answers are of another kind or have other states.
+        InvalidInput: If the answers are of another kind or have other states.
     """
     if type(other) is not type(solution) or len(other) != len(solution):
         raise InvalidInput(
@@ -144,7 +144,7 @@ def critical_facts(solution: Solution) -> list[tuple[str, str]]:
 
 
 def solution_notes(solution: Solution) -> list[tuple[str, str]]:
-    """What to know before the numbers: a warning of deep contacts, and notes that no `validity` line replaces."""
+    """Notes to read before the numbers: a warning of deep contacts, and notes that no `validity` line replaces."""
     warning = depth_note(solution.scene, depths_of(solution))
     replaced: tuple[str, ...] = ()
     if isinstance(solution.scene.layer, Layer) and isinstance(solution, ContactPath):
@@ -193,39 +193,39 @@ def _stage(stage: StageRecord) -> str:
 TOGETHER = 0.5
 
 
-def propagated_table(found: "Propagated") -> Table:
+def propagated_table(propagated: "Propagated") -> Table:
     """Value, numerical error, uncertainty by the inputs and what each input contributes, of the last step."""
-    names = list(found.quantities[0].by_input) if found.quantities else []
-    words = [quantity_words(one.name) for one in found.quantities]
+    names = list(propagated.quantities[0].by_input) if propagated.quantities else []
+    words = [quantity_words(quantity.name) for quantity in propagated.quantities]
     note = "Standard uncertainty by the inputs at the last step, beside the error of the method; "
-    note += f"{found.solved} scenes solved{'' if names else ', by samples'}."
-    if bent := [word for word, one in zip(words, found.quantities, strict=True) if one.bends]:
+    note += f"{propagated.solved} scenes solved{'' if names else ', by samples'}."
+    if bent := [word for word, quantity in zip(words, propagated.quantities, strict=True) if quantity.bends]:
         note += f" Not linear over these uncertainties: {', '.join(bent)}; --samples takes the whole of it."
-    pairs = [(words[i], words[j], float(found.correlation[i, j])) for j in range(len(words)) for i in range(j)]
+    pairs = [(words[i], words[j], float(propagated.correlation[i, j])) for j in range(len(words)) for i in range(j)]
     if together := [f"{a} and {b} ({share:+.2f})" for a, b, share in pairs if abs(share) >= TOGETHER]:
         note += f" Correlated: {', '.join(together)}."
     heads = ("quantity", "value", "numerical error", "by inputs", "relative", *names)
-    rows = tuple(_row(one, names) for one in found.quantities)
+    rows = tuple(_row(quantity, names) for quantity in propagated.quantities)
     return Table(title="Uncertain inputs", note=note, heads=heads, rows=rows)
 
 
-def _row(one: "PropagatedQuantity", names: list[str]) -> tuple[str, ...]:
-    value, spread = float(one.values[-1]), float(one.inputs[-1])
-    factor, unit = scaled_unit(value, one.unit)
+def _row(quantity: "PropagatedQuantity", names: list[str]) -> tuple[str, ...]:
+    value, spread = float(quantity.values[-1]), float(quantity.inputs[-1])
+    factor, unit = scaled_unit(value, quantity.unit)
     size = abs(value) or 1.0
     return (
-        quantity_words(one.name),
+        quantity_words(quantity.name),
         f"{measured(value / factor, spread / factor) if spread else f'{value / factor:.6g}'} {unit}".strip(),
-        "(?)" if one.numerical is None else small(float(one.numerical[-1]) / size),
+        "(?)" if quantity.numerical is None else small(float(quantity.numerical[-1]) / size),
         f"{small(spread / factor)} {unit}".strip(),
         f"{100 * spread / size:.2g} %",
-        *(f"{100 * float(one.by_input[name][-1]) / size:+.2g} %" for name in names),
+        *(f"{100 * float(quantity.by_input[name][-1]) / size:+.2g} %" for name in names),
     )
 
 
-def sweep_table(found: "Sweep") -> Table:
+def sweep_table(sweep: "Sweep") -> Table:
     """At most ten rows, one per state; quantities with their uncertainty in brackets."""
-    columns, texts = found.columns, {}
+    columns, texts = sweep.columns, {}
     for head, values in columns.items():
         if "_uncertainty" not in head:
             name, bracket, unit = head.partition(" [")
@@ -237,5 +237,5 @@ def sweep_table(found: "Sweep") -> Table:
     every = list(zip(*texts.values(), strict=True))
     shown, where = _shown_rows(len(every), "rows")
     rows = tuple(every[row] for row in shown)
-    title = f"Over {quantity_words(found.swept.name)}"
+    title = f"Over {quantity_words(sweep.swept.name)}"
     return Table(title=title, note=f"{where}{_digits(rows)}", heads=tuple(texts), rows=rows, words=0)

@@ -1,6 +1,5 @@
-"""Pages of the documentation that are written from the project: a page a case, and where each equation stands."""
+"""Pages of the documentation that are written from the cases, one per case, and the tables of a case in words."""
 
-import re
 from collections.abc import Iterable
 from pathlib import Path
 
@@ -9,13 +8,10 @@ from cases.claims import Claim, Study
 from contact.files.whole import write_whole
 from reports.words import Table, display_name, file_name, small
 
-SOLVERS = ("contact", "bem", "mdr", "fem_reference")
-CITED = re.compile(r"Eqs?\. \((\d+)\)(?: to \((\d+)\))?(?:, \((\d+)\))?")
-
 HEAD = """\
 # Verification book
 
-One page a case: the question, the scenes, what is claimed and why. Nothing is computed for these pages: they come
+One page per case: the question, the scenes, what is claimed and why. Nothing is computed for these pages: they come
 from the declarations of the cases.
 
 ```{toctree}
@@ -46,26 +42,6 @@ def _section(table: Table) -> str:
     lines = [table.heads, ["---"] * len(table.heads), *table.rows]
     body = "".join(f"| {' | '.join(cell.replace('|', '&#124;') for cell in line)} |\n" for line in lines)
     return f"## {table.title}\n\n{body}\n{table.note}".rstrip()
-
-
-def write_equations(root: Path, page: Path) -> None:
-    """Write the table of equations of the paper and the modules under `root` that cite them."""
-    page.parent.mkdir(parents=True, exist_ok=True)
-    found: dict[int, dict[str, None]] = {}
-    for package in SOLVERS:
-        for path in sorted((root / package).rglob("*.py")):
-            for number in _cited(path.read_text(encoding="utf-8")):
-                found.setdefault(number, {})[path.relative_to(root).as_posix()] = None
-    rows = "".join(f"| ({number}) | {', '.join(f'`{file}`' for file in found[number])} |\n" for number in sorted(found))
-    write_whole(page, f"| equation | modules |\n|---|---|\n{rows}")
-
-
-def _cited(text: str) -> set[int]:
-    """The numbers of the equations that a text cites; "(36) to (38)" names three."""
-    numbers: set[int] = set()
-    for first, last, other in CITED.findall(text):
-        numbers |= set(range(int(first), int(last or first) + 1)) | ({int(other)} if other else set())
-    return numbers
 
 
 def scene_table(case: Case) -> Table:

@@ -48,13 +48,13 @@ def summary_text(run: Run, *, largest: int = LARGEST) -> str:
     text += "".join(f"{_escaped(sentence)}\n\n" for sentence in causes(run))
     matrix = _markdown(matrix_table(run)) if run.statuses else ""
     text += matrix * (2 * len(matrix.encode()) <= largest)
-    found = findings(run)
-    if not found:
+    rows = findings(run)
+    if not rows:
         return text + "Every check ran and passed.\n"
     text += _head(HEADS)
-    for number, row in enumerate(map(_row, found)):
+    for number, row in enumerate(map(_row, rows)):
         if len((text + row).encode()) > largest - 200:
-            return text + f"\n{len(found) - number} further rows are on the page of the report.\n"
+            return text + f"\n{len(rows) - number} further rows are on the page of the report.\n"
         text += row
     return text
 
@@ -92,14 +92,14 @@ def _measured(finding: Finding) -> str:
 def _escaped(text: str) -> str:
     """Text that shows as it stands: it ends no table cell and is neither HTML nor Markdown."""
     plain = html.escape(printable(" ".join(text.split())), quote=False)
-    return MARKDOWN.sub(lambda found: f"&#{ord(found[0])};", plain).replace("|", "\\|")
+    return MARKDOWN.sub(lambda match: f"&#{ord(match[0])};", plain).replace("|", "\\|")
 
 
 def annotation_lines(run: Run) -> list[str]:
     """The worst findings, one line each; when there are more than nine, the ninth line counts the others."""
-    failed = [one for one in findings(run) if one.tone == "bad"]
+    failed = [finding for finding in findings(run) if finding.tone == "bad"]
     shown = failed if len(failed) <= MOST else failed[: MOST - 1]
-    lines = [_annotation(f"{one.word} {one.sentence}", one.message) for one in shown]
+    lines = [_annotation(f"{finding.word} {finding.sentence}", finding.message) for finding in shown]
     rest = len(failed) - len(shown)
     return [*lines, _annotation("more failures", f"{rest} more failures: see summary.md")] if rest else lines
 

@@ -1,11 +1,11 @@
-"""Two runs side by side, the second against the first: checks that end otherwise and numbers that moved."""
+"""Two runs side by side, the second against the first: claims that ended otherwise, and numbers that changed."""
 
 from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
 
-from cases.answers import Answer, Values
+from cases.answers import Answer
 from cases.runs import Run
 from cases.verdicts import Kind, Origin, Status, Verdict, Why
 from reports.findings import WORST_FIRST
@@ -22,12 +22,12 @@ WHY = Why(
 def changed_claims(first: Run, second: Run) -> list[Verdict]:
     """The verdicts of the second run that the first one has otherwise or not at all."""
     before = {(v.case, v.claim, v.scene, v.methods): v for v in first.judged.verdicts}
-    found = []
-    for v in second.judged.verdicts:
-        old = before.get((v.case, v.claim, v.scene, v.methods))
-        if old is None or old.status is not v.status:
-            found.append(replace(v, message=f"{old.word if old else 'absent'} in the first run; {v.message}"))
-    return found
+    pairs = [(v, before.get((v.case, v.claim, v.scene, v.methods))) for v in second.judged.verdicts]
+    return [
+        replace(verdict, message=f"{old.word if old else 'absent'} in the first run; {verdict.message}")
+        for verdict, old in pairs
+        if old is None or old.status is not verdict.status
+    ]
 
 
 def changed_numbers(first: Run, second: Run) -> list[Verdict]:
@@ -35,62 +35,61 @@ def changed_numbers(first: Run, second: Run) -> list[Verdict]:
 
     Where each run has a single, different method for a scene, the two methods are compared.
     """
-    found: list[Verdict] = []
+    verdicts: list[Verdict] = []
     for scene in dict.fromkeys((a.case, a.scene) for run in (first, second) for a in run.answers if not a.variant):
-        one, other = (
+        before, after = (
             {a.method: a for a in run.answers if (a.case, a.scene) == scene and a.solved and not a.variant}
             for run in (first, second)
         )
-        if len(one) == len(other) == 1:
-            pairs = [(next(iter(one.values())), next(iter(other.values())))]
-        else:
-            pairs = [(one[method], other[method]) for method in one if method in other]
-            alone = [answer for method, answer in (one | other).items() if (method in one) is not (method in other)]
-            found += [_verdict(a, a, "answer", Status.INCOMPARABLE, "only one of the runs has it") for a in alone]
-        for a, b in pairs:
-            found += _compared(a, b)
-    return found
+        if len(before) == len(after) == 1:
+            after = dict(zip(before, after.values(), strict=True))
+        for method in dict.fromkeys([*before, *after]):
+            verdicts += _compared(before.get(method), after.get(method))
+    return verdicts
 
 
-def _compared(one: Answer, other: Answer) -> Iterator[Verdict]:
-    for name in dict.fromkeys([*one.quantities, *other.quantities]):
-        a, b = one.quantities.get(name), other.quantities.get(name)
+def _compared(old: Answer | None, new: Answer | None) -> Iterator[Verdict]:
+    """One verdict per quantity: at the step where it changed most, over its scale."""
+    if old is None or new is None:
+        if answer := old or new:
+            yield _verdict(answer, answer, "answer", Status.INCOMPARABLE, "only one of the runs has it")
+        return
+    for name in dict.fromkeys([*old.quantities, *new.quantities]):
+        a, b = old.quantities.get(name), new.quantities.get(name)
         if a is None or b is None or len(a.values) != len(b.values) or a.unit != b.unit:
-            yield _verdict(one, other, name, Status.INCOMPARABLE, "missing, or of another length or unit")
+            yield _verdict(old, new, name, Status.INCOMPARABLE, "missing, or of another length or unit")
         elif a.values and not a.at:
-            yield _moved(one, other, name, a, b)
-
-
-def _moved(one: Answer, other: Answer, name: str, a: Values, b: Values) -> Verdict:
-    """The step where a quantity moved most, over its scale."""
-    moves = (np.array(b.values) - np.array(a.values)) / a.scale
-    step = int(np.argmax(np.abs(moves)))
-    stated = float(np.hypot(a.error[step], b.error[step])) / a.scale if a.error and b.error else None
-    move = float(moves[step])
-    if stated is None:
-        status = Status.INCONCLUSIVE if move else Status.PASS
-    else:
-        status = Status.DIFF if abs(move) > stated else Status.PASS
-    words = f"{b.values[step]:.17g} {b.unit}, was {a.values[step]:.17g}"
-    return _verdict(one, other, name, status, words, move, stated)
+            changes = (np.array(b.values) - np.array(a.values)) / a.scale
+            step = int(np.argmax(np.abs(changes)))
+            change = float(changes[step])
+            stated = float(np.hypot(a.error[step], b.error[step])) / a.scale if a.error and b.error else None
+            beyond = Status.INCONCLUSIVE if stated is None else Status.DIFF
+            status = beyond if abs(change) > (stated or 0.0) else Status.PASS
+            message = f"{b.values[step]:.17g} {b.unit}, was {a.values[step]:.17g}"
+            yield _verdict(old, new, name, status, message, change=change, stated=stated)
 
 
 def _verdict(
-    one: Answer, other: Answer, quantity: str, status: Status, message: str, *numbers: float | None
+    old: Answer,
+    new: Answer,
+    quantity: str,
+    status: Status,
+    message: str,
+    *,
+    change: float | None = None,
+    stated: float | None = None,
 ) -> Verdict:
-    move, stated = numbers or (None, None)
-    tolerance = stated or 5e-324
     return Verdict(
-        case=one.case,
+        case=old.case,
         claim=f"{quantity_words(quantity)} of both runs",
         kind=Kind.REGRESSION,
-        scene=one.scene,
-        methods=tuple(dict.fromkeys((one.method, other.method))),
+        scene=old.scene,
+        methods=tuple(dict.fromkeys((old.method, new.method))),
         quantity=quantity,
         status=status,
-        error=move,
-        tolerance=tolerance,
-        fraction=None if move is None or stated is None or not stated else abs(move) / tolerance,
+        error=change,
+        tolerance=stated or 5e-324,
+        fraction=abs(change) / stated if change is not None and stated else None,
         why=WHY,
         message=message,
     )
@@ -106,10 +105,10 @@ def headline(claims: list[Verdict], numbers: list[Verdict]) -> tuple[str, str]:
     tone = "bad" if worse or beyond else "warn" if claims else "good"
     if all(v.error == 0.0 for v in numbers):
         return f"{checks}all {len(numbers)} numbers identical", tone
-    return f"{checks}{beyond} of {len(numbers)} numbers moved beyond their stated errors", tone
+    return f"{checks}{beyond} of {len(numbers)} numbers changed beyond their stated errors", tone
 
 
 def worst_first(verdicts: list[Verdict]) -> list[Verdict]:
-    """What did not pass or moved, the worst and the furthest first."""
-    moved = (v for v in verdicts if v.status is not Status.PASS or v.kind is not Kind.REGRESSION or v.error)
-    return sorted(moved, key=lambda v: (WORST_FIRST.index(v.status), -abs(v.error or 0.0)))
+    """The verdicts that did not pass and the numbers that changed, the worst and the largest changes first."""
+    changed = (v for v in verdicts if v.status is not Status.PASS or v.kind is not Kind.REGRESSION or v.error)
+    return sorted(changed, key=lambda v: (WORST_FIRST.index(v.status), -abs(v.error or 0.0)))

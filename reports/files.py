@@ -17,7 +17,7 @@ def check_outputs(paths: Sequence[Path], endings: Mapping[str, str]) -> None:
     """Refuse files that cannot be written, before anything is solved.
 
     Args:
-        paths: Of `--write`.
+        paths: Files that `--write` names.
         endings: Known endings with the names of their formats.
 
     Raises:

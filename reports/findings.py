@@ -51,10 +51,10 @@ PLACES = (
 
 def grouped(items: Iterable[T], key: Callable[[T], K]) -> dict[K, list[T]]:
     """The items by key, both in the order in which they come."""
-    found: dict[K, list[T]] = {}
+    groups: dict[K, list[T]] = {}
     for item in items:
-        found.setdefault(key(item), []).append(item)
-    return found
+        groups.setdefault(key(item), []).append(item)
+    return groups
 
 
 def tone_of(status: Status) -> str:
@@ -82,11 +82,11 @@ def who(methods: Iterable[str], between: str = " – ") -> str:
 def in_words(message: str) -> str:
     """A message with short powers of ten and non-finite numbers in words, so that a search finds stray ones."""
     names = {"nan": "not-a-number", "inf": "infinity"}
-    return re.sub(r"(?<![\w-])([-+]?)(nan|inf)\b", lambda found: found[1] + names[found[2]], short_exponents(message))
+    return re.sub(r"(?<![\w-])([-+]?)(nan|inf)\b", lambda match: match[1] + names[match[2]], short_exponents(message))
 
 
 def observed_text(verdict: Verdict) -> str:
-    """What was measured, with the error that each method states; errors and residuals have two digits."""
+    """Measured error or difference, with the error that each method states; errors and residuals have two digits."""
     unit = "" if verdict.unit == "1" else f" {verdict.unit}"
     if verdict.error is None:
         return NOT_FINITE if verdict.status is Status.INVALID else "not compared"
@@ -122,17 +122,17 @@ class Finding:
     """A claim that ended alike on several scenes, or one reason why a method gave no answers.
 
     Attributes:
-        status: how it ended.
-        word: the same for readers.
-        case: name, or how many cases.
-        claim: name of the claim; "no answer" or "not modelled" of answers.
-        methods: that took part.
-        scenes: on which it ended so.
-        total: number of scenes that the claim speaks about.
-        size: the relative errors in words, "+1.0e-3 each".
-        fraction: largest error over tolerance.
-        worst: the worst verdict; None of answers.
-        message: what was seen at the worst scene, or the reason.
+        status: Status of the verdicts or answers.
+        word: Word for the status that readers see.
+        case: Name of the case, or the number of cases.
+        claim: Name of the claim; "no answer" or "not modelled" for answers.
+        methods: Methods that took part.
+        scenes: Scenes with this status.
+        total: Number of scenes that the claim speaks about.
+        size: Relative errors in words, "+1.0e-3 each".
+        fraction: Largest error over tolerance.
+        worst: Worst verdict; None for answers.
+        message: Observation at the worst scene, or the reason.
     """
 
     status: Status
@@ -167,42 +167,42 @@ class Finding:
 def findings(run: Run, verdicts: Collection[Verdict] | None = None) -> list[Finding]:
     """All that did not pass, grouped, worst first; of some verdicts only if they are given."""
     answers = _unanswered(run) if verdicts is None else []
-    found = [_of_answers(same) for same in grouped(answers, _reason).values()]
+    result = [_of_answers(same) for same in grouped(answers, _reason).values()]
     chosen = run.judged.verdicts if verdicts is None else verdicts
     for same in grouped((v for v in chosen if v.status is not Status.SKIP), _claim).values():
         by_status = grouped((v for v in same if v.status is not Status.PASS), lambda v: v.status)
-        found += [_of_verdicts(alike, len(same)) for alike in by_status.values()]
+        result += [_of_verdicts(alike, len(same)) for alike in by_status.values()]
     # Each reason of a skip once: what a method does not model is not compared either.
-    known = {one.message for one in found}
+    known = {finding.message for finding in result}
     skipped = grouped((v for v in chosen if v.status is Status.SKIP), _skip_reason)
-    found += [
+    result += [
         _finding(same, "not compared", reason, methods=dict.fromkeys(method for v in same for method in v.methods))
         for reason, same in skipped.items()
         if reason not in known
     ]
-    return sorted(found, key=lambda one: (WORST_FIRST.index(one.status), -one.fraction))
+    return sorted(result, key=lambda finding: (WORST_FIRST.index(finding.status), -finding.fraction))
 
 
 def _finding(
     same: Sequence[Verdict | Answer], claim: str, message: str, *, methods: Iterable[str], **more: Any
 ) -> Finding:
     """The finding of verdicts or answers that ended alike."""
-    cases = list(dict.fromkeys(one.case for one in same))
+    cases = list(dict.fromkeys(record.case for record in same))
     return Finding(
         status=same[0].status,
         case=cases[0] if len(cases) == 1 else f"{len(cases)} cases",
         claim=claim,
         methods=tuple(methods),
-        scenes=tuple(one.scene for one in same),
+        scenes=tuple(record.scene for record in same),
         message=in_words(message),
         **{"word": same[0].status.value, "total": len(same)} | more,
     )
 
 
 def _claim(verdict: Verdict) -> tuple[str, ...]:
-    """What verdicts of one finding share; an accepted number is compared in many cases."""
-    own = ("",) if verdict.kind is Kind.REGRESSION else (verdict.case, verdict.claim)
-    return *own, verdict.quantity, *verdict.methods
+    """Key that verdicts of one finding share; an accepted number is compared in many cases."""
+    claim = ("",) if verdict.kind is Kind.REGRESSION else (verdict.case, verdict.claim)
+    return *claim, verdict.quantity, *verdict.methods
 
 
 def _of_verdicts(same: Sequence[Verdict], total: int) -> Finding:
@@ -226,9 +226,9 @@ def _unanswered(run: Run) -> list[Answer]:
 
 
 def _reason(answer: Answer) -> tuple[str, ...]:
-    """What answers of one finding share: status and reason; broken ones also method and case."""
-    own = () if answer.status is Status.SKIP else (answer.case, answer.method)
-    return answer.status.value, answer.reason, *own
+    """Key that answers of one finding share: status and reason; broken ones also method and case."""
+    place = () if answer.status is Status.SKIP else (answer.case, answer.method)
+    return answer.status.value, answer.reason, *place
 
 
 def _of_answers(same: Sequence[Answer]) -> Finding:
@@ -243,11 +243,11 @@ def _skip_reason(verdict: Verdict) -> str:
 
 
 def counts(run: Run) -> tuple[tuple[Status, int], ...]:
-    """How many checks ended with which status, worst first; answers count where they broke down, skips per reason."""
+    """Number of checks with each status, worst first; answers count where they broke down, skips per reason."""
     tally: Counter[Status] = Counter()
     tally.update(v.status for v in run.judged.verdicts if v.status is not Status.SKIP and not v.identity)
     tally.update(answer.status for answer in _unanswered(run) if answer.status is not Status.SKIP)
-    tally[Status.SKIP] = sum(one.status is Status.SKIP for one in findings(run))
+    tally[Status.SKIP] = sum(finding.status is Status.SKIP for finding in findings(run))
     return tuple((status, tally[status]) for status in WORST_FIRST if tally[status])
 
 
@@ -274,7 +274,9 @@ def headline(run: Run) -> tuple[str, str]:
 def _unjudged(run: Run) -> list[str]:
     """A sentence for each chosen method about which no claim was judged, with the reasons of its skipped scenes."""
     skipped = [answer for answer in run.answers if answer.status is Status.SKIP]
-    reasons = {method: dict.fromkeys(one.reason for one in skipped if one.method == method) for method in run.unjudged}
+    reasons = {
+        method: dict.fromkeys(answer.reason for answer in skipped if answer.method == method) for method in run.unjudged
+    }
     return [
         f"no claim about {method} was judged{': ' if why else ''}{'; '.join(map(in_words, why))}"
         for method, why in reasons.items()
@@ -287,7 +289,7 @@ def nothing_ran(run: Run) -> bool:
 
 
 def baseline_sentence(run: Run) -> str:
-    """How many of the accepted numbers changed."""
+    """Sentence with the number of accepted numbers that changed."""
     compared = [v for v in run.judged.verdicts if v.kind is Kind.REGRESSION]
     changed = sum(v.status is not Status.PASS for v in compared)
     return (
@@ -304,13 +306,13 @@ def causes(run: Run) -> list[str]:
     somewhere. Among two methods that contradict each other alone, neither is named.
     """
     judged = [v for v in run.judged.verdicts if v.kind in (Kind.EXACT, Kind.AGREEMENT) and v.error is not None]
-    found = []
+    sentences = []
     for method in dict.fromkeys(label for v in judged for label in v.methods):
-        own = grouped((v for v in judged if method in v.methods), lambda v: v.quantity)
-        wrong = {name: _contradicted(method, verdicts) for name, verdicts in own.items()}
-        right = [name for name, verdicts in own.items() if all(v.status is Status.PASS for v in verdicts)]
-        found += [_cause(method, name, errors, right) for name, errors in wrong.items() if errors]
-    return found
+        by_quantity = grouped((v for v in judged if method in v.methods), lambda v: v.quantity)
+        wrong = {name: _contradicted(method, verdicts) for name, verdicts in by_quantity.items()}
+        right = [name for name, verdicts in by_quantity.items() if all(v.status is Status.PASS for v in verdicts)]
+        sentences += [_cause(method, name, errors, right) for name, errors in wrong.items() if errors]
+    return sentences
 
 
 Errors = dict[str, list[float]]

@@ -44,13 +44,13 @@ class Half:
     """The half-section by one method.
 
     Attributes:
-        path: the answer.
-        side: -1 for left of the axis, 1 for right of it.
-        radius: r of the points, shape (depths, radii).
-        depth: z.
-        enlarged: factor on displacements.
-        unit: metres of a drawn length.
-        fields: at all points.
+        path: Answer whose last state is drawn.
+        side: Side of the axis: -1 for left, 1 for right.
+        radius: Radius r [m] of the points, shape (depths, radii).
+        depth: Depth z [m] of the points.
+        enlarged: Factor on displacements.
+        unit: Length [m] of one unit of the drawing.
+        fields: Fields at all points.
     """
 
     path: ContactPath
@@ -63,7 +63,7 @@ class Half:
 
     @property
     def places(self) -> tuple[FloatArray, FloatArray]:
-        """Where the points have moved to, as they are drawn."""
+        """Places of the deformed points in units of the drawing."""
         r = self.radius + self.enlarged * self.fields.radial_displacement
         return self.side * r / self.unit, (self.depth + self.enlarged * self.fields.axial_displacement) / self.unit
 
@@ -72,8 +72,8 @@ def draw_inside(solution: Solution, other: Solution | None) -> Figure:
     """The picture of the last state of a path; without another answer both sides show the same one.
 
     Raises:
-        InvalidInput: if the answer is no path.
-        UnsupportedSceneError: if its method gives no fields inside.
+        InvalidInput: If the answer is no path.
+        UnsupportedSceneError: If its method gives no fields inside.
     """
     if not isinstance(solution, ContactPath):
         raise InvalidInput(f"a {type(solution).__name__} has no picture inside; prescribe radii, depths or forces")
@@ -104,12 +104,12 @@ def _halves(left: ContactPath, right: ContactPath) -> tuple[Half, Half]:
     largest = DRAWN_SHARE * deepest / abs(float(left.indentation_depth[-1]))
     power = 10.0 ** math.floor(math.log10(largest))
     enlarged = power * max(step for step in (1.0, 2.0, 5.0) if step * power <= largest * (1 + 1e-12))
-    one = Half(left, -1, r, z, enlarged, prefix_for(np.array([width]))[0], left.inside(-1).at(r, z))
-    return one, replace(one, path=right, side=1, fields=one.fields if right is left else right.inside(-1).at(r, z))
+    half = Half(left, -1, r, z, enlarged, prefix_for(np.array([width]))[0], left.inside(-1).at(r, z))
+    return half, replace(half, path=right, side=1, fields=half.fields if right is left else right.inside(-1).at(r, z))
 
 
 def _height(half: Half) -> float:
-    """Of a map [inches]: as wide and deep as the section, but for very thin layers."""
+    """Height of a map [inches]: in proportion to the section, but for very thin layers."""
     ratio = float(half.depth.max() / (2.0 * half.radius.max()))
     return float(np.clip((WIDTH - 1.4) * ratio * (1.0 + 2.0 * DRAWN_SHARE), LEAST_HEIGHT, MOST_HEIGHT))
 
@@ -132,8 +132,8 @@ def _prefix(half: Half) -> str:
 
 def _coloured(axes: Axes, halves: tuple[Half, Half], values: list[FloatArray], norm: Normalize, label: str) -> None:
     """Both halves in colours, and a bar as tall as the map."""
-    for half, one in zip(halves, values, strict=True):
-        mesh = axes.pcolormesh(*half.places, one, norm=norm, cmap=COLOURS, shading="gouraud", rasterized=True)
+    for half, field in zip(halves, values, strict=True):
+        mesh = axes.pcolormesh(*half.places, field, norm=norm, cmap=COLOURS, shading="gouraud", rasterized=True)
     extend = "max" if norm.vmin == 0.0 else "both"
     axes.figure.colorbar(mesh, cax=axes.inset_axes((1.03, 0.0, 0.03, 1.0)), label=label, extend=extend)
 
@@ -143,21 +143,21 @@ def _draw_map(axes: Axes, halves: tuple[Half, Half], name: str) -> None:
     bottom, top = np.quantile(np.array(values), [1.0 - SHARE_OF_COLOURS, SHARE_OF_COLOURS]).tolist()
     factor, prefix = prefix_for(np.array([top]))
     low = min(0.0, bottom / factor)
-    values = [one / factor for one in values]
+    values = [field / factor for field in values]
     _coloured(axes, halves, values, Normalize(low, top / factor), f"[{prefix}Pa]")
     steps = MaxNLocator(6).tick_values(low, top / factor)[1:-1]
-    for half, one in zip(halves, values, strict=True):
-        lines = axes.contour(*half.places, one, levels=steps, colors=BLACK, linewidths=0.5)
+    for half, field in zip(halves, values, strict=True):
+        lines = axes.contour(*half.places, field, levels=steps, colors=BLACK, linewidths=0.5)
         for text in axes.clabel(lines, fontsize=7.5, fmt="%g") if half.side < 0 else ():
             text.set(path_effects=RIM, rotation=0.0)
     axes.set_title("von Mises stress" if name == "von_mises" else "hydrostatic pressure")
 
 
 def _draw_arrows(axes: Axes, halves: tuple[Half, Half]) -> str:
-    """Where a fluid would be driven: against the gradient, lengths by its root, since it is steep near edges.
+    """Draw arrows along the flow of a fluid, against the pressure gradient; lengths are its root, steep near edges.
 
     Returns:
-        What they show, for readers.
+        Caption of the arrows.
     """
     rows = np.linspace(0, POINTS[1] - 1, ARROWS[1] + 2).astype(int)[1:-1]
     columns = np.linspace(0, POINTS[0] - 1, 2 * ARROWS[0] + 1).astype(int)[1::2]
@@ -168,7 +168,9 @@ def _draw_arrows(axes: Axes, halves: tuple[Half, Half]) -> str:
         )
         size = np.sqrt(np.hypot(along, down))
         steepest = max(steepest, float(size.max()) ** 2)
-        across, deeper = (np.divide(one, size, out=np.zeros_like(size), where=size > 0) for one in (along, down))
+        across, deeper = (
+            np.divide(component, size, out=np.zeros_like(size), where=size > 0) for component in (along, down)
+        )
         axes.quiver(
             *(place[np.ix_(rows, columns)] for place in half.places), half.side * across, deeper, angles="xy",
             scale=14.0 * float(size.max()), width=3.5e-3, color="white", edgecolor=BLACK, linewidth=0.5,
@@ -180,35 +182,37 @@ def _draw_differences(axes: Axes, halves: tuple[Half, Half]) -> str:
     """Distance of the two answers.
 
     Returns:
-        Its size in words.
+        Caption with the size of the differences.
     """
     pairs = [[getattr(half.fields, name) for half in halves] for name in ("von_mises", "hydrostatic_pressure")]
     values = [np.abs(left - right) for left, right in pairs]
     shown, whole = (
-        [float(np.quantile(one, SHARE_OF_COLOURS)) for one in some]
-        for some in (values, [np.abs(left) for left, _ in pairs])
+        [float(np.quantile(field, SHARE_OF_COLOURS)) for field in fields]
+        for fields in (values, [np.abs(left) for left, _ in pairs])
     )
     factor, prefix = prefix_for(np.array(shown))
     top = 10.0 ** math.ceil(math.log10(max(shown) / factor))
     least = top / 10.0**DECADES
-    _coloured(axes, halves, [np.maximum(one / factor, least) for one in values], LogNorm(least, top), f"[{prefix}Pa]")
+    _coloured(
+        axes, halves, [np.maximum(field / factor, least) for field in values], LogNorm(least, top), f"[{prefix}Pa]"
+    )
     axes.set_title("difference: von Mises left, pressure right")
-    sizes = [f"{one / most:.0e}" for one, most in zip(shown, whole, strict=True)]
+    sizes = [f"{field / most:.0e}" for field, most in zip(shown, whole, strict=True)]
     return f"at 99.5 % of points below {sizes[0]} (left) and {sizes[1]} (right) of the darkest above"
 
 
 def _draw_frame(axes: Axes, halves: tuple[Half, Half], note: str) -> None:
     """Deformed surface, contact, indenter and axes, with a note below."""
+    for half in halves:
+        x, y = half.places
+        axes.plot(x[0], y[0], color=BLACK, linewidth=0.8)
+        touching = half.radius[0] <= half.path.contact_radius[-1]
+        axes.plot(x[0, touching], y[0, touching], color=BLACK, linewidth=2.4, solid_capstyle="butt")
+        for depth in _interfaces(half):
+            line = [[np.interp(depth, half.depth[:, 0], column) for column in place.T] for place in (x, y)]
+            axes.plot(*line, color=BLACK, linewidth=0.9, linestyle=":")
     half = halves[0]
     unit, end, deepest = half.unit, half.radius.max() / half.unit, half.depth.max() / half.unit
-    for one in halves:
-        x, y = one.places
-        axes.plot(x[0], y[0], color=BLACK, linewidth=0.8)
-        touching = one.radius[0] <= one.path.contact_radius[-1]
-        axes.plot(x[0, touching], y[0, touching], color=BLACK, linewidth=2.4, solid_capstyle="butt")
-        for depth in _interfaces(one):
-            moved = [[np.interp(depth, one.depth[:, 0], column) for column in place.T] for place in (x, y)]
-            axes.plot(*moved, color=BLACK, linewidth=0.9, linestyle=":")
     indenter = half.path.scene.indenter
     r = np.linspace(0.0, min(half.radius.max(), indenter.max_radius), 400)
     outline = half.enlarged * (float(half.path.indentation_depth[-1]) - indenter.height(r)) / unit

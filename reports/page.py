@@ -39,9 +39,9 @@ def write_report(run: Run, directory: Path, *, single_file: bool = False) -> Pat
     """Write report.html, a page per case in cases/, figures/*.svg and answers.csv into `directory`.
 
     Args:
-        run: what was found.
-        directory: of the run.
-        single_file: whether the cases stand on report.html instead; a single case always does.
+        run: Answers, verdicts and studies.
+        directory: Folder of the run.
+        single_file: Whether the cases stand on report.html instead; a single case always does.
 
     Returns:
         The path of report.html.
@@ -53,9 +53,9 @@ def write_report(run: Run, directory: Path, *, single_file: bool = False) -> Pat
     for stale in (*(directory / CASES).glob("*.html"), *(directory / FIGURES).glob("*.svg")):
         stale.unlink()
     with figure_style():
-        pictures = {case.name: [_placed(one, directory) for one in of_case(run, case)] for case in cases}
+        pictures = {case.name: [_placed(picture, directory) for picture in of_case(run, case)] for case in cases}
         answered = zip(QUESTIONS, (_agreement(run), _cost(run), _breakdown(run)), front(run), strict=True)
-        questions = [(asked, words, one and _placed(one, directory)) for asked, words, one in answered]
+        questions = [(asked, words, picture and _placed(picture, directory)) for asked, words, picture in answered]
     judged = grouped(run.judged.verdicts, lambda verdict: verdict.case)
     common = {"run": run, "pictures": pictures, "names": set(pictures), "judged_of": judged}
     for case in () if single_file else cases:
@@ -106,18 +106,18 @@ def blocks(verdicts: Iterable[Verdict]) -> list[dict[str, Any]]:
 
 
 def _agreement(run: Run) -> list[str]:
-    found = tables.compared(run)
-    if not found:
+    verdicts = tables.compared(run)
+    if not verdicts:
         return ["No two methods were compared in this run."]
-    tally = Counter(verdict.status for verdict in found)
+    tally = Counter(verdict.status for verdict in verdicts)
     beyond = sum(number for status, number in tally.items() if status.is_failure)
     still_open = tally[Status.INCONCLUSIVE]
-    verdict = "Yes: all" if not beyond and not still_open else f"{len(found) - beyond - still_open} of"
+    verdict = "Yes: all" if not beyond and not still_open else f"{len(verdicts) - beyond - still_open} of"
     rest = f"; {beyond} disagree" * bool(beyond) + f"; {still_open} remain open" * bool(still_open)
-    pairs = grouped(found, lambda verdict: verdict.methods)
+    pairs = grouped(verdicts, lambda verdict: verdict.methods)
     medians = (f"{who(pair)} {small(median(map(tables.difference, same)))}" for pair, same in pairs.items())
     return [
-        f"{verdict} {len(found)} comparisons agree within their tolerance{rest}.",
+        f"{verdict} {len(verdicts)} comparisons agree within their tolerance{rest}.",
         f"Median difference: {'; '.join(medians)}.",
     ]
 
@@ -130,8 +130,8 @@ def _cost(run: Run) -> list[str]:
     for tau in PRICED:
         parts = []
         for method in dict.fromkeys(name for points in costs for name in points):
-            found = [one.seconds for points in costs if (one := cheapest(points.get(method, ()), tau))]
-            parts += [f"{who([method])} {duration(median(found))} ({len(found)})"] if found else []
+            seconds = [point.seconds for points in costs if (point := cheapest(points.get(method, ()), tau))]
+            parts += [f"{who([method])} {duration(median(seconds))} ({len(seconds)})"] if seconds else []
         lines += [f"To {tables.percent(tau)}: {', '.join(parts)}."] if parts else []
     return lines
 
@@ -147,7 +147,7 @@ def _breakdown(run: Run) -> list[str]:
 
 
 def stamp_lines(run: Run) -> list[tuple[str, str]]:
-    """Where and with what the run was made, one line per fact."""
+    """Facts about machine, revision and versions of the run, one line per fact."""
     stamp = run.judged.stamp
     return [
         ("started", f"{stamp.started}, took {duration(stamp.wall_seconds)}"),
@@ -187,8 +187,8 @@ def _environment() -> jinja2.Environment:
         loader=jinja2.PackageLoader("reports"), autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True
     )
     css = files("reports").joinpath("templates/report.css").read_text(encoding="utf-8")
-    own = {"findings": findings, "tables": tables, "blocks": blocks, "status_of": status_of, "stamp_lines": stamp_lines}
-    environment.globals.update(css=css, **own)
+    environment.globals.update(css=css, findings=findings, tables=tables)
+    environment.globals.update(blocks=blocks, status_of=status_of, stamp_lines=stamp_lines)
     environment.filters.update(
         anchor=file_name,
         duration=duration,

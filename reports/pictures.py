@@ -78,26 +78,26 @@ def between(scene: Scene) -> Scene | None:
     return None
 
 
-def sweep_figure(found: Sweep) -> Figure:
+def sweep_figure(sweep: Sweep) -> Figure:
     """Each quantity that the varied number changes.
 
     Scenes of more states than varied values have a line per value over the prescribed quantity, others a line per
     prescribed value over the varied number, on a logarithmic axis where that grows by equal factors.
     """
-    columns = found.columns
+    columns = sweep.columns
     swept, *heads = (head for head in columns if "_uncertainty" not in head)
     groups = [np.flatnonzero(columns[swept] == value) for value in dict.fromkeys(columns[swept].tolist())]
     states, last = max(groups, key=len), [rows[-1] for rows in groups]
-    given = GIVEN[type(found.answers[0][1].scene.loading).__name__]
+    given = GIVEN[type(sweep.answers[0][1].scene.loading).__name__]
     prescribed = next((head for head in heads if head.partition(" [")[0] in given), "")
     others = [head for head in heads if head != prescribed]
     varied = [head for head in others if np.ptp(columns[head][last]) > 0.0] or others
     over_states = bool(prescribed) and len(states) > len(groups)
     if over_states:
-        x_head, lines, names = prescribed, groups, _named(found, swept, last)
+        x_head, lines, names = prescribed, groups, _named(sweep, swept, last)
     else:
         lines = [np.array([rows[k] for rows in groups if k < len(rows)]) for k in range(len(states))]
-        x_head, names = swept, _named(found, prescribed or swept, states)
+        x_head, names = swept, _named(sweep, prescribed or swept, states)
     size = (ALONE * SIZE[0], ALONE * SIZE[1]) if len(varied) == 1 else SIZE
     drawing, all_axes = panels(len(varied), size=size)
     for axes, head in zip(all_axes, varied, strict=True):
@@ -109,7 +109,7 @@ def sweep_figure(found: Sweep) -> Figure:
             axes.set_prop_cycle(color=colormaps["viridis"](np.linspace(0.0, 0.9, len(names))))
         for rows, name in zip(lines, names, strict=True):
             axes.plot(columns[x_head][rows] / x_factor, columns[head][rows] / y_factor, label=name)
-        if not over_states and _by_factors(found.swept.values):
+        if not over_states and _by_factors(sweep.swept.values):
             axes.set_xscale("log")
             mark_decades(axes.xaxis)
     if len(names) > 1:
@@ -118,9 +118,9 @@ def sweep_figure(found: Sweep) -> Figure:
     return drawing
 
 
-def _named(found: Sweep, head: str, rows: Any) -> list[str]:
+def _named(sweep: Sweep, head: str, rows: Any) -> list[str]:
     """Values of a column at these rows as names of lines, "thickness [mm]: 1.5"."""
-    values = found.columns[head]
+    values = sweep.columns[head]
     scale, label = scaled_column(head, values.tolist())
     return [f"{label}: {value:.4g}" for value in values[rows] / scale]
 

@@ -110,7 +110,7 @@ def line_with_band(axes: Axes, x: ArrayLike, y: ArrayLike, half_width: Any, **lo
 def svg_text(drawing: Figure, *, key: str) -> str:
     """The figure as SVG that depends on nothing but its data: no date, no random ids, two decimals of a point.
 
-    Ids start with `key`: many figures stand in one HTML page without using each other's clip paths.
+    Ids are hashes of their content and the key: figures of one HTML page do not use each other's clip paths.
     """
     buffer = io.StringIO()
     with mpl.rc_context({"svg.hashsalt": key}):
@@ -119,12 +119,8 @@ def svg_text(drawing: Figure, *, key: str) -> str:
     svg = buffer.getvalue()
     svg = svg[svg.index("<svg") :]
     svg = re.sub(r"<[^>]*>", lambda tag: re.sub(r"-?\d+\.\d{3,}", lambda n: f"{float(n[0]):.2f}", tag[0]), svg)
-    used = {
-        name: f"{key}-{n}"
-        for n, name in enumerate(dict.fromkeys(re.findall(r"(?:xlink:href=\"#|url\(#)([\w.-]+)", svg)))
-    }
-    svg = re.sub(r' id="([^"]*)"', lambda name: f' id="{used[name[1]]}"' if name[1] in used else "", svg)
-    svg = re.sub(r'(xlink:href="#|url\(#)([\w.-]+)', lambda place: place[1] + used[place[2]], svg)
+    used = set(re.findall(r"(?:xlink:href=\"#|url\(#)([\w.-]+)", svg))
+    svg = re.sub(r' id="([^"]*)"', lambda name: name[0] if name[1] in used else "", svg)
     svg = re.sub(
         r"font-family: 'DejaVu Sans'; |; font-family: 'DejaVu Sans'|<!--.*?-->|<g\b[^>]*/>", "", svg, flags=re.DOTALL
     )

@@ -63,10 +63,10 @@ def cell_of(verdicts: Iterable[Verdict]) -> Cell:
 
 
 def _solved_cell(answers: Sequence[Answer], silent: Sequence[str]) -> Cell:
-    """Of the solutions of a case; a chosen method that was skipped everywhere is not hidden behind the others."""
-    hidden = [one for one in answers if one.status is Status.SKIP and one.method in silent]
-    ran = hidden or [one for one in answers if one.status is not Status.SKIP] or answers
-    worst = max(ran, key=lambda one: (one.status.is_failure, one.status is Status.SKIP))
+    """Cell for the solutions of a case; a chosen method that was skipped everywhere is not hidden behind the others."""
+    hidden = [answer for answer in answers if answer.status is Status.SKIP and answer.method in silent]
+    ran = hidden or [answer for answer in answers if answer.status is not Status.SKIP] or answers
+    worst = max(ran, key=lambda answer: (answer.status.is_failure, answer.status is Status.SKIP))
     return Cell(
         word=worst.status.value,
         checks=len(ran),
@@ -128,18 +128,18 @@ def pairs(run: Run) -> Table | None:
 
 
 def shared_things(run: Run) -> Table | None:
-    """What two methods share, if the run compares any methods."""
+    """Table of the code and data that two methods share, if the run compares any methods."""
     if not any(len(verdict.methods) > 1 for verdict in run.judged.verdicts):
         return None
     return tabulated(
-        sorted(SHARED, key=lambda one: list(Sharing).index(one.kind)),
+        sorted(SHARED, key=lambda thing: list(Sharing).index(thing.kind)),
         {
-            "what": lambda one: one.name,
-            "kind": lambda one: one.kind.value,
-            "where": lambda one: one.place,
-            "used by": lambda one: "all" if one.methods == EVERY else who(one.methods, ", "),
-            "enters": lambda one: quantity_words(", ".join((*one.quantities, *one.cases))) or "everything",
-            "what notices a mistake in it": lambda one: one.guard,
+            "what": lambda thing: thing.name,
+            "kind": lambda thing: thing.kind.value,
+            "where": lambda thing: thing.place,
+            "used by": lambda thing: "all" if thing.methods == EVERY else who(thing.methods, ", "),
+            "enters": lambda thing: quantity_words(", ".join((*thing.quantities, *thing.cases))) or "everything",
+            "what notices a mistake in it": lambda thing: thing.guard,
         },
         title="What two methods share",
         note="Agreement says nothing about what both methods use. A comparison is called independent where it rests on "
@@ -164,9 +164,9 @@ def shortest_times(run: Run, fast: str = "mdr") -> Table | None:
     rows = []
     for cost in run.judged.costs:
         points = timed_methods(cost)
-        for method, own in points.items():
-            times = (_shortest(own, tau) for tau in SHOWN)
-            faster = _speed_up(points.get(fast, []), own) if method != fast else ""
+        for method, timed in points.items():
+            times = (_shortest(timed, tau) for tau in SHOWN)
+            faster = _speed_up(points.get(fast, []), timed) if method != fast else ""
             rows.append((cost.case, quantity_words(cost.quantity), display_name(method), *times, faster))
     if not rows:
         return None
@@ -183,10 +183,10 @@ def shortest_times(run: Run, fast: str = "mdr") -> Table | None:
 
 def _shortest(points: Sequence[Point], tolerance: float) -> str:
     """Shortest time to a relative accuracy, "T* (first solution)"; "best U" where no setting reached it."""
-    found = cheapest(points, tolerance)
-    if found is None:
+    fastest = cheapest(points, tolerance)
+    if fastest is None:
         return f"best {small(min(map(bound_of, points)))}"
-    return f"{duration(found.seconds)} ({duration(found.cold_seconds)})"
+    return f"{duration(fastest.seconds)} ({duration(fastest.cold_seconds)})"
 
 
 def _speed_up(fast: Sequence[Point], other: Sequence[Point]) -> str:
@@ -252,7 +252,7 @@ def orders(run: Run) -> Table | None:
 
 
 def observed_order(study: Convergence) -> str:
-    """How fast the errors fell, in a few words."""
+    """Observed order of convergence, or digits per refinement, in a few words."""
     if study.digits is not None:
         return f"{study.digits:.1f} digits per refinement"
     return study.kind if study.observed_order is None else f"{study.observed_order:.2f}"
@@ -269,7 +269,7 @@ def completed(test: StressTest) -> int:
 
 
 def end_of(test: StressTest) -> str:
-    """Where a stress test ended: "completed to 1e-7", "refused at 1e-7", "fails at 1e-7"."""
+    """End of a stress test in words: "completed to 1e-7", "refused at 1e-7", "fails at 1e-7"."""
     number, unit = completed(test), "" if test.unit == "1" else f" {test.unit}"
     if number == len(test.steps):
         return f"completed to {small(test.steps[-1].value)}{unit}"
@@ -308,21 +308,21 @@ def _why_stopped(test: StressTest) -> str:
     return test.steps[number].reason if number < len(test.steps) else ""
 
 
-def effects(found: Sequence[Effect]) -> Table | None:
-    """What each effect and the finite thickness cost and change, and at which accuracies they may be left out."""
+def effects(parts: Sequence[Effect]) -> Table | None:
+    """Table of the cost and influence of each effect and of the finite thickness."""
     return tabulated(
-        found,
+        parts,
         {
-            "effect": lambda one: one.part,
-            "scene": lambda one: one.scene,
-            "method": lambda one: display_name(one.method),
-            "costs": lambda one: f"{100 * one.share_of_time:.0f} % of {duration(one.seconds)}",
-            "changes": lambda one: (
-                ", ".join(f"{quantity_words(name)} by {small(100 * v)} %" for name, v in one.changes.items())
-                or one.remark
+            "effect": lambda effect: effect.part,
+            "scene": lambda effect: effect.scene,
+            "method": lambda effect: display_name(effect.method),
+            "costs": lambda effect: f"{100 * effect.share_of_time:.0f} % of {duration(effect.seconds)}",
+            "changes": lambda effect: (
+                ", ".join(f"{quantity_words(name)} by {small(100 * v)} %" for name, v in effect.changes.items())
+                or effect.remark
             ),
-            "may be left out at": lambda one: (
-                ", ".join(percent(tau) for tau in DROPPED_AT if one.may_be_dropped(tau)) or "none"
+            "may be left out at": lambda effect: (
+                ", ".join(percent(tau) for tau in DROPPED_AT if effect.may_be_dropped(tau)) or "none"
             ),
         },
         title="What each effect costs and changes",
@@ -332,9 +332,9 @@ def effects(found: Sequence[Effect]) -> Table | None:
     )
 
 
-def answers(found: Sequence[Answer]) -> Table | None:
+def answers(given: Sequence[Answer]) -> Table | None:
     """The last step of each scene, methods side by side, each number with the error it states."""
-    solved = [answer for answer in found if answer.solved]
+    solved = [answer for answer in given if answer.solved]
     methods = tuple(dict.fromkeys(answer.method for answer in solved))
     rows: list[tuple[str, ...]] = []
     for scene, same in grouped(solved, lambda answer: answer.scene).items():
@@ -347,14 +347,14 @@ def answers(found: Sequence[Answer]) -> Table | None:
     return Table(title="Answers", note=note, heads=heads, rows=tuple(rows)) if rows else None
 
 
-def _answer_rows(found: Mapping[str, Answer], methods: Sequence[str]) -> Iterator[tuple[str, ...]]:
+def _answer_rows(by_method: Mapping[str, Answer], methods: Sequence[str]) -> Iterator[tuple[str, ...]]:
     """One row per quantity, time and memory; a method without that quantity leaves its cell empty."""
-    final = {method: _final(answer) for method, answer in found.items()}
-    for name in dict.fromkeys(name for own in final.values() for name in own):
+    final = {method: _final(answer) for method, answer in by_method.items()}
+    for name in dict.fromkeys(name for quantities in final.values() for name in quantities):
         values = (_last_value(name, final[m][name]) if name in final.get(m, {}) else "" for m in methods)
         yield quantity_words(name), *values
-    yield "time", *(duration(found[m].wall_seconds) if m in found else "" for m in methods)
-    yield "memory", *(memory(found[m].memory) if m in found and found[m].memory else "" for m in methods)
+    yield "time", *(duration(by_method[m].wall_seconds) if m in by_method else "" for m in methods)
+    yield "memory", *(memory(by_method[m].memory) if m in by_method and by_method[m].memory else "" for m in methods)
 
 
 def _final(answer: Answer) -> dict[str, Values]:

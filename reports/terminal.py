@@ -64,14 +64,15 @@ def show_facts(facts: Iterable[tuple[str, str]], *, on: Console) -> None:
 
 
 @contextmanager
-def progress_bar(what: str) -> Iterator[Callable[[int, int], None]]:
-    """A bar with the time spent, on a terminal after two seconds; yields what takes the number done and the total.
+def progress_bar(what: str, on: Terminal | None = None) -> Iterator[Callable[..., None]]:
+    """A bar with the time spent, on a terminal after two seconds; yields a function that moves it.
 
-    What is printed inside would be drawn over.
+    The function takes the completed number, the total, and optionally words in place of those given. Inside, nothing
+    but the terminal of the bar may print.
     """
-    terminal = console(stderr=True)
+    terminal = on or console(stderr=True)
     if not terminal.is_terminal:
-        yield lambda done, total: None
+        yield lambda *_: None
         return
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn  # noqa: PLC0415
 
@@ -80,8 +81,13 @@ def progress_bar(what: str) -> Iterator[Callable[[int, int], None]]:
     task = bar.add_task(what, total=None)
     patience = Timer(PATIENCE, bar.start)
     patience.start()
+
+    def update(completed: int, total: int, words: str = "") -> None:
+        description = f"{words or what}, {completed} of {total}"
+        bar.update(task, completed=completed, total=total, description=description)
+
     try:
-        yield lambda n, total: bar.update(task, completed=n, total=total, description=f"{what}, {n} of {total}")
+        yield update
     finally:
         patience.cancel()
         patience.join()

@@ -85,7 +85,7 @@ def signed(value: float) -> str:
 
 def short_exponents(text: str) -> str:
     """The text with its powers of ten as `small` writes them: 1e-6 for 1e-06, 1e5 for 1e+05."""
-    return re.sub(r"(?<=\d)e(?:\+|(-))0?(\d+)\b", lambda found: f"e{found[1] or ''}{found[2]}", text)
+    return re.sub(r"(?<=\d)e(?:\+|(-))0?(\d+)\b", lambda match: f"e{match[1] or ''}{match[2]}", text)
 
 
 def quantity_words(name: str) -> str:
@@ -186,11 +186,11 @@ def tabulated(
     """A table of one row a record; None without records.
 
     Args:
-        records: in the order of the rows.
-        columns: what each column shows of a record, by its head.
-        title: over the table.
-        note: below it.
-        words: how many of the first columns are words.
+        records: Records in the order of the rows.
+        columns: Text of each column for a record, by its head.
+        title: Line above the table.
+        note: Text below the table.
+        words: Number of the first columns that are words.
     """
     rows = tuple(tuple(cell(record) for cell in columns.values()) for record in records)
     return Table(title=title, note=note, heads=tuple(columns), rows=rows, words=words) if rows else None

@@ -11,8 +11,9 @@ from contact import ContactPath, DetachmentPath, HistoryPath, ImpactHistory, Sol
 
 Array = NDArray[np.float64]
 
-# Radii of pressures and displacements, over the contact radius of the last state.
-PRESSED, MOVED = (0.23, 0.57, 0.88), (0.5, 1.7)
+# Radii of pressures and displacements over the contact radius of the last state. The last two are next to the edge,
+# where errors of displacements are largest.
+PRESSED, MOVED = (0.23, 0.57, 0.88), (0.5, 1.7, 1.002, 1.02)
 # Paths with more states are represented by so many.
 _MOST_STATES = 4
 # Least allowance for the difference of two answers, over the scale of the quantity: roundings of both.
@@ -27,13 +28,18 @@ class Stated(NamedTuple):
     scale: Array
 
 
-def stated_numbers(answer: Solution) -> dict[str, Stated]:
-    """All quantities whose errors the answer states, at a few significant states."""
+def stated_numbers(answer: Solution, radius: float | None = None) -> dict[str, Stated]:
+    """All quantities whose errors the answer states, at a few significant states.
+
+    Args:
+        answer: Answer of one method.
+        radius: Length [m] whose shares are the places of fields; the last contact radius by default.
+    """
     if isinstance(answer, ImpactHistory | DetachmentPath):
         names = ("coefficient_of_restitution", "contact_time", *answer.SCALARS)
         return {name: _single(answer, name) for name in names if name in answer.error_estimate}
     numbers = {name: _along(answer, name) for name in answer.ARRAYS if name in answer.error_estimate}
-    return numbers | (_fields(answer) if isinstance(answer, ContactPath) else {})
+    return numbers | (_fields(answer, radius) if isinstance(answer, ContactPath) else {})
 
 
 def _single(answer: Solution, name: str) -> Stated:
@@ -59,9 +65,10 @@ def _states(answer: Solution) -> Array:
     return np.unique(np.linspace(0, count - 1, min(count, _MOST_STATES)).round().astype(int))
 
 
-def _fields(answer: ContactPath) -> dict[str, Stated]:
+def _fields(answer: ContactPath, radius: float | None) -> dict[str, Stated]:
     """Pressure and displacement of the last state at a few radii."""
-    a, step = float(answer.contact_radius[-1]), len(answer) - 1
+    step = len(answer) - 1
+    a = float(answer.contact_radius[-1]) if radius is None else radius
     wanted = {"pressure": PRESSED, "surface_displacement": MOVED}
     found = {}
     for name, shares in wanted.items():

@@ -150,8 +150,9 @@ class GridSolver:
             "normal_force": self._stated(force, other_force, floor, path=True),
         }
         for name, value in scalars.items():
-            # Two grids share more of a pull-off, whose place they share as well.
-            errors[name] = self._stated(np.array([value]), np.array([others[name]]), SAFETY * floor[:1])
+            at = start if name == "pull_off_force" else scalars["pull_off_contact_radius"]
+            least = self._floor(np.array([at]), is_stationary=True)
+            errors[name] = self._stated(np.array([value]), np.array([others[name]]), least)
         if scalars["pull_off_contact_radius"] == others["pull_off_contact_radius"] == self.scene.indenter.flat_radius:
             errors["pull_off_contact_radius"] = np.array([HALF_SPACE_FLOOR])
         self._refuse_touching(pair[0], radius, errors)
@@ -209,10 +210,13 @@ class GridSolver:
         """Stated errors by name; none of what is prescribed, and only the floor of a stiffness at a given radius."""
         is_punch = isinstance(self.scene.indenter, FlatPunch) and not adheres
         is_given = is_punch or isinstance(self.scene.loading, ContactRadii)
-        floor, errors = self._floor(found[0]), {}
+        errors = {}
         for name, one, two in zip(ContactPath.ARRAYS, found, other, strict=True):
-            own = self._least if is_punch or (is_given and name == "contact_stiffness") else floor
-            errors[name] = self._stated(one, two, own, path=adheres)
+            is_stationary = not is_given and name in ("indentation_depth", "normal_force")
+            floor = self._floor(found[0], is_stationary=is_stationary)
+            if is_punch or (is_given and name == "contact_stiffness"):
+                floor = np.full(found.shape[1], self._least)
+            errors[name] = self._stated(one, two, floor, path=adheres)
         exact = [PRESCRIBED[type(self.scene.loading)], *(["contact_radius"] if is_punch else [])]
         return errors | {name: np.zeros(found.shape[1]) for name in exact}
 
@@ -226,9 +230,10 @@ class GridSolver:
     def _least(self) -> float:
         return HALF_SPACE_FLOOR if self.scene.layer.is_half_space else STIFFNESS_FLOOR
 
-    def _floor(self, radius: FloatArray) -> FloatArray:
-        """Of depth and force at contact radii [m]."""
-        return self._least + shared_error(self.pressing.cells, radius / self.scene.layer.surface.thickness)
+    def _floor(self, radius: FloatArray, *, is_stationary: bool = False) -> FloatArray:
+        """Relative error of depth and force at contact radii [m] that both grids share."""
+        ratio = radius / self.scene.layer.surface.thickness
+        return self._least + shared_error(self.pressing.cells, ratio, is_stationary=is_stationary)
 
     def _refuse_touching(self, contacts: AdheringIndenter, radius: FloatArray, errors: dict[str, FloatArray]) -> None:
         """Refuse a withdrawal of which some state is touched outside its circle, as coarse discs show it."""

@@ -117,9 +117,12 @@ def disc_of(cells: int, boundary: Boundary = "free", threads: int = 1) -> Disc:
     return Disc(cells, boundary, contact, pressed(operator, contact, 1.0, 0.1 * TOLERANCE), operator)
 
 
-def shared_error(cells: int, ratio: FloatArray) -> FloatArray:
-    """Relative error of depth and force at ratios a/h, shape (n,), which half as many cells share."""
-    return np.asarray(SHARED / disc_of(cells).radius ** 2 * np.minimum(ratio, 1.0))
+def shared_error(cells: int, ratio: FloatArray, *, is_stationary: bool = False) -> FloatArray:
+    """Relative error of depth and force at ratios a/h, shape (n,), which half as many cells share.
+
+    It falls with the square of a/h where they are stationary in the radius: where one is prescribed, and at pull-off.
+    """
+    return np.asarray(SHARED / disc_of(cells).radius ** 2 * np.minimum(ratio, 1.0) ** (1 + is_stationary))
 
 
 @dataclass(frozen=True, eq=False)

@@ -69,16 +69,23 @@ class ContactFields:
         return np.where((radius <= self.radius) & (share < 1.0), p, 0.0)
 
     def surface_displacement(self, radius: FloatArray) -> FloatArray:
-        """w(r) [m]: delta - f under the indenter, sums over all cells beyond the first cell outside."""
+        """w(r) [m]: delta - f under the indenter, sums over all cells beyond the first cell outside.
+
+        Within the first cell the gap grows like the root of the distance, or without adhesion like its power 3/2.
+        """
         if self.radius == 0.0:
             return np.zeros_like(radius)
-        a, s = self.radius, self.radius / self.punch.disc.radius
-        w = np.asarray(self.state.depth - self.pressing.indenter.height(np.minimum(radius, a)), dtype=np.float64)
-        outside = radius > a
-        away = (radius[outside] - a) / s
+        a, s, indenter = self.radius, self.radius / self.punch.disc.radius, self.pressing.indenter
+        slope, power = (float(indenter.slope_at(a)), 1.5) if self.edge == 0.0 else (0.0, 0.5)
+        beyond = np.maximum(radius - a, 0.0)
+        w = np.asarray(self.state.depth - indenter.height(np.minimum(radius, a)), dtype=np.float64)
+        w -= slope * np.minimum(beyond, s)
+        outside = beyond > 0.0
+        near = np.minimum(beyond[outside] / s, 1.0)
+        # The tangent at the edge, and what it lacks one cell further out.
+        end = self.state.depth - float(indenter.height(a)) - slope * s
         summed = self._summed(np.maximum(radius[outside], a + s))
-        share = np.minimum(away, 1.0) if self.edge == 0.0 else np.sqrt(np.minimum(away, 1.0))
-        w[outside] = (1.0 - share) * w[outside] + share * summed
+        w[outside] += near**power * (summed - end)
         return w
 
     def refuse_pulling(self, coarser: ContactFields) -> None:

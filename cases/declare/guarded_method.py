@@ -50,8 +50,8 @@ class GuardedMethod:
     """A method of another package under the name it is registered with: asked whether it supports what it solves.
 
     Raises:
-        BrokenMethodError: if the method crashes or answers nonsense.
-        ContactError: as the method raises it, under its name.
+        BrokenMethodError: If the method crashes or answers nonsense.
+        ContactError: If the method raises it, under its name.
     """
 
     name: str
@@ -85,8 +85,8 @@ def build_guarded(name: str, settings: dict[str, Any]) -> Method:
     """The method of this name; one of another package is guarded.
 
     Raises:
-        InvalidInput: if there is none, or if what is registered is no method.
-        BrokenMethodError: if it cannot be built.
+        InvalidInput: If there is none, or if what is registered is no method.
+        BrokenMethodError: If it cannot be built.
     """
     if name in BUILT_IN:
         return build(name, settings)
@@ -99,9 +99,9 @@ def _blamed(name: str, place: str, call: Callable[[], T]) -> T:
     try:
         return call()
     except ContactError as error:
-        told = str(error)
+        message = str(error)
         kind = next(kind for kind in KINDS if isinstance(error, kind))
-        raise kind(told if repr(name) in told else f"method {name!r}: {told}") from None
+        raise kind(message if repr(name) in message else f"method {name!r}: {message}") from None
     except (Exception, SystemExit) as error:
         message = f"method {name!r} crashed in {place}: {type(error).__name__}: {error!s:.300}"
         raise BrokenMethodError(f"{message}; tell the authors of its package") from error
@@ -114,14 +114,14 @@ def _faults(answer: object, scene: Scene) -> list[str]:
     prescribed = PRESCRIBED.get(type(scene.loading), "")
     wanted = getattr(scene.loading, "values", np.empty(0))
     given = np.asarray(getattr(answer, prescribed, wanted), dtype=np.float64)
-    faults = {
+    conditions = {
         "it belongs to another scene": answer.scene != scene,
         "its cost is no Cost": not isinstance(answer.cost, Cost),
         f"{len(wanted)} values are prescribed, it has {given.size}": prescribed and given.shape != wanted.shape,
     }
-    found = [fault for fault, there in faults.items() if there]
-    if not found and prescribed and not np.allclose(given, wanted, rtol=ANOTHER_QUESTION, atol=0.0):
-        found.append(f"its {prescribed} is {shown(given)}, prescribed is {shown(wanted)}")
-    found += [f"it states a negative error of {name}" for name, e in answer.error_estimate.items() if np.min(e) < 0]
+    faults = [fault for fault, is_wrong in conditions.items() if is_wrong]
+    if not faults and prescribed and not np.allclose(given, wanted, rtol=ANOTHER_QUESTION, atol=0.0):
+        faults.append(f"its {prescribed} is {shown(given)}, prescribed is {shown(wanted)}")
+    faults += [f"it states a negative error of {name}" for name, e in answer.error_estimate.items() if np.min(e) < 0]
     radius = getattr(answer, "contact_radius", np.zeros(1))
-    return found + ["a contact radius is negative"] * bool(np.min(radius) < 0)
+    return faults + ["a contact radius is negative"] * bool(np.min(radius) < 0)

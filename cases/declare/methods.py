@@ -60,8 +60,8 @@ REFEREES: Mapping[str, EntryPoint] = {
     name: EntryPoint(name, f"cases.referees.{place}", ENTRY_POINT_GROUP)
     for name, place in {
         "calculix": "calculix:CalculiX",
-        "contact_mechanics": "contact_mechanics:ContactMechanics",
-        "tamaas": "tamaas:Tamaas",
+        "contact_mechanics": "grids:ContactMechanics",
+        "tamaas": "grids:Tamaas",
     }.items()
 }
 
@@ -70,15 +70,15 @@ def registered() -> dict[str, EntryPoint]:
     """Return the methods of installed packages by name, the outside referees first.
 
     Raises:
-        InvalidInput: if two packages, or a package and this project, use one name, or if a name could not name a file.
+        InvalidInput: If two packages, or a package and this project, use one name, or if a name could not name a file.
     """
-    found = dict(REFEREES)
+    methods = dict(REFEREES)
     for entry in _entries(entry_points, tuple(sys.path)):
         check_name(entry.name, entry.value)
-        if entry.name in BUILT_IN or entry.name in found:
+        if entry.name in BUILT_IN or entry.name in methods:
             raise InvalidInput(f"two methods are called {entry.name!r}; rename the entry point of {entry.value}")
-        found[entry.name] = entry
-    return found
+        methods[entry.name] = entry
+    return methods
 
 
 @cache
@@ -91,7 +91,7 @@ def check_name(name: str, place: str) -> None:
     """Refuse a name of a method that could not name a file or would not stand as it is in a page.
 
     Raises:
-        InvalidInput: with the entry point's `place`.
+        InvalidInput: Naming the entry point's `place`.
     """
     if not NAME.fullmatch(name):
         raise InvalidInput(
@@ -104,11 +104,11 @@ def check_known(name: str, labels: Iterable[str] = ()) -> None:
     """Refuse a name that no method has.
 
     Args:
-        name: of a method.
-        labels: under which cases know methods, besides the names of the table.
+        name: Name of a method.
+        labels: Labels of methods in cases, besides the names of the table.
 
     Raises:
-        InvalidInput: with the names that there are.
+        InvalidInput: Listing the names that there are.
     """
     known = dict.fromkeys((*method_names(), *labels))
     if name not in known:
@@ -124,7 +124,7 @@ def build(name: str, settings: Mapping[str, Any]) -> Method:
     """Return the method called ``name`` with ``settings``.
 
     Raises:
-        InvalidInput: if there is none, or if what is registered is no method.
+        InvalidInput: If there is none, or if what is registered is no method.
     """
     method = load(name)(**settings)
     if not isinstance(method, Method):
@@ -134,9 +134,9 @@ def build(name: str, settings: Mapping[str, Any]) -> Method:
 
 def shared_inputs(method: Method) -> tuple[str, ...]:
     """Return what answers of this method share with others; a method may say so itself as ``shared_inputs``."""
-    own = getattr(method, "shared_inputs", None)
-    if own is not None:
-        return tuple(own)
+    names = getattr(method, "shared_inputs", None)
+    if names is not None:
+        return tuple(names)
     on_table = type(getattr(method, "flat_punch", None)).__name__ == "FftTable"
     return used_by("mdr_table" if on_table else method.name)
 
@@ -145,7 +145,7 @@ def location(name: str) -> tuple[str, str]:
     """Return module and class of the method called ``name``.
 
     Raises:
-        InvalidInput: if there is none.
+        InvalidInput: If there is none.
     """
     if name in BUILT_IN:
         return BUILT_IN[name].module, BUILT_IN[name].attribute
@@ -159,7 +159,7 @@ def load(name: str) -> Any:
     """Return the class of the method called ``name``.
 
     Raises:
-        InvalidInput: if there is none, or if it cannot be imported.
+        InvalidInput: If there is none, or if it cannot be imported.
     """
     module, attribute = location(name)
     try:

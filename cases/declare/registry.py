@@ -13,10 +13,10 @@ def load_cases() -> dict[str, Case]:
     """Return every case of the library by name, in alphabetic order, with the methods of this project.
 
     Raises:
-        InvalidInput: if a module has no ``CASE``, or two cases have one name.
+        InvalidInput: If a module has no ``CASE``, or two cases have one name.
     """
-    found = (info.name for info in pkgutil.walk_packages(library.__path__, f"{library.__name__}.") if not info.ispkg)
-    modules = sorted((name for name in found if "._" not in name), key=_last)
+    names = (info.name for info in pkgutil.walk_packages(library.__path__, f"{library.__name__}.") if not info.ispkg)
+    modules = sorted((name for name in names if "._" not in name), key=_last)
     return by_name(_case_of(name) for name in modules)
 
 
@@ -24,21 +24,21 @@ def by_name(cases: Iterable[Case]) -> dict[str, Case]:
     """Return cases by name.
 
     Raises:
-        InvalidInput: if two have one name.
+        InvalidInput: If two have one name.
     """
-    found: dict[str, Case] = {}
+    named: dict[str, Case] = {}
     for case in cases:
-        if case.name in found:
+        if case.name in named:
             raise InvalidInput(f"two cases are called {case.name!r}; rename one")
-        found[case.name] = case
-    return found
+        named[case.name] = case
+    return named
 
 
 def select(cases: dict[str, Case], *, names: Iterable[str] = (), suite: str = "") -> tuple[Case, ...]:
     """Return the cases asked for by name, or those of a suite (as it runs them), or all.
 
     Raises:
-        InvalidInput: for an unknown name or suite.
+        InvalidInput: For an unknown name or suite.
     """
     if suite and suite not in SUITES:
         raise InvalidInput(f"no suite {suite!r}; there are {', '.join(SUITES)}")

@@ -22,23 +22,23 @@ def read_settings(texts: Iterable[str], methods: Collection[str]) -> dict[str, d
     """Return what was asked for; the last of two settings of one name counts.
 
     Args:
-        texts: each is ``name=value``, ``method.name=value``, or a TOML file with a table for each method.  Values are
+        texts: Each is ``name=value``, ``method.name=value``, or a TOML file with a table for each method.  Values are
             written as in TOML; what is no TOML is a word.
-        methods: chosen ones; a setting without a method belongs to the only registered one among them.
+        methods: Chosen ones; a setting without a method belongs to the only registered one among them.
 
     Raises:
-        InvalidInput: if a text is none of these, or if its method is not registered.
+        InvalidInput: If a text is none of these, or if its method is not registered.
     """
-    found: dict[str, dict[str, Any]] = {}
+    settings: dict[str, dict[str, Any]] = {}
     for text in texts:
-        for method, settings in (_of_words(text, methods) if "=" in text else _of_file(text)).items():
+        for method, values in (_of_words(text, methods) if "=" in text else _of_file(text)).items():
             if method not in registered():
                 raise InvalidInput(
                     f"--setting {shown(text)}: {method!r} is no method of an installed package; "
                     f"those are {', '.join(registered())}"
                 )
-            found.setdefault(method, {}).update(settings)
-    return found
+            settings.setdefault(method, {}).update(values)
+    return settings
 
 
 def _of_words(text: str, methods: Collection[str]) -> dict[str, dict[str, Any]]:
@@ -73,7 +73,7 @@ def with_settings(case: Case, settings: Settings) -> Case:
     """Return ``case`` with these settings of its methods on top of its own.
 
     Raises:
-        InvalidInput: if a method does not take them.
+        InvalidInput: If a method does not take them.
     """
     methods = tuple(_changed(use, settings, "") for use in case.methods)
     scenes = tuple(_with(case, scene, settings) for scene in case.scenes)
@@ -89,9 +89,9 @@ def _with(case: Case, scene: CaseScene, settings: Settings) -> CaseScene:
 def _changed(use: MethodUse, settings: Settings, scene: str) -> MethodUse:
     name = use.method or use.label
     asked = settings.get(name, {})
-    own = asked.get(scene, {})
+    of_scene = asked.get(scene, {})
     wanted = {key: value for key, value in asked.items() if not isinstance(value, dict)}
-    wanted |= own if isinstance(own, dict) else {}
+    wanted |= of_scene if isinstance(of_scene, dict) else {}
     return _checked(replace(use, settings={**use.settings, **wanted})) if wanted else use
 
 
@@ -99,7 +99,7 @@ def ladder(name: str, settings: Mapping[str, Any]) -> tuple[MethodUse, ...]:
     """Return the settings that ``cost`` times: a list has one value per setting, anything else belongs to all of them.
 
     Raises:
-        InvalidInput: if lists differ in length, or if the method does not take a value.
+        InvalidInput: If lists differ in length, or if the method does not take a value.
     """
     plain = {key: value for key, value in settings.items() if not isinstance(value, dict)}
     lists = {key: value for key, value in plain.items() if isinstance(value, list)}
@@ -110,7 +110,10 @@ def ladder(name: str, settings: Mapping[str, Any]) -> tuple[MethodUse, ...]:
         {key: value[i] if key in lists else value for key, value in plain.items()}
         for i in range(max(lengths, default=1))
     ]
-    return tuple(_checked(MethodUse(label=_words(one), method=name, settings=one)) for one in each)
+    return tuple(
+        _checked(MethodUse(label=_words(settings_of_step), method=name, settings=settings_of_step))
+        for settings_of_step in each
+    )
 
 
 def _words(settings: Mapping[str, Any]) -> str:
@@ -128,6 +131,6 @@ def _checked(use: MethodUse) -> MethodUse:
         # A method of another package may raise anything.
         kind = load(name)
         known = ", ".join(field.name for field in fields(kind) if field.init) if is_dataclass(kind) else ""
-        there = f"; it has {known or 'none'}" if is_dataclass(kind) else ""
-        raise InvalidInput(f"method {name!r} does not take {_words(use.settings)}: {error}{there}") from error
+        names = f"; it has {known or 'none'}" if is_dataclass(kind) else ""
+        raise InvalidInput(f"method {name!r} does not take {_words(use.settings)}: {error}{names}") from error
     return use

@@ -27,13 +27,13 @@ class Shared:
     """Something that several methods use.
 
     Attributes:
-        name: as reports and records call it.
-        place: module of the sources.
-        guard: what notices a mistake that the sharing methods make together.
-        kind: code counts against independence; the question and the records are common to every comparison.
-        methods: names in the method table.
-        quantities: the compared quantities it enters; empty for all.
-        cases: the cases it enters; empty for all.
+        name: Name in reports and records.
+        place: Module of the sources.
+        guard: Check that detects a mistake that the sharing methods make together.
+        kind: Code counts against independence; the question and the records are common to every comparison.
+        methods: Names in the method table.
+        quantities: Compared quantities that it enters; empty for all.
+        cases: Cases that it enters; empty for all.
     """
 
     name: str
@@ -56,17 +56,17 @@ BY_NAME = {one.name: one for one in SHARED}
 
 def used_by(method: str) -> tuple[str, ...]:
     """Names of what a built-in method may have in common with others; nothing is known of other methods."""
-    return tuple(one.name for one in SHARED if method in one.methods) or (NOT_SAID,)
+    return tuple(entry.name for entry in SHARED if method in entry.methods) or (NOT_SAID,)
 
 
 def in_common(first: tuple[str, ...], second: tuple[str, ...], *, quantity: str, case: str) -> tuple[str, ...]:
     """Names of the code and data that both answers use, which their agreement cannot check.
 
     Args:
-        first: what one answer used (`used_by`, or the `shared_inputs` of a method of another package).
-        second: what the other used.
-        quantity: that is compared.
-        case: name of the case.
+        first: Names that the first answer used (`used_by`, or the `shared_inputs` of a method of another package).
+        second: Names that the second answer used.
+        quantity: Quantity that is compared.
+        case: Name of the case.
     """
     both = [name for name in first if name in second]
     counted = [name for name in both if name not in BY_NAME or _counts(BY_NAME[name], quantity, case)]
@@ -74,5 +74,5 @@ def in_common(first: tuple[str, ...], second: tuple[str, ...], *, quantity: str,
     return (*counted, *((NOT_SAID,) if unknown else ()))
 
 
-def _counts(one: Shared, quantity: str, case: str) -> bool:
-    return one.kind is Sharing.CODE and one.enters(quantity, case)
+def _counts(entry: Shared, quantity: str, case: str) -> bool:
+    return entry.kind is Sharing.CODE and entry.enters(quantity, case)

@@ -25,10 +25,10 @@ class UncertainInput:
     """One number of a scene, or a list of them that is uncertain as a whole.
 
     Attributes:
-        name: of its field, with the part of the scene before a dot where two parts have one.
-        deviation: standard deviation: absolute of a range, relative otherwise.
-        low: smallest value of a range; None for a percentage, which is normally distributed.
-        high: largest value of a range.
+        name: Name of its field, with the part of the scene before a dot where two parts have one.
+        deviation: Standard deviation: absolute of a range, relative otherwise.
+        low: Smallest value of a range; None for a percentage, which is normally distributed.
+        high: Largest value of a range.
     """
 
     name: str
@@ -41,7 +41,7 @@ class UncertainInput:
         """Whether all values between two are equally likely."""
         return self.low is not None
 
-    def moved(self, number: float, value: Any, *, drawn: bool = False) -> Any:
+    def value_at(self, number: float, value: Any, *, drawn: bool = False) -> Any:
         """The value so many standard deviations from the middle.
 
         Where it is drawn, the number is standard normal: in a range it stands for the place with the same share of
@@ -63,26 +63,28 @@ class UncertainInputs:
     """Uncertain numbers of a scene.
 
     Attributes:
-        inputs: each of them.
-        correlation: of their normal deviations, shape (n, n).
+        inputs: Uncertain inputs.
+        correlation: Correlation of their normal deviations, shape (n, n).
     """
 
     inputs: tuple[UncertainInput, ...]
     correlation: FloatArray
 
-    def moved(self, scene: Scene, numbers: FloatArray, *, drawn: bool = False) -> Scene:
+    def scene_at(self, scene: Scene, numbers: FloatArray, *, drawn: bool = False) -> Scene:
         """The scene with each input so many standard deviations from its middle, or drawn by them, shape (n,).
 
         Raises:
-            InvalidInput: if it has no such number, or not with that value.
+            InvalidInput: If it has no such number, or not with that value.
         """
-        for one, number in zip(self.inputs, numbers, strict=True):
-            part, field = place_of(scene, one.name)
+        for entry, number in zip(self.inputs, numbers, strict=True):
+            part, field = place_of(scene, entry.name)
             record = part_of(scene, part)
             value = getattr(record, field)
-            if one.is_range and isinstance(value, np.ndarray):
-                raise InvalidInput(f"uncertain {one.name}: it is a list of numbers; give a percentage for all of them")
-            scene = with_part(scene, part, record.replace(**{field: one.moved(float(number), value, drawn=drawn)}))
+            if entry.is_range and isinstance(value, np.ndarray):
+                message = "it is a list of numbers; give a percentage for all of them"
+                raise InvalidInput(f"uncertain {entry.name}: {message}")
+            changed = record.replace(**{field: entry.value_at(float(number), value, drawn=drawn)})
+            scene = with_part(scene, part, changed)
         return scene
 
     def spread(self, changes: FloatArray) -> FloatArray:
@@ -99,7 +101,7 @@ def read_inputs(text: str, scene: Scene | None = None, *, with_units: bool = Fal
         with_units: Whether the scene was written with units; ends of ranges need theirs then.
 
     Raises:
-        InvalidInput: for what is no such text; nothing is guessed.
+        InvalidInput: For what is no such text; nothing is guessed.
     """
     inputs, pairs = list[UncertainInput](), dict[tuple[str, str], float]()
     for part in filter(None, (part.strip() for part in text.split(","))):
@@ -111,7 +113,7 @@ def read_inputs(text: str, scene: Scene | None = None, *, with_units: bool = Fal
             pairs[first, second] = _number(part, value, -1.0, 1.0)
         else:
             inputs.append(_input(part, name, value, scene, with_units))
-    names = [one.name for one in inputs]
+    names = [entry.name for entry in inputs]
     if not inputs or len(set(names)) < len(names):
         raise InvalidInput(f"uncertain {shown(text)}: name at least one input, each once; {EXAMPLE}")
     return UncertainInputs(inputs=tuple(inputs), correlation=_correlation(names, pairs))
@@ -155,8 +157,8 @@ def range_ends(place: str, ends: tuple[str, str], unit: str | None, with_units: 
 
 
 def _number(part: str, text: str, low: float, high: float) -> float:
-    found = re.fullmatch(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?", text.strip())
-    value = float(text) if found else math.nan
+    match = re.fullmatch(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?", text.strip())
+    value = float(text) if match else math.nan
     if not (math.isfinite(value) and low <= value <= high):
         raise InvalidInput(f"uncertain {shown(part)}: {shown(text)} is no number from {low:g} to {high:g}; {EXAMPLE}")
     return value
@@ -192,7 +194,7 @@ def place_of(scene: Scene, name: str, purpose: str = "uncertain") -> tuple[str, 
     """Part of the scene and field of a number; the purpose stands before the name in messages.
 
     Raises:
-        InvalidInput: if there is none of that name, or several.
+        InvalidInput: If there is none of that name, or several.
     """
     wanted_part, _, wanted = name.rpartition(".")
     parts = {part: getattr(scene, part) for part in PARTS}
@@ -204,9 +206,9 @@ def place_of(scene: Scene, name: str, purpose: str = "uncertain") -> tuple[str, 
         if isinstance(getattr(record, field.name), float | np.ndarray)
         and np.all(np.isfinite(getattr(record, field.name)))
     ]
-    found = [place for place in numbers if place[1] == wanted and place[0].startswith(wanted_part)]
-    if len(found) != 1:
+    places = [place for place in numbers if place[1] == wanted and place[0].startswith(wanted_part)]
+    if len(places) != 1:
         known = ", ".join(f"{part.rstrip('0123456789')}.{field}" for part, field in numbers)
-        problem = "stands in several parts of the scene" if found else "is no number of the scene"
+        problem = "stands in several parts of the scene" if places else "is no number of the scene"
         raise InvalidInput(f"{purpose} {shown(name)} {problem}; there are {known}")
-    return found[0]
+    return places[0]

@@ -3,7 +3,7 @@
 import math
 import os
 import subprocess
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -12,10 +12,10 @@ from cases.gate.baseline import (
     OF_SPREAD,
     Accepted,
     Baseline,
-    kept,
     permitted_change,
     read_baselines,
     relative_tolerance,
+    stored_part,
     write_baseline,
 )
 from cases.gate.gate import judged_claims
@@ -36,9 +36,9 @@ class WriteConditions:
     """Conditions under which a baseline may be written.
 
     Attributes:
-        revision: commit of the source; "unknown" outside a repository.
-        changed: files that differ from it, baselines apart: those are what is being written.
-        in_ci: whether a continuous integration job asks.
+        revision: Commit of the source; "unknown" outside a repository.
+        changed: Files that differ from it, baselines apart: those are what is being written.
+        in_ci: Whether a continuous integration job asks.
     """
 
     revision: str
@@ -66,7 +66,7 @@ def git(repository: Path, *arguments: str) -> str:
     """Return what git prints.
 
     Raises:
-        InvalidInput: with git's own words if it refuses.
+        InvalidInput: If git refuses, with its own words.
     """
     command = ["git", "-C", str(repository), *arguments]
     try:
@@ -139,24 +139,39 @@ class Proposal:
 
 
 def propose(
-    run: Run, case: str, *, suites: tuple[str, ...], before: Baseline | None, spreads: Spreads, reason: str
+    run: Run,
+    case: str,
+    *,
+    suites: tuple[str, ...],
+    before: Baseline | None,
+    spreads: Spreads,
+    reason: str,
+    unsolved: Collection[tuple[str, str]] = (),
 ) -> Proposal:
     """Return what accepting a case as it ran would change.
 
     Args:
-        run: with the case's answers and verdicts that are watched.
-        case: its name.
-        suites: suites the case belongs to.
-        before: what was accepted so far.
-        spreads: measured relative spread by method, scene and quantity.
-        reason: why, in the user's words.
+        run: Answers and verdicts that are watched.
+        case: Name of the case.
+        suites: Suites to which the case belongs.
+        before: Baseline accepted so far.
+        spreads: Measured relative spread by method, scene and quantity.
+        reason: Reason in the user's words.
+        unsolved: Scenes and methods that the run need not solve; what was accepted of them stays.
 
     Raises:
-        InvalidInput: if the spread of a quantity was not measured.
+        InvalidInput: If the spread of a quantity was not measured.
     """
     old = {(a.scene, a.method): a for a in before.answers} if before else {}
-    solved = sorted((one for one in run.answers.of_case(case) if one.solved), key=lambda one: one.identity)
-    answers = tuple(_with_spreads(one, old.get((one.scene, one.method)), spreads) for one in solved)
+    solved = sorted(
+        (answer for answer in run.answers.of_case(case) if answer.solved), key=lambda answer: answer.identity
+    )
+    new = {
+        (answer.scene, answer.method): _with_spreads(answer, old.get((answer.scene, answer.method)), spreads)
+        for answer in solved
+    }
+    kept_rows = {place: answer for place, answer in old.items() if place in unsolved}
+    answers = tuple(sorted((kept_rows | new).values(), key=lambda answer: answer.identity))
     judged = run.judged
     accepted = Accepted(
         case=case,
@@ -180,7 +195,7 @@ def _with_spreads(answer: Answer, old: Answer | None, spreads: Spreads) -> Answe
     """
     before: Mapping[str, Values] = old.quantities if old is not None else {}
     quantities = {}
-    for name, q in kept(answer).quantities.items():
+    for name, q in stored_part(answer).quantities.items():
         place = answer.method, answer.scene, name
         if not q.at and place not in spreads:
             raise InvalidInput(f"the spread of {' / '.join(place)} was not measured; a tolerance needs one")
@@ -191,7 +206,7 @@ def _with_spreads(answer: Answer, old: Answer | None, spreads: Spreads) -> Answe
         quantities[name] = replace(
             q, spread=known if OF_SPREAD * spread <= max(OF_SPREAD * known, SMALLEST_RELATIVE) else spread
         )
-    return replace(kept(answer), quantities=quantities)
+    return replace(stored_part(answer), quantities=quantities)
 
 
 def _changes(before: Baseline | None, after: Baseline) -> Iterator[Change]:
@@ -233,7 +248,7 @@ def accept(folder: Path, proposal: Proposal, run: Run, now: WriteConditions, *, 
     """Write the proposed baseline into ``folder``.
 
     Raises:
-        InvalidInput: naming every reason why this may not be accepted; nothing is written then.
+        InvalidInput: Naming every reason why this may not be accepted; nothing is written then.
     """
     refused = refusals(proposal, run, now, loosen=loosen)
     if refused:
@@ -259,8 +274,8 @@ def refusals(proposal: Proposal, run: Run, now: WriteConditions, *, loosen: bool
 
 def refusals_beforehand(case: str, run: Run, now: WriteConditions) -> tuple[str, ...]:
     """Return the reasons to refuse that are known before any solution is repeated to measure its spread."""
-    own = (verdict for verdict in run.judged.verdicts if verdict.case == case)
-    return *_refused_circumstances(run, now), *_refused_run(run.answers.of_case(case), own)
+    verdicts = (verdict for verdict in run.judged.verdicts if verdict.case == case)
+    return *_refused_circumstances(run, now), *_refused_run(run.answers.of_case(case), verdicts)
 
 
 def _refused_circumstances(run: Run, now: WriteConditions) -> Iterator[str]:

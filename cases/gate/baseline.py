@@ -48,11 +48,11 @@ class Accepted:
     """The accepted results of a case except its answers.
 
     Attributes:
-        case: its name.
-        suites: runs that must contain it.
-        reason: why it was accepted, the last time that something changed.
-        claims: that were judged.
-        stress_tests: of the study of stability.
+        case: Name of the case.
+        suites: Suites that must contain the case.
+        reason: Reason of the last change.
+        claims: Claims that were judged.
+        stress_tests: Stress tests that were made.
     """
 
     case: str
@@ -73,7 +73,7 @@ class Baseline:
 _ACCEPTED: TypeAdapter[Accepted] = TypeAdapter(Accepted)
 
 
-def kept(answer: Answer) -> Answer:
+def stored_part(answer: Answer) -> Answer:
     """Return the part of an answer that a baseline stores: fields have stated errors but no values."""
     quantities = {name: replace(q, values=(), at=(0.0,)) if q.at else q for name, q in answer.quantities.items()}
     return Answer(
@@ -111,7 +111,7 @@ def read_baselines(folder: Path) -> tuple[Baseline, ...]:
     """Return every baseline in ``folder``, ordered by case; none if there is no folder.
 
     Raises:
-        InvalidInput: if a file is damaged, or lies under another name than that of its case.
+        InvalidInput: If a file is damaged, or lies under another name than that of its case.
     """
     return tuple(_read(path) for path in sorted(folder.glob("*.jsonl")))
 

@@ -5,7 +5,7 @@ from collections.abc import Callable, Collection, Iterable, Iterator
 from dataclasses import dataclass, replace
 
 from cases.answers import Answer, Values
-from cases.gate.baseline import AcceptedClaim, Baseline, kept, permitted_change
+from cases.gate.baseline import AcceptedClaim, Baseline, permitted_change, stored_part
 from cases.rules import (
     SMALLEST_RELATIVE,
     Judgement,
@@ -60,28 +60,28 @@ def gate(
     method that is not installed where the run was made is named once and not compared.
 
     Args:
-        run: a run whose own claims are judged.
-        baselines: what was accepted; a case of the run's suite that the run does not have counts as missing.
-        methods: that are compared; empty for all.
-        watched: whether an answer needs accepted numbers; those of the nightly suite alone do not.
+        run: Run whose claims are judged.
+        baselines: Accepted results; a case of the run's suite that the run does not have counts as missing.
+        methods: Labels of the methods that are compared; empty for all.
+        watched: Whether an answer needs accepted numbers; those of the nightly suite alone do not.
     """
     accepted = {baseline.accepted.case: baseline for baseline in baselines}
     present = {text.name for text in run.judged.cases}
     suite = run.judged.suite
     lost = [name for name, b in sorted(accepted.items()) if name not in present and suite in b.accepted.suites]
-    own = tuple(verdict for verdict in run.judged.verdicts if verdict.kind is not Kind.REGRESSION)
+    verdicts_of_claims = tuple(verdict for verdict in run.judged.verdicts if verdict.kind is not Kind.REGRESSION)
 
     def wanted(answer: Answer) -> bool:
         return watched(answer) and (not methods or answer.method in methods)
 
-    stripped = replace(run, judged=replace(run.judged, verdicts=own))
+    stripped = replace(run, judged=replace(run.judged, verdicts=verdicts_of_claims))
     verdicts = tuple(
         verdict
         for name in (*present, *lost)
         for verdict in _of_case(stripped, name, accepted.get(name), wanted, methods)
     )
     texts = (*run.judged.cases, *(_lost_case(name) for name in lost))
-    return replace(run, judged=replace(run.judged, cases=texts, verdicts=(*own, *verdicts)))
+    return replace(run, judged=replace(run.judged, cases=texts, verdicts=(*verdicts_of_claims, *verdicts)))
 
 
 def _lost_case(name: str) -> CaseText:
@@ -111,8 +111,8 @@ def _of_case(
             for check in checks(new, old):
                 yield _verdict(case, shown.scene, (shown.method,), check)
     if baseline is not None:
-        own = [verdict for verdict in run.judged.verdicts if verdict.case == case]
-        yield from _missing_claims(case, baseline.accepted.claims, own, absent, methods)
+        verdicts = [verdict for verdict in run.judged.verdicts if verdict.case == case]
+        yield from _missing_claims(case, baseline.accepted.claims, verdicts, absent, methods)
         tests = [test for test in run.judged.stress_tests if test.case == case]
         yield from _stress_tests(case, tests, baseline.accepted.stress_tests)
 
@@ -127,7 +127,7 @@ def _not_installed(answers: Iterable[Answer]) -> dict[str, str]:
 
 def checks(new: Answer | None, old: Answer | None) -> Iterator[_Check]:
     """Yield the comparison of an answer with the accepted one: values, counters, the stated error that changed most."""
-    solved = kept(new) if new is not None and new.solved else None
+    solved = stored_part(new) if new is not None and new.solved else None
     before, after = ({} if one is None else one.quantities for one in (old, solved))
     for name in dict.fromkeys([*before, *after]):
         now, then = after.get(name), before.get(name)
@@ -201,14 +201,14 @@ def permitted_count_change(name: str, accepted: int) -> float:
 
 def _stated(now: dict[str, Values], then: dict[str, Values]) -> Iterator[_Check]:
     """Judge the stated error that changed most: it may neither grow nor shrink unnoticed."""
-    found = {
+    judgements = {
         f"uncertainty of {name}": _stated_error(f"uncertainty of {name}", now[name], b)
         for name, b in then.items()
         if name in now and len(now[name].values) == len(b.values) and (now[name].error or b.error)
     }
-    if found:
-        worst = worst_judgement(list(found.values()))
-        what = next(name for name, judged in found.items() if judged is worst)
+    if judgements:
+        worst = worst_judgement(list(judgements.values()))
+        what = next(name for name, judged in judgements.items() if judged is worst)
         yield _Check(what=what, judged=worst, basis=ERRORS, tolerance=LARGEST_RATIO, expected=1.0)
 
 
@@ -226,10 +226,10 @@ def judge_stated(name: str, stated: float, accepted: float, floor: float) -> Jud
     """Judge (stated + floor) / (accepted + floor), which lies between 1 / `LARGEST_RATIO` and `LARGEST_RATIO`.
 
     Args:
-        name: of the error, for the message.
-        stated: by this run.
-        accepted: with the baseline.
-        floor: error of a few thousand roundings, same unit; between smaller ones there is no difference.
+        name: Name of the error, for the message.
+        stated: Error that this run states.
+        accepted: Error in the baseline.
+        floor: Error of a few thousand roundings, same unit; between smaller ones there is no difference.
     """
     ratio = (stated + floor) / (accepted + floor)
     fraction = max(ratio, 1.0 / ratio) / LARGEST_RATIO
@@ -239,8 +239,8 @@ def judge_stated(name: str, stated: float, accepted: float, floor: float) -> Jud
 
 def judged_claims(verdicts: Iterable[Verdict]) -> tuple[AcceptedClaim, ...]:
     """Return how often each claim was judged; regression, which the gate itself adds, is none of them."""
-    own = (verdict for verdict in verdicts if verdict.kind is not Kind.REGRESSION)
-    counts = Counter((v.claim, v.kind, v.quantity, v.methods) for v in own)
+    judged = (verdict for verdict in verdicts if verdict.kind is not Kind.REGRESSION)
+    counts = Counter((v.claim, v.kind, v.quantity, v.methods) for v in judged)
     return tuple(
         AcceptedClaim(name=name, kind=kind, quantity=quantity, methods=methods, judged=count)
         for (name, kind, quantity, methods), count in sorted(counts.items())

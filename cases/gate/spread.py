@@ -18,7 +18,7 @@ import numpy as np
 from cases.answers import Answer, Table
 from cases.case import Case, Task
 from cases.rules import relative_spread
-from cases.run.executors import ahead, closing, completed, process_pool
+from cases.run.executors import ahead, closing, completed, died, process_pool
 from cases.run.solve_task import job_of, solve
 from cases.units import changed
 from contact import DepthFunction, InvalidInput, Scene
@@ -36,7 +36,7 @@ def measured_spreads(case: Case, answers: Table, *, jobs: int = 2) -> Spreads:
     """Return the relative spread of every quantity of the case's ``answers``, measured by repeating them.
 
     Raises:
-        InvalidInput: if a repetition breaks down or gives another number of steps: such an answer cannot be accepted.
+        InvalidInput: If a repetition breaks down or gives another number of steps: such an answer cannot be accepted.
     """
     tasks = [case.task(scene, use) for scene in case.scenes for use in case.methods_of(scene)]
     solved = [(task, answer) for task in tasks if (answer := answers.get(task.identity)) is not None and answer.solved]
@@ -51,15 +51,15 @@ def measured_spreads(case: Case, answers: Table, *, jobs: int = 2) -> Spreads:
 def _repeated(tasks: list[Task], towards: float, jobs: int) -> Iterator[tuple[Task, Answer]]:
     """Solve each task's nudged scene, in fresh processes."""
     with closing(process_pool(jobs)) as executor:
-        broken: list[Task] = []
-        for task, answer in completed(partial(_submit, executor, towards), tasks, ahead(executor, jobs), broken):
+        for task, future in completed(partial(_submit, executor, towards), tasks, ahead(executor, jobs)):
+            if died(future):
+                raise InvalidInput(f"{task.label}: the process that repeated it died; accept nothing from such a run")
+            answer = future.result()
             if not answer.solved:
                 raise InvalidInput(
                     f"{task.label}: this repetition should change nothing, but {answer.status}: {answer.reason}"
                 )
             yield task, answer
-    for task in broken:
-        raise InvalidInput(f"{task.label}: the process that repeated it died; accept nothing from such a run")
 
 
 def _submit(executor: Executor, towards: float, task: Task) -> Future[Answer]:
@@ -95,8 +95,8 @@ def _nudged(towards: float, record: Record, name: str, value: Any) -> Any:
     """The number one unit in the last place away; a zero means that nothing is pressed, and stays."""
     if name not in NUDGED or isinstance(value, DepthFunction):
         return value
-    moved = np.where((value == 0.0) | np.isinf(value), value, np.nextafter(value, towards))
-    return moved if isinstance(value, np.ndarray) else float(moved)
+    neighbour = np.where((value == 0.0) | np.isinf(value), value, np.nextafter(value, towards))
+    return neighbour if isinstance(value, np.ndarray) else float(neighbour)
 
 
 @contextmanager

@@ -4,9 +4,11 @@ A requirement is a tolerance that is fixed beforehand. No method sets its own: s
 verdict. A method that is too coarse is told so (INCONCLUSIVE), and one that misses it by more than it states disagrees.
 """
 
+import re
 import tomllib
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import fields, replace
+from fnmatch import fnmatchcase
 from functools import partial
 from pathlib import Path
 from typing import Any, TypeAlias, TypeVar
@@ -15,8 +17,8 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from cases.answers import Answer
-from cases.case import CaseScene, Sampling
-from cases.claims import Agree, Approach, Bound, Claim, Equal, Expected, Law, Norm, Numbers, Zero
+from cases.case import USUAL_SUITES, Case, CaseScene, Sampling
+from cases.claims import Agree, Approach, Bound, Claim, Equal, Expected, Law, Norm, Numbers, Study, Zero
 from cases.declare.methods import MethodUse
 from cases.units import Units, in_units
 from cases.verdicts import Origin, Why
@@ -32,23 +34,82 @@ Points: TypeAlias = tuple[tuple[float, float], ...]
 Ratios: TypeAlias = tuple[float, ...] | list[float] | FloatArray
 
 
-def _table(name: str) -> dict[str, Any]:
+def table(name: str) -> dict[str, Any]:
+    """Return a table of numbers or words of this folder."""
     return tomllib.loads(Path(__file__).with_name(name).read_text(encoding="utf-8"))
 
 
 # Reference numbers of `benchmarks.references`, by kind and name; what each list holds stands in its ``table``.
-NUMBERS: dict[str, dict[str, list[float]]] = _table("reference_numbers.toml")
+NUMBERS: dict[str, dict[str, list[float]]] = table("reference_numbers.toml")
 # kbar of the bonded layer by a/h as Hayes et al. (1972) printed it, by label of the layer.
 HAYES: dict[str, dict[float, float]] = {
-    label: dict(zip(column["a_over_h"], column["kbar"], strict=True)) for label, column in _table("hayes.toml").items()
+    label: dict(zip(column["a_over_h"], column["kbar"], strict=True)) for label, column in table("hayes.toml").items()
 }
 
 # Fits as printed, and loads that are prescribed.
-FURTHER = _table("further_numbers.toml")
+FURTHER = table("further_numbers.toml")
+# Scenes that the suite ci solves, by case and method.
+IN_CI: dict[str, dict[str, list[str]]] = table("suite_ci.toml")
+
+# -- papers -----------------------------------------------------------------------------------------------------------
+HEAD = re.compile(
+    r"(?P<title>.+?)\.\n\nQuestion: (?P<question>.+?)\nSource: (?P<source>.+?)\.\n\n(?P<text>.+)", re.DOTALL
+)
+
+
+def paper(
+    module: str,
+    text: str | None,
+    scenes: Iterable[CaseScene],
+    methods: tuple[MethodUse, ...],
+    claims: Iterable[Study],
+    *,
+    suites: tuple[str, ...] = USUAL_SUITES,
+) -> Case:
+    """Return the case of a module, whose docstring is a title, a question, its source (equations) and the text.
+
+    Args:
+        module: name of the module, which is that of the case.
+        text: its docstring.
+        scenes: that are solved.
+        methods: that solve a scene without methods of its own.
+        claims: about the answers.
+        suites: that the case is in.
+
+    Raises:
+        InvalidInput: if the docstring lacks the question or the source.
+    """
+    name = module.rpartition(".")[2]
+    if (head := HEAD.fullmatch((text or "").strip())) is None:
+        raise InvalidInput(f"{name}.py: a docstring is title, 'Question: ..?', 'Source: ..; ...', text")
+    title, question, source = (" ".join(head[part].split()) for part in ("title", "question", "source"))
+
+    def in_suites(scene: CaseScene) -> CaseScene:
+        labels = [use.label for use in scene.methods or methods]
+        return replace(scene, nightly=tuple(label for label in labels if not _in_ci(name, label, scene.name)))
+
+    return Case(
+        name=name,
+        title=title,
+        question=question,
+        equations=tuple(source.split("; ")),
+        text=head["text"],
+        suites=suites,
+        scenes=tuple(map(in_suites, scenes)),
+        methods=methods,
+        claims=tuple(claims),
+    )
+
+
+def _in_ci(case: str, label: str, scene: str) -> bool:
+    """Whether the suite ci solves a scene by a method."""
+    lists = (IN_CI.get(case, {}).get(key) for key in ("*", label))
+    return all(any(fnmatchcase(scene, pattern) for pattern in own) for own in lists if own is not None)
+
 
 # -- reasons ----------------------------------------------------------------------------------------------------------
 # Why claims hold, by case and name.
-REASONS = _table("reasons.toml")
+REASONS = table("reasons.toml")
 
 
 def reasons(case: str) -> dict[str, Why]:
@@ -133,7 +194,6 @@ def scene(
     steep: bool = False,
     sampling: Sampling | None = None,
     methods: tuple[MethodUse, ...] = (),
-    nightly: tuple[str, ...] = (),
     **parameters: bool | float | str,
 ) -> CaseScene:
     """Return a scene of a case.
@@ -147,14 +207,13 @@ def scene(
         steep: whether its strains are beyond small ones; the scene is solved all the same.
         sampling: what is kept of each answer.
         methods: that solve it; empty for those of the case.
-        nightly: labels of those that take too long for the suite "ci".
         parameters: what sets it apart.
     """
     problem: AnyScene = Scene(
         layer=layer, indenter=indenter, loading=loading, effects=effects, beyond_small_strains=steep
     )
     kept = Sampling() if sampling is None else sampling
-    return CaseScene(name=name, parameters=parameters, scene=problem, sampling=kept, methods=methods, nightly=nightly)
+    return CaseScene(name=name, parameters=parameters, scene=problem, sampling=kept, methods=methods)
 
 
 def rings(contact_radius: float, *fractions: float) -> Sampling:

@@ -33,8 +33,6 @@ SLOPE = 0.05
 DEPTH = 1e-5  # m
 INDENTERS = ("paraboloid", "truncated cone", "flat punch")
 FAST = ("mdr", "integral_equation")
-# Labels of scenes that no method solves in the suite ci.
-NIGHTLY = (*FAST, "fem", "bem")
 # Rings halve towards the edge until the last is as narrow as the material at the surface is thick ..
 HALVED = 0.5
 # .. and, where the pressure of a graded layer has a logarithm, to 1e-4 of the contact.
@@ -67,7 +65,6 @@ def pressed(
     indenter: str = "paraboloid",
     *,
     sampled: bool = True,
-    nightly: tuple[str, ...] = NIGHTLY,
 ) -> CaseScene:
     """Return a scene at a/H = ``ratio``; the flat end of the truncated cone is half as wide as its contact."""
     a = ratio * c.THICKNESS
@@ -82,7 +79,6 @@ def pressed(
         *kinds[indenter],
         steep=indenter != "flat punch",
         sampling=c.rings(a, *_rings(layer, a)) if sampled and indenter != "truncated cone" else None,
-        nightly=nightly,
         layer=label,
         indenter=indenter,
         a_over_h=ratio,

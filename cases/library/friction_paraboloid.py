@@ -1,5 +1,8 @@
 """A paraboloid with dry friction.
 
+Question: What does dry friction add to the force of a paraboloid, and are the fast statements about it right?
+Source: Coulomb; Spence 1975; Eq. (2).
+
 A paraboloid with dry friction: how much more force the same depth takes, and what a cycle turns into heat. Where a
 layer slides under the indenter, Coulomb's friction holds it back, and the same depth takes more force; from some
 coefficient on nothing slides any more. Finite elements follow the contact as it grows, from one node of the surface to
@@ -18,7 +21,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.integrate import quad
 
-from cases.case import CaseScene, paper
+from cases.case import CaseScene
 from cases.cost import Cost
 from cases.declare.methods import MethodUse
 from cases.library import _common as c
@@ -36,14 +39,12 @@ INDENTER = Paraboloid(radius_of_curvature=10 * c.THICKNESS)
 DEPTH = 0.12 * c.THICKNESS
 # Coefficients whose distance from the first order falls like their square; others by the share that slides.
 SMALL, OTHERS = (0.04, 0.02), (0.1, 0.3, 1.0)
-QUICK = ("nu=0.5 mu=0.04", "nu=0.5 mu=0.02", "nu=0.5 stick", "nu=0.5 cycle", "half-space nu=0.3 c/a=0.7")
 SPENCE = c.NUMBERS["partial_slip"]
 
 
 def rubbed(name: str, layer: Layer, mu: float, *methods: MethodUse, loading: Loading | None = None) -> CaseScene:
     """Return a paraboloid that is pressed to the usual depth, or under another loading."""
-    late = () if name in QUICK else tuple(use.label for use in methods or (CELLS,))
-    more: c.Words = {"effects": (Friction(coefficient=mu),), "methods": methods, "nightly": late}
+    more: c.Words = {"effects": (Friction(coefficient=mu),), "methods": methods}
     place: c.Words = {"poissons_ratio": layer.poissons_ratio, "friction": mu if math.isfinite(mu) else "stick"}
     return c.scene(name, layer, INDENTER, loading or IndentationDepths([DEPTH]), **more, **place)
 
@@ -142,37 +143,33 @@ LAWS = {
 }
 UNDER_STICK = {"radius under stick": "contact_radius", "force under stick": FORCE}
 CLOSED: c.Words = {"tolerance": 1e-8, "fem": 1e-5}
-# Unknowns of growth are these over 24 times the usual ones: 10 to 20 of 30.
-NODES, SIXTH = r.in_turn("nodes", (8, 12, 16)), "unknowns of growth, a sixth a step"
-STICK_NODES = r.refinement(SIXTH, "mdr", NODES, r.WHY["nodes"], least_digits=1.0, floor=1e-12)
 GRIDS = {FORCE: 2e-4, "contact_radius": 1e-3, "dissipated_energy": 2e-2}
 TWO_GRIDS: c.Words = {"fast": "fem", "why": WHY["two grids"], "name": "{}: two grids", "nightly": True}
 TIMED = MethodUse(label="full stick", method="mdr")
 LADDER = (TIMED, *(MethodUse(label=f"growth {g:g}", method="fem", settings={"growth": g}) for g in (0.75, 0.5, 0.25)))
-PRICE: c.Words = {"scene": "nu=0.5 stick", "ladder": LADDER, "reference": TIMED, "cheap": (TIMED,)}
-CASE = paper(
+PRICE: c.Words = {"scene": "nu=0.5 stick", "ladder": LADDER, "reference": TIMED, "cheap": (TIMED,), "nightly": True}
+CLAIMS = (
+    *c.agreements(STUCK, {"fem": 1e-3}, (FORCE, "contact_stiffness"), why=WHY["two methods"]),
+    c.approach(*RECIPROCITY, SMALL_ONES, to_first_order, WHY["first order"], **FIRST_ORDER),
+    c.bound("the bound holds from below", FORCE, SLIDING, frictionless, WHY["bound"], **LEAST),
+    c.bound("the bound holds from above", FORCE, SLIDING, frictionless, WHY["bound"], **MOST),
+    *(
+        c.equal(name, quantity, of_spence, on, WHY["self-similar"], tolerance=tolerance)
+        for name, (quantity, on, tolerance) in SPENCES.items()
+    ),
+    *c.equals(UNDER_STICK, stuck_on_half_space, HALF_SPACES, WHY["stick on the half-space"], **CLOSED),
+    *r.studies(STUCK[:3], "nodes of growth", (FORCE,), against=r.FINEST_MDR, nightly=True),
+    *c.agreements(REFINED, {MORE_CELLS.label: GRIDS}, GRIDS, **TWO_GRIDS),
+    *(
+        c.zero(name, quantity, on, WHY[name], tolerance=tolerance, methods=("fem",))
+        for name, (quantity, on, tolerance) in LAWS.items()
+    ),
+    Cost(name="cost of full stick", quantity=FORCE, **PRICE),
+)
+CASE = c.paper(
     __name__,
     __doc__,
-    question="What does dry friction add to the force of a paraboloid, and are the fast statements about it right?",
-    equations=("Coulomb", "Spence 1975", "Eq. (2)"),
-    scenes=(*SLIDING, *STUCK, *HALF_SPACES, *REFINED, *SELF_SIMILAR, ON_THICK, CYCLE),
-    methods=(c.MDR, CELLS),
-    claims=(
-        *c.agreements(STUCK, {"fem": 1e-3}, (FORCE, "contact_stiffness"), why=WHY["two methods"]),
-        c.approach(*RECIPROCITY, SMALL_ONES, to_first_order, WHY["first order"], **FIRST_ORDER),
-        c.bound("the bound holds from below", FORCE, SLIDING, frictionless, WHY["bound"], **LEAST),
-        c.bound("the bound holds from above", FORCE, SLIDING, frictionless, WHY["bound"], **MOST),
-        *(
-            c.equal(name, quantity, of_spence, on, WHY["self-similar"], tolerance=tolerance)
-            for name, (quantity, on, tolerance) in SPENCES.items()
-        ),
-        *c.equals(UNDER_STICK, stuck_on_half_space, HALF_SPACES, WHY["stick on the half-space"], **CLOSED),
-        *r.studies(STUCK[:3], STICK_NODES, (FORCE,), against=r.FINEST_MDR),
-        *c.agreements(REFINED, {MORE_CELLS.label: GRIDS}, GRIDS, **TWO_GRIDS),
-        *(
-            c.zero(name, quantity, on, WHY[name], tolerance=tolerance, methods=("fem",))
-            for name, (quantity, on, tolerance) in LAWS.items()
-        ),
-        Cost(name="cost of full stick", quantity=FORCE, **PRICE),
-    ),
+    (*SLIDING, *STUCK, *HALF_SPACES, *REFINED, *SELF_SIMILAR, ON_THICK, CYCLE),
+    (c.MDR, CELLS),
+    CLAIMS,
 )

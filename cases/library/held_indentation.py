@@ -1,5 +1,8 @@
 """Pressing and holding on a relaxing layer.
 
+Question: Do MDR and finite elements follow a prescribed history, and with which orders?
+Source: Eq. (51); Eq. (52).
+
 A paraboloid is pressed into a relaxing layer at constant speed and held: a prescribed history of the depth. On an
 incompressible half-space the contact grows and then rests, so that the theory of Lee and Radok gives the force, F =
 (16/3) sqrt(R) int G(t - s) d(delta^(3/2)), and under a force that rises and is held the depth, delta^(3/2) = 3/(16
@@ -18,7 +21,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.linalg import expm
 
-from cases.case import CaseScene, paper
+from cases.case import CaseScene
 from cases.library import _common as c
 from cases.library import _refinements as r
 from cases.library import sphere_impact as impact
@@ -57,17 +60,15 @@ def held(name: str, body: str, loading: DepthHistory | ForceHistory, *effects: o
 def histories(verb: str, body: str) -> tuple[CaseScene, ...]:
     """Return the scenes of every relaxation function, by a ramp and at once: "relaxing" by depth, "creeping" by force.
 
-    Finite elements search the depth of every force: nightly, but under Kelvin-Voigt, whose depth begins at zero. Under
-    a jump of the depth the force on a dashpot is infinite: MDR alone answers it.
+    Under a jump of the depth the force on a dashpot is infinite: MDR alone answers it.
     """
     scenes, by_depth = [], verb == "relaxing"
     for begins, share in BEGINNINGS.items():
         depth, force = DepthHistory(time=TIME, depth=DEPTH * share), ForceHistory(time=TIME, force=FORCE * share)
         for relaxes, effect in RELAXING.items():
             scene = held(f"{verb} {body}{begins}{relaxes}", body, depth if by_depth else force, effect)
-            usual, infinite = by_depth and not begins + relaxes, effect is DASHPOT and by_depth and begins
-            nightly = () if effect is DASHPOT or usual else ("fem",)
-            scenes.append(replace(scene, methods=(c.MDR,) if infinite else (), nightly=nightly))
+            infinite = effect is DASHPOT and by_depth and begins
+            scenes.append(replace(scene, methods=(c.MDR,) if infinite else ()))
     return tuple(scenes)
 
 
@@ -75,9 +76,7 @@ RELAXING_HALF_SPACES, RELAXING_LAYERS = (histories("relaxing", body) for body in
 CREEPING_HALF_SPACES, CREEPING_LAYERS = (histories("creeping", body) for body in BODIES)
 ELASTIC = held("elastic bonded layer", "bonded layer", DepthHistory(time=TIME, depth=DEPTH * BEGINNINGS[""]))
 HALVED = ForceHistory(time=TIME, force=np.array([0.0, FORCE, FORCE / 2]))
-EASED = tuple(
-    replace(held(f"eased {body}", body, HALVED, impact.SOLID), methods=(c.MDR,), nightly=("mdr",)) for body in BODIES
-)
+EASED = tuple(replace(held(f"eased {body}", body, HALVED, impact.SOLID), methods=(c.MDR,)) for body in BODIES)
 
 
 def branches(scene: c.AnyScene) -> tuple[FloatArray, FloatArray]:
@@ -141,20 +140,19 @@ THREE_TIMES = "three times what finite elements state for 120 cells and 400 step
 ONE_PERCENT = "a requirement on a dashpot, whose force jumps with every cell that the contact reaches: 1 %"
 LATE: c.Words = {"against": r.FINEST_MDR, "nightly": True}
 LEE_AND_RADOK = WHY["lee and radok"]
-CASE = paper(
+CLAIMS = (
+    c.equal("force on the half-space", *BY_DEPTH, lee_and_radok, RELAXING_HALF_SPACES, LEE_AND_RADOK, **CLOSED),
+    c.equal("depth on the half-space", *BY_FORCE, creep, CREEPING_HALF_SPACES, WHY["creep"], **CLOSED),
+    *c.agreements(LAYERS, {"fem": 2e-3}, BY_FORCE, derived_from=THREE_TIMES, suffix=", creep"),
+    *c.agreements(OTHERS, {"fem": 2e-3}, BY_DEPTH, derived_from=THREE_TIMES),
+    *c.agreements(FINITE, {"fem": 1e-2}, BY_DEPTH, derived_from=ONE_PERCENT, suffix=", dashpot"),
+    *r.studies(EASED, "accuracy of receding fronts", BY_FORCE, **LATE),
+    *r.studies((ELASTIC,), "cells and time steps", {"normal_force": 2.0}, **LATE),
+)
+CASE = c.paper(
     __name__,
     __doc__,
-    question="Do MDR and finite elements follow a prescribed history, and with which orders?",
-    equations=("Eq. (51)", "Eq. (52)"),
-    scenes=(*RELAXING_HALF_SPACES, *RELAXING_LAYERS, ELASTIC, *CREEPING_HALF_SPACES, *LAYERS, *EASED),
-    methods=(c.MDR, c.PLAIN_FEM),
-    claims=(
-        c.equal("force on the half-space", *BY_DEPTH, lee_and_radok, RELAXING_HALF_SPACES, LEE_AND_RADOK, **CLOSED),
-        c.equal("depth on the half-space", *BY_FORCE, creep, CREEPING_HALF_SPACES, WHY["creep"], **CLOSED),
-        *c.agreements(LAYERS, {"fem": 2e-3}, BY_FORCE, derived_from=THREE_TIMES, suffix=", creep"),
-        *c.agreements(OTHERS, {"fem": 2e-3}, BY_DEPTH, derived_from=THREE_TIMES),
-        *c.agreements(FINITE, {"fem": 1e-2}, BY_DEPTH, derived_from=ONE_PERCENT, suffix=", dashpot"),
-        *r.studies(EASED, r.RECEDING_ACCURACY, BY_FORCE, **LATE),
-        *r.studies((ELASTIC,), r.CELLS_AND_STEPS, {"normal_force": 2.0}, **LATE),
-    ),
+    (*RELAXING_HALF_SPACES, *RELAXING_LAYERS, ELASTIC, *CREEPING_HALF_SPACES, *LAYERS, *EASED),
+    (c.MDR, c.PLAIN_FEM),
+    CLAIMS,
 )

@@ -1,5 +1,8 @@
 """Inside the layer.
 
+Question: Do two methods agree on displacement, stress and pressure inside, and do both obey the laws?
+Source: Eq. (9); Eq. (14).
+
 The layer inside: displacement, stress, hydrostatic pressure and its gradient by two methods without common code. Under
 a paraboloid and a truncated cone, on bonded layers with nu = 0.3, 0.45 and 0.5 and on an unbonded one, MDR makes the
 fields inside from the density of its pressure, closed forms of the half-space and an integral over wavenumbers; finite
@@ -13,12 +16,11 @@ wide. In a thin incompressible layer the pressure reaches from top to base as in
 in the middle.
 """
 
-import math
 from dataclasses import replace
 
 import numpy as np
 
-from cases.case import CaseScene, Sampling, paper
+from cases.case import CaseScene, Sampling
 from cases.claims import Norm
 from cases.cost import inside_costs
 from cases.declare.methods import MethodUse
@@ -37,10 +39,6 @@ POINTS = (*((r, z) for r in (0.0, 0.3, 0.8, 1.25) for z in (0.3, 0.6, 1.0)), MID
 BELOW_CONTACT = tuple((r, z) for r, z in POINTS if r < 1.0)
 # Away from edges and faces; the cost of the last is measured.
 GRID = (*((r, z) for r in np.linspace(0.05, 1.45, 8).tolist() for z in np.linspace(0.15, 0.9, 8).tolist()), (0.5, 0.5))
-# Finite elements solve these in the suite ci, all in the nightly one.
-QUICK = ("paraboloid, bonded nu=0.5 a/h=1",)
-# The laws of a body take many points where a layer is thin: one scene of each profile is enough for the suite ci.
-SLOW = tuple(f"{kind}, {label} a/h=5" for kind in (PARABOLOID, CONE) for label in c.LAYERS if label != "bonded nu=0.5")
 MESH = MethodUse(label="fem", settings={"growth": 0.18, "truncation": 1e-10})
 
 
@@ -49,35 +47,29 @@ def pressed(kind: str, label: str, body: Layer, ratio: float) -> CaseScene:
     a, name = ratio * c.THICKNESS, f"{kind}, {c.scene_name(label, ratio)}"
     cone = TruncatedCone(flat_radius=a / 2, slope=SLOPE)
     profile: Profile = cone if kind == CONE else Paraboloid(radius_of_curvature=RADIUS_OF_CURVATURE)
-    nightly = () if name in QUICK else ("mdr", "fem") if name in SLOW else ("fem",)
-    more: c.Words = {"steep": True, "sampling": Sampling(inside=POINTS), "nightly": nightly}
+    more: c.Words = {"steep": True, "sampling": Sampling(inside=POINTS)}
     return c.scene(name, body, profile, ContactRadii([a]), **more, profile=kind, layer=label, a_over_h=ratio)
 
 
-def below(nu: float, ratio: float, *nightly: str, points: c.Points = BELOW_CONTACT) -> CaseScene:
-    """Return a paraboloid on a bonded layer, without the laws; by MDR alone unless something is nightly."""
+def below(nu: float, ratio: float, points: c.Points = BELOW_CONTACT, *others: MethodUse) -> CaseScene:
+    """Return a paraboloid on a bonded layer, without the laws; by MDR and other methods."""
     one = pressed(PARABOLOID, f"bonded nu={nu:g}", c.layer_of(nu), ratio)
-    methods = (c.MDR, MESH) if nightly else (c.MDR,)
-    return replace(one, sampling=Sampling(inside=points, laws=False), methods=methods, nightly=nightly)
+    return replace(one, sampling=Sampling(inside=points, laws=False), methods=(c.MDR, *others))
 
 
 COMPARED = tuple(
     pressed(kind, label, c.layer(label), ratio) for kind in (PARABOLOID, CONE) for label in c.LAYERS for ratio in RATIOS
 )
-THIN = tuple(below(0.5, ratio, points=(MIDDLE,)) for ratio in (25.0, 50.0))
+THIN = tuple(below(0.5, ratio, (MIDDLE,)) for ratio in (25.0, 50.0))
 LADDER = (
-    *(below(0.5 - gap, 1.0, "fem") for gap in (1e-2, 1e-4, 1e-6)),
-    *(below(nu, q, *(("mdr", "fem") if q > 30.0 else ("fem",))) for nu in (0.3, 0.5) for q in WIDE_RATIOS),
+    *(below(0.5 - gap, 1.0, BELOW_CONTACT, MESH) for gap in (1e-2, 1e-4, 1e-6)),
+    *(below(nu, q, BELOW_CONTACT, MESH) for nu in (0.3, 0.5) for q in WIDE_RATIOS),
 )
 REFINED = tuple(
-    replace(one, name=f"{one.name}, refined", sampling=Sampling(inside=GRID, laws=False), nightly=("fem",))
+    replace(one, name=f"{one.name}, refined", sampling=Sampling(inside=GRID, laws=False))
     for one in COMPARED
     if one.name in ("paraboloid, bonded nu=0.3 a/h=1", "paraboloid, bonded nu=0.5 a/h=1")
 )
-# Two neighbouring meshes count by their root mean square: where points lie in their triangles scatters errors.
-GROWTHS = ([math.expm1(0.35 * r.ROOT_TWO**-level * near) for near in (0.97, 1.03)] for level in range(4))
-MESHES = r.neighbours("growth", GROWTHS, order=3, edge_cell=1e-9, truncation=1e-12)
-CELLS = r.refinement("P3 cells inside, two meshes a refinement", "fem", MESHES, WHY["order"], r.ROOT_TWO)
 ORDERS = {"displacement_inside": 4.0, "stress_inside": 3.0, "pressure_inside": 3.0, "gradient_inside": 2.0}
 
 
@@ -101,25 +93,18 @@ LAWS = {
     "the pressure comes back below the surface": ("surface_inside", 1e-3),
 }
 FILM_LIMIT = "thin limit of the pressure inside", "axial_stress_inside"
-CASE = paper(
-    __name__,
-    __doc__,
-    question="Do two methods agree on displacement, stress and pressure inside, and do both obey the laws?",
-    equations=("Eq. (9)", "Eq. (14)"),
-    scenes=(*COMPARED, *LADDER, *REFINED, *THIN),
-    methods=(c.MDR, MESH),
-    claims=(
-        *(
-            claim
-            for norm, within in FIELDS.items()
-            for claim in c.agreements((*COMPARED, *LADDER), {"fem": within}, within, why=WHY["two methods"], norm=norm)
-        ),
-        *(
-            c.zero(name, quantity, COMPARED, WHY["laws"], tolerance=2e-10, fem=of_mesh)
-            for name, (quantity, of_mesh) in LAWS.items()
-        ),
-        *r.studies(REFINED, CELLS, ORDERS, against="mdr", nightly=True),
-        c.approach(*FILM_LIMIT, THIN, film_pressure, WHY["film"], largest=0.15, methods=("mdr",)),
-        *inside_costs(REFINED[0].name),
+CLAIMS = (
+    *(
+        claim
+        for norm, within in FIELDS.items()
+        for claim in c.agreements((*COMPARED, *LADDER), {"fem": within}, within, why=WHY["two methods"], norm=norm)
     ),
+    *(
+        c.zero(name, quantity, COMPARED, WHY["laws"], tolerance=2e-10, fem=of_mesh)
+        for name, (quantity, of_mesh) in LAWS.items()
+    ),
+    *r.studies(REFINED, "cells inside", ORDERS, against="mdr", nightly=True),
+    c.approach(*FILM_LIMIT, THIN, film_pressure, WHY["film"], largest=0.15, methods=("mdr",)),
+    *inside_costs(REFINED[0].name),
 )
+CASE = c.paper(__name__, __doc__, (*COMPARED, *LADDER, *REFINED, *THIN), (c.MDR, MESH), CLAIMS)

@@ -1,5 +1,8 @@
 """Indentation by a measured profile.
 
+Question: Do methods that join the points of a measured profile themselves agree?
+Source: Eq. (4); Eq. (8); Eq. (15).
+
 A measured profile: radii and heights in a table, joined by each method in its own way. Profiles of real indenters come
 as tables. Here nine points of a paraboloid are given, joined by shape-preserving cubics (PCHIP), so the profile is not
 analytic at any of them. Finite elements compute the cubics themselves from the points; MDR takes the slopes of the
@@ -9,7 +12,6 @@ boundary elements share, parts the methods.
 
 import numpy as np
 
-from cases.case import paper
 from cases.library import _common as c
 from contact import ContactRadii, Tabulated
 
@@ -21,15 +23,8 @@ SCENES = tuple(
     c.scene(f"nine points, {label}", c.layer(label), PROFILE, RADII, layer=label)
     for label in ("half-space", "bonded nu=0.5")
 )
-CASE = paper(
-    __name__,
-    __doc__,
-    question="Do methods that join the points of a measured profile themselves agree?",
-    equations=("Eq. (4)", "Eq. (8)", "Eq. (15)"),
-    scenes=SCENES,
-    methods=(c.MDR, c.QUICK_FEM, c.EQUATION),
-    claims=(
-        *c.agreements(SCENES, {"fem": 3e-4}, why=c.reasons("measured_profile")["own cubics"]),
-        *c.agreements(SCENES, c.required("integral_equation")),
-    ),
+CLAIMS = (
+    *c.agreements(SCENES, {"fem": 3e-4}, why=c.reasons("measured_profile")["own cubics"]),
+    *c.agreements(SCENES, c.required("integral_equation")),
 )
+CASE = c.paper(__name__, __doc__, SCENES, (c.MDR, c.QUICK_FEM, c.EQUATION), CLAIMS)

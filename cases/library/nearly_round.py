@@ -1,5 +1,8 @@
 """Pyramids, ellipses and square punches.
 
+Question: What is a contact that is nearly round, and how wrong is the equivalent cone?
+Source: Hertz 1882; Popov 2022.
+
 Contacts that are nearly round: ellipses, squares and pyramids, by the expansion of MDR and by cells of any outline. MDR
 expands about the mean profile: the outline to first order in the deviation from a circle, force and stiffness to second
 order. Boundary elements press cells and assume no circle; only the layer kernel is shared. Hertz' ellipse and the
@@ -12,7 +15,7 @@ import numpy as np
 from scipy.optimize import brentq
 from scipy.special import ellipe, ellipk
 
-from cases.case import CaseScene, paper
+from cases.case import CaseScene
 from cases.declare.methods import MethodUse
 from cases.library import _common as c
 from contact import EllipticParaboloid, EllipticPunch, IndentationDepths, Layer, PolygonalPunch, Profile, Pyramid
@@ -85,20 +88,19 @@ SLENDER = tuple(
 )
 STIFFNESS = "contact_stiffness"
 BY_MDR: c.Words = {"tolerance": 1e-12, "methods": ("mdr",)}
-CASE = paper(
+CLAIMS = (
+    c.equal("force on an ellipse", "normal_force", hertz, [ELLIPSE], WHY["Hertz"], tolerance=1e-4, bem=1e-3),
+    c.equal("stiffness", STIFFNESS, stiffness, [PUNCHES], WHY["elliptic punch"], tolerance=1e-4, bem=1e-3),
+    c.equal("square punch", STIFFNESS, stiffness, [SQUARES], WHY["capacity"], tolerance=3e-3),
+    *c.agreements((*LAYERS, *PYRAMIDS), {"bem": 5e-2}, c.PATH[1:], why=WHY["cells"]),
+    *c.agreements(CONES, {"fem": 3e-4}, ("normal_force",), derived_from=WHY["cone"].tolerance),
+    c.bound("a pyramid is stiffer than its cone", "normal_force", PYRAMIDS, on_cone, WHY["cone"], **BY_MDR),
+    c.approach("thin layer", STIFFNESS, SLENDER, stiffness, WHY["squeezed"], largest=0.1),
+)
+CASE = c.paper(
     __name__,
     __doc__,
-    question="What is a contact that is nearly round, and how wrong is the equivalent cone?",
-    equations=("Hertz 1882", "Popov 2022"),
-    scenes=(ELLIPSE, PUNCHES, SQUARES, *LAYERS, *PYRAMIDS, *CONES, *SLENDER),
-    methods=(c.MDR, c.QUICK_FEM, BEM),
-    claims=(
-        c.equal("force on an ellipse", "normal_force", hertz, [ELLIPSE], WHY["Hertz"], tolerance=1e-4, bem=1e-3),
-        c.equal("stiffness", STIFFNESS, stiffness, [PUNCHES], WHY["elliptic punch"], tolerance=1e-4, bem=1e-3),
-        c.equal("square punch", STIFFNESS, stiffness, [SQUARES], WHY["capacity"], tolerance=3e-3),
-        *c.agreements((*LAYERS, *PYRAMIDS), {"bem": 5e-2}, c.PATH[1:], why=WHY["cells"]),
-        *c.agreements(CONES, {"fem": 3e-4}, ("normal_force",), derived_from=WHY["cone"].tolerance),
-        c.bound("a pyramid is stiffer than its cone", "normal_force", PYRAMIDS, on_cone, WHY["cone"], **BY_MDR),
-        c.approach("thin layer", STIFFNESS, SLENDER, stiffness, WHY["squeezed"], largest=0.1),
-    ),
+    (ELLIPSE, PUNCHES, SQUARES, *LAYERS, *PYRAMIDS, *CONES, *SLENDER),
+    (c.MDR, c.QUICK_FEM, BEM),
+    CLAIMS,
 )

@@ -1,5 +1,8 @@
 """Outside solvers.
 
+Question: Do solvers that nobody here wrote give the same answers, and at which price?
+Source: Eq. (4); Eq. (8); Eq. (29); Eq. (35); Eq. (40).
+
 Solvers that nobody here wrote answer the same scenes: who gets what right, and at which price. CalculiX (finite
 elements of displacements, a program of its own), ContactMechanics and Tamaas (grids with fast transforms) are asked,
 and each may skip what it does not model. Elastic scenes prescribe the depth, since that is what these solvers take;
@@ -18,7 +21,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from cases.case import CaseScene, paper
+from cases.case import CaseScene
 from cases.cost import costs_beside_others
 from cases.declare.methods import MethodUse
 from cases.library import _common as c
@@ -112,38 +115,32 @@ def found(quantity: str, scenes: c.Scenes) -> tuple[CaseScene, ...]:
     return tuple(s for s in scenes if quantity != "contact_radius" or s.parameters["indenter"] != "flat punch")
 
 
-CASE = paper(
-    __name__,
-    __doc__,
-    question="Do solvers that nobody here wrote give the same answers, and at which price?",
-    equations=("Eq. (4)", "Eq. (8)", "Eq. (29)", "Eq. (35)", "Eq. (40)"),
-    suites=("referees",),
-    scenes=(*SCENES, *CURVES),
-    methods=(c.MDR, c.FEM, c.BEM, c.EQUATION, *REFEREES),
-    claims=(
-        *(
-            c.equal(f"{name.replace('_', ' ')}{where}", name, NUMBERS, found(name, scenes), WHY["exact"], **words)
-            for name, within in WITHIN.items()
-            for where, scenes, words in (
-                ("", AWAY, within),
-                (" at nu = 1/2", HALF, within | {"calculix": within["calculix"] * 10}),
-            )
-        ),
-        c.equal("forces of Hertz", "normal_force", hertz_force, CURVES, WHY["hertz"], **ON_CURVES),
-        *(
-            claim
-            for other in ("mdr", "fem")
-            for where, scenes, tolerance, digits in COMPARED
-            for claim in c.agreements(
-                scenes,
-                {other: tolerance},
-                c.PATH[1:],
-                why=c.SHARED["fem"],
-                derived_from=digits,
-                fast="calculix",
-                name=f"{{}}: CalculiX and {other}{where}",
-            )
-        ),
-        *(study for scene in PRICED for study in costs_beside_others(scene)),
+CLAIMS = (
+    *(
+        c.equal(f"{name.replace('_', ' ')}{where}", name, NUMBERS, found(name, scenes), WHY["exact"], **words)
+        for name, within in WITHIN.items()
+        for where, scenes, words in (
+            ("", AWAY, within),
+            (" at nu = 1/2", HALF, within | {"calculix": within["calculix"] * 10}),
+        )
     ),
+    c.equal("forces of Hertz", "normal_force", hertz_force, CURVES, WHY["hertz"], **ON_CURVES),
+    *(
+        claim
+        for other in ("mdr", "fem")
+        for where, scenes, tolerance, digits in COMPARED
+        for claim in c.agreements(
+            scenes,
+            {other: tolerance},
+            c.PATH[1:],
+            why=c.SHARED["fem"],
+            derived_from=digits,
+            fast="calculix",
+            name=f"{{}}: CalculiX and {other}{where}",
+        )
+    ),
+    *(study for scene in PRICED for study in costs_beside_others(scene)),
+)
+CASE = c.paper(
+    __name__, __doc__, (*SCENES, *CURVES), (c.MDR, c.FEM, c.BEM, c.EQUATION, *REFEREES), CLAIMS, suites=("referees",)
 )

@@ -1,5 +1,8 @@
 """Indentation by spheres, cones with round apexes and worn paraboloids.
 
+Question: Do all methods know these tips?
+Source: Sneddon 1965; Eq. (8); Eq. (15).
+
 Tips as they are made and worn: the exact sphere, a cone with a spherical apex, and a paraboloid worn flat. On the
 half-space Sneddon's integrals give depth and force at a contact radius a, for any profile of slope f': g = a int f'(a
 sin t) dt and F = 2 E* a^2 int f'(a sin t) sin(t)^2 dt, t from 0 to pi/2. There the tips are steep. On the layer the
@@ -13,7 +16,7 @@ from typing import TypeAlias, cast
 import numpy as np
 from numpy.polynomial.legendre import leggauss
 
-from cases.case import CaseScene, paper
+from cases.case import CaseScene
 from cases.library import _common as c
 from contact import ContactRadii, Scene, Sphere, Spheroconical, TruncatedParaboloid
 
@@ -64,15 +67,8 @@ def sneddon(scene: Scene) -> dict[str, float]:
 
 NAMES = {"depth of a tip": "indentation_depth", "force on a tip": "normal_force"}
 CLOSED: c.Words = {"tolerance": 1e-11, "fem": 3e-6, "bem": 3e-3}
-CASE = paper(
-    __name__,
-    __doc__,
-    question="Do all methods know these tips?",
-    equations=("Sneddon 1965", "Eq. (8)", "Eq. (15)"),
-    scenes=(*HALF_SPACE, *BONDED),
-    methods=(c.MDR, c.FEM, c.BEM, c.EQUATION),
-    claims=(
-        *c.equals(NAMES, sneddon, HALF_SPACE, WHY["Sneddon"], **CLOSED),
-        *c.agreements(BONDED, c.required("fem", "bem", "integral_equation")),
-    ),
+CLAIMS = (
+    *c.equals(NAMES, sneddon, HALF_SPACE, WHY["Sneddon"], **CLOSED),
+    *c.agreements(BONDED, c.required("fem", "bem", "integral_equation")),
 )
+CASE = c.paper(__name__, __doc__, (*HALF_SPACE, *BONDED), (c.MDR, c.FEM, c.BEM, c.EQUATION), CLAIMS)

@@ -1,5 +1,8 @@
 """Indentation by a truncated cone.
 
+Question: Do MDR and finite elements agree on a profile with a kink, from the half-space to the thin layer?
+Source: Eq. (4); Eq. (8); Eq. (9); Eq. (35).
+
 Section 4.1 of Forsbach (2023): a truncated cone indents bonded and unbonded layers of any thickness. A rigid cone with
 a flat end of radius b, f(r) = (r - b) tan(theta) for r >= b, Eq. (35), presses on a layer of thickness h. The contact
 radius a is prescribed with b/a = 0.5, for an unbonded layer and bonded layers with nu = 0.3, 0.45 and 0.5, from almost
@@ -18,7 +21,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from cases.case import CaseScene, paper
+from cases.case import CaseScene
 from cases.claims import Norm
 from cases.cost import elastic_costs
 from cases.effects import Ablation
@@ -29,16 +32,12 @@ from contact import ContactRadii, TruncatedCone
 WHY = c.reasons("truncated_cone")
 SLOPE = 0.1
 RATIOS = (0.1, 1.0, 2.0, 5.0, 20.0)
-# Finite elements and tables solve these in the suite ci, all in the nightly one.
-QUICK_RATIOS = {"unbonded": (1.0, 20.0), "bonded nu=0.5": (0.1, 1.0, 20.0)}
-QUICK_FLATS = (0.5, 0.9)
 
 
 def on_layer(label: str, ratio: float) -> CaseScene:
     """Return the scene at a/h = ``ratio`` with b/a = 0.5."""
     a, cone = ratio * c.THICKNESS, TruncatedCone(flat_radius=0.5 * ratio * c.THICKNESS, slope=SLOPE)
-    late = () if ratio in QUICK_RATIOS.get(label, ()) else ("fem", "mdr_table")
-    more: c.Words = {"steep": True, "sampling": c.rings(a, 0.0, 0.4, 0.5, 0.6, 0.8, 1.0), "nightly": late}
+    more: c.Words = {"steep": True, "sampling": c.rings(a, 0.0, 0.4, 0.5, 0.6, 0.8, 1.0)}
     place: c.Words = {"layer": label, "a_over_h": ratio, "b_over_a": 0.5}
     return c.scene(c.scene_name(label, ratio), c.layer(label), cone, ContactRadii([a]), **more, **place)
 
@@ -46,9 +45,8 @@ def on_layer(label: str, ratio: float) -> CaseScene:
 def on_half_space(flat: float) -> CaseScene:
     """Return the scene on the half-space with b/a = ``flat``."""
     cone, loading = TruncatedCone(flat_radius=flat * c.THICKNESS, slope=SLOPE), ContactRadii([c.THICKNESS])
-    late = () if flat in QUICK_FLATS else ("fem",)
     place: c.Words = {"layer": "half-space", "a_over_h": 0.0, "b_over_a": flat}
-    return c.scene(f"half-space b/a={flat:g}", c.half_space(), cone, loading, nightly=late, **place)
+    return c.scene(f"half-space b/a={flat:g}", c.half_space(), cone, loading, **place)
 
 
 def path(label: str, ratio: float) -> CaseScene:
@@ -56,7 +54,7 @@ def path(label: str, ratio: float) -> CaseScene:
     base, radii = on_layer(label, ratio), ratio * c.THICKNESS * c.chebyshev_radii(0.75, 1.0, 16)
     methods = (c.MDR, c.EQUATION) if ratio == 1.0 else (c.MDR,)
     on_path = base.scene.replace(loading=ContactRadii(values=radii))
-    return replace(base, name=f"{base.name}, path", scene=on_path, methods=methods, nightly=())
+    return replace(base, name=f"{base.name}, path", scene=on_path, methods=methods)
 
 
 LAYERED = tuple(on_layer(label, ratio) for label in c.LAYERS for ratio in RATIOS)
@@ -92,40 +90,28 @@ ENERGY = "energy stiffness equals reaction stiffness", "energy_defect", MESHED
 NO_NU = "unbonded layers do not see nu", c.having((*AT_ONE, *AT_FIVE), layer="unbonded")
 KERNELS = dict.fromkeys(("mdr", "bem", "integral_equation", "mdr_table"), "its kernel, Eq. (29), has no nu")
 UNBONDED: c.Words = {"identities": KERNELS, "fem": 3e-6, "bem": 1e-7}
-# Wider cells, of a tenth of the radius, are not halved when half as wide ones are asked for.
-HALVED = tuple({"order": 3, "growth": 0.35, "edge_cell": 0.05 / 2**n, "truncation": 1e-7} for n in range(4))
-EDGE = r.refinement("cell at the contact edge halved, the rest fixed", "fem", HALVED, WHY["edge cell"])
-NODES, PANELS = r.in_turn("nodes", (8, 12, 16, 24)), "Gauss nodes on panels as wide as the layer"
-GAUSS = r.refinement(PANELS, "mdr", NODES, WHY["gauss panels"], least_digits=1.0, floor=1e-13)
 TO_EQUATION: c.Words = {"against": "integral_equation", "name": "finite elements: first order in the edge cell"}
 TO_FINEST: c.Words = {"against": r.FINEST_MDR, "name": "MDR: exponential in the Gauss nodes"}
 TIMED = c.scene_name("bonded nu=0.45", 2.0)
-CASE = paper(
-    __name__,
-    __doc__,
-    question="Do MDR and finite elements agree on a profile with a kink, from the half-space to the thin layer?",
-    equations=("Eq. (4)", "Eq. (8)", "Eq. (9)", "Eq. (35)"),
-    scenes=(*LAYERED, *PATHS, *HALF_SPACE),
-    methods=c.EVERY,
-    claims=(
-        *c.equals(c.depth_and_force("half-space"), closed_form, HALF_SPACE, WHY["sneddon"], **CLOSED),
-        *c.equals(c.depth_and_force("layer"), REFERENCE, (), WHY["reference"], **LAYER),
-        *c.agreements(LAYERED, c.required("fem", "bem", "integral_equation")),
-        *c.agreements(RESOLVED, c.required("mdr_table")),
-        *c.agreements(THIN, c.VERY_COARSE, derived_from=COARSE_TABLE, suffix=", thin layers"),
-        *c.pressure_agreements(LAYERED, NORMS, SINGULAR),
-        # A claim each: the suite ci has MDR on all these scenes, finite elements on some.
-        c.carried_force("the pressure carries the force", LAYERED, "mdr"),
-        c.carried_force("the pressure of finite elements carries the force", LAYERED, "fem"),
-        c.zero(*SPRINGS, PATHS, WHY["spring stiffness"], tolerance=1e-9, derive=c.incremental_stiffness),
-        c.zero(*ENERGY, WHY["energy"], tolerance=1e-8, methods=("fem",)),
-        c.zero("patch test", "patch_defect", MESHED, WHY["patch"], tolerance=1e-12, methods=("fem",)),
-        c.scaling_law("doubling E doubles F", AT_ONE, c.doubled_modulus, (1.0, 2.0, 2.0), WHY["linearity"]),
-        c.same_in_millimetres(AT_ONE),
-        c.scaling_law(*NO_NU, c.other_poissons_ratio, (1.0, 1.0, 1.0), WHY["unbonded kernel"], **UNBONDED),
-        *r.studies(ENDS[1.0], EDGE, {"normal_force": 1.0}, **TO_EQUATION),
-        *r.studies(ENDS[5.0], GAUSS, ("normal_force",), **TO_FINEST),
-        Ablation(scene=TIMED, slow=("fem",)),
-        *elastic_costs(TIMED, in_ci=True, as_published=True),
-    ),
+CLAIMS = (
+    *c.equals(c.depth_and_force("half-space"), closed_form, HALF_SPACE, WHY["sneddon"], **CLOSED),
+    *c.equals(c.depth_and_force("layer"), REFERENCE, (), WHY["reference"], **LAYER),
+    *c.agreements(LAYERED, c.required("fem", "bem", "integral_equation")),
+    *c.agreements(RESOLVED, c.required("mdr_table")),
+    *c.agreements(THIN, c.VERY_COARSE, derived_from=COARSE_TABLE, suffix=", thin layers"),
+    *c.pressure_agreements(LAYERED, NORMS, SINGULAR),
+    # A claim each: the suite ci has MDR on all these scenes, finite elements on some.
+    c.carried_force("the pressure carries the force", LAYERED, "mdr"),
+    c.carried_force("the pressure of finite elements carries the force", LAYERED, "fem"),
+    c.zero(*SPRINGS, PATHS, WHY["spring stiffness"], tolerance=1e-9, derive=c.incremental_stiffness),
+    c.zero(*ENERGY, WHY["energy"], tolerance=1e-8, methods=("fem",)),
+    c.zero("patch test", "patch_defect", MESHED, WHY["patch"], tolerance=1e-12, methods=("fem",)),
+    c.scaling_law("doubling E doubles F", AT_ONE, c.doubled_modulus, (1.0, 2.0, 2.0), WHY["linearity"]),
+    c.same_in_millimetres(AT_ONE),
+    c.scaling_law(*NO_NU, c.other_poissons_ratio, (1.0, 1.0, 1.0), WHY["unbonded kernel"], **UNBONDED),
+    *r.studies(ENDS[1.0], "halved edge cell", {"normal_force": 1.0}, **TO_EQUATION),
+    *r.studies(ENDS[5.0], "nodes on panels", ("normal_force",), **TO_FINEST),
+    Ablation(scene=TIMED, slow=("fem",)),
+    *elastic_costs(TIMED, in_ci=True, as_published=True),
 )
+CASE = c.paper(__name__, __doc__, (*LAYERED, *PATHS, *HALF_SPACE), c.EVERY, CLAIMS)

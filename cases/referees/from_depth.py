@@ -1,10 +1,8 @@
-"""Makes an answer of any solver that gives the force at depths: inverts it, and differentiates it for the stiffness."""
-
-from __future__ import annotations
+"""Answers of any solver that gives the force at depths, which is inverted, and differentiated for the stiffness."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -15,28 +13,25 @@ from contact import (
     IndentationDepths,
     NormalForces,
     NotConvergedError,
+    Scene,
+    StageLog,
     UnsupportedSceneError,
 )
 from contact.answer.solution import Setting
+from contact.records.validation import FloatArray
 
-if TYPE_CHECKING:
-    from contact.answer.stages import StageLog
-    from contact.records.validation import FloatArray
-    from contact.scene.scene import Scene
-
-QUANTITIES = ContactPath.ARRAYS
 # Depths of the difference quotient of the stiffness, relative. Differences of fourth order leave step^4/30 of a power
 # law: 3e-10 of Hertz's.
 STEP = 1e-2
-# What differences of fourth and of sixth order leave of forces at three steps on either side (Fornberg 1988).
+# Weights of differences of fourth and of sixth order of forces at three steps on either side (Fornberg 1988).
 FOURTH = np.array([0.0, 1.0, -8.0, 0.0, 8.0, -1.0, 0.0]) / 12.0
 SIXTH = np.array([-1.0, 9.0, -45.0, 0.0, 45.0, -9.0, 1.0]) / 60.0
-# The sixth difference of smooth forces is step^6 of them; what it is beyond that is noise of the solver.
+# Weights of the sixth difference, which is step^6 of smooth forces; the rest is noise of the solver.
 NOISE = np.array([1.0, -6.0, 15.0, -20.0, 15.0, -6.0, 1.0])
-# Quantities whose stated error is that of this module alone; what the solver lacks comes from its refinement.
+# Quantities whose stated error is that of this module alone; the solver's own error comes from its refinement.
 BY_DIFFERENCES = frozenset({"contact_stiffness"})
 # Prescribed forces and radii are met within this, relative; secant steps double their digits, so few are needed.
-MET, MOST_STEPS = 1e-10, 40
+TOLERANCE, MOST_STEPS = 1e-10, 40
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -54,7 +49,7 @@ class Response:
     contact_stiffness: FloatArray | None = None
 
 
-Respond = Callable[["FloatArray"], Response]
+Respond = Callable[[FloatArray], Response]
 
 
 def answer_from_depths(
@@ -72,58 +67,57 @@ def answer_from_depths(
     A stiffness by difference quotients states their error, besides what ``error_estimate`` states of it.
 
     Args:
-        scene: prescribes depths, forces, or (where the solver knows radii) contact radii.
-        respond: the solver: depths [m], shape (n,), to what it answers there.
-        log: of the solver's stages.
-        method: name of the solver.
-        settings: of the solver.
-        unknowns: of its largest system.
-        further: fields of the answer, such as ``error_estimate`` and ``notes``.
+        scene: Prescribes depths, forces, or (where the solver knows radii) contact radii.
+        respond: The solver: returns its response at depths [m], shape (n,).
+        log: Log of the solver's stages.
+        method: Name of the solver.
+        settings: Settings of the solver.
+        unknowns: Number of unknowns of its largest system.
+        further: Fields of the answer, such as ``error_estimate`` and ``notes``.
 
     Raises:
-        UnsupportedSceneError: if radii are prescribed and the solver knows none, or for any other loading.
-        NotConvergedError: if no depth gives what is prescribed.
+        UnsupportedSceneError: If radii are prescribed and the solver knows none, or for any other loading.
+        NotConvergedError: If no depth gives what is prescribed.
     """
     depths = _depths(scene, respond)
-    found = respond(depths)
-    radius, stiffness = found.contact_radius, found.contact_stiffness
-    errors = dict(further.pop("error_estimate", {}))
+    response = respond(depths)
+    stiffness, errors = response.contact_stiffness, dict(further.pop("error_estimate", {}))
     if stiffness is None:
-        stiffness, of_quotient = _slope(respond, depths, found.normal_force)
-        errors["contact_stiffness"] = errors.get("contact_stiffness", 0.0) + of_quotient
-    common: dict[str, Any] = {
-        "scene": scene,
-        "method": method,
-        "settings": dict(settings or {}),
-        "error_estimate": errors,
+        stiffness, quotient_error = _slope(respond, depths, response.normal_force)
+        errors["contact_stiffness"] = errors.get("contact_stiffness", 0.0) + quotient_error
+    radius = {} if response.contact_radius is None else {"contact_radius": response.contact_radius}
+    answer: Any = ContactPath if radius else ForcePath
+    path: ContactPath | ForcePath = answer(
+        scene=scene,
+        method=method,
+        settings=dict(settings or {}),
+        **radius,
+        indentation_depth=depths,
+        normal_force=response.normal_force,
+        contact_stiffness=stiffness,
+        error_estimate=errors,
+        cost=log.cost(unknowns=unknowns),
+        stages=log.records,
         **further,
-    }
-    numbers: dict[str, Any] = {
-        "indentation_depth": depths,
-        "normal_force": found.normal_force,
-        "contact_stiffness": stiffness,
-    }
-    cost: dict[str, Any] = {"cost": log.cost(unknowns=unknowns), "stages": log.records}
-    if radius is None:
-        return ForcePath(**common, **numbers, **cost)
-    return ContactPath(**common, contact_radius=radius, **numbers, **cost)
+    )
+    return path
 
 
 def inverted(function: Callable[[FloatArray], FloatArray], wanted: FloatArray, first: FloatArray) -> FloatArray:
     """Return where an increasing positive function has the wanted values: secant steps on the logarithms.
 
     Args:
-        function: of arrays, shape (n,), entry by entry.
-        wanted: positive, shape (n,).
+        function: Function of arrays, shape (n,), entry by entry.
+        wanted: Positive, shape (n,).
         first: a first guess, shape (n,); any positive one.
 
     Raises:
-        NotConvergedError: if no argument gives what is wanted.
+        NotConvergedError: If no argument gives what is wanted.
     """
     old, new = np.log(first), np.log(first) + np.log(2.0)
     target, before, now = np.log(wanted), np.log(function(np.exp(old))), np.log(function(np.exp(new)))
     for _ in range(MOST_STEPS):
-        if np.max(np.abs(now - target)) <= MET:
+        if np.max(np.abs(now - target)) <= TOLERANCE:
             return np.asarray(np.exp(new))
         rise = np.where(now == before, 1.0, (now - before) / np.where(new == old, 1.0, new - old))
         old, new, before = new, new + np.clip((target - now) / np.where(rise > 0, rise, 1.0), -2.0, 2.0), now
@@ -133,27 +127,24 @@ def inverted(function: Callable[[FloatArray], FloatArray], wanted: FloatArray, f
 
 
 def _depths(scene: Scene, respond: Respond) -> FloatArray:
+    """The prescribed depths, or those at which the solver gives the prescribed forces or radii."""
     match scene.loading:
         case IndentationDepths(values=values):
             return values
         case NormalForces(values=values):
-            return inverted(lambda depths: respond(depths).normal_force, values, _scale(scene, values))
+            # The search steps in logarithms, so that any guess of the right order will do.
+            modulus = scene.layer.contact_modulus
+            length = scene.indenter.flat_radius or float(np.sqrt(np.max(values) / modulus))
+            return inverted(lambda depths: respond(depths).normal_force, values, values / (2 * modulus * length))
         case ContactRadii(values=values):
             return inverted(lambda depths: _radius(respond(depths)), values, scene.indenter.height(values))
-        case other:
-            raise UnsupportedSceneError(f"loading = {type(other).__name__}: a force at depths answers no such scene")
+    raise UnsupportedSceneError(f"loading = {type(scene.loading).__name__}: a force at depths answers no such scene")
 
 
-def _radius(found: Response) -> FloatArray:
-    if found.contact_radius is None:
+def _radius(response: Response) -> FloatArray:
+    if response.contact_radius is None:
         raise UnsupportedSceneError("no contact radius in Response, which prescribed radii need")
-    return found.contact_radius
-
-
-def _scale(scene: Scene, forces: FloatArray) -> FloatArray:
-    """A first depth [m] of the search, which steps in logarithms."""
-    length = scene.indenter.flat_radius or float(np.sqrt(np.max(forces) / scene.layer.contact_modulus))
-    return np.asarray(forces / (2 * scene.layer.contact_modulus * length))
+    return response.contact_radius
 
 
 def _slope(respond: Respond, depths: FloatArray, at_depths: FloatArray) -> tuple[FloatArray, FloatArray]:

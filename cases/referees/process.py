@@ -27,11 +27,11 @@ def ask(worker: str, question: Mapping[str, Any]) -> dict[str, FloatArray]:
     """Return the arrays that a script of `workers` answers by name.
 
     Args:
-        worker: name of the script, without the ending.
-        question: numbers, words and lists.
+        worker: Name of the script, without the ending.
+        question: Numbers, words and lists.
 
     Raises:
-        NotConvergedError: if the process fails or answers no arrays; with its last words.
+        NotConvergedError: If the process fails or answers no arrays; with its last words.
     """
     done = subprocess.run(
         [interpreter(), str(WORKERS / f"{worker}.py")],
@@ -64,16 +64,21 @@ def lacks(package: str) -> str:
     return f"{package} {NOT_INSTALLED}: pip install 'contact-verification[referees]'"
 
 
-def support(reason: str) -> Supported | Unsupported:
-    """`Unsupported` with the reason, or `Supported` if there is none."""
-    return Unsupported(reason) if reason else Supported()
+def support(*reasons: str | Unsupported | None) -> Supported | Unsupported:
+    """`Unsupported` with the first of the reasons that is not empty, or `Supported` if there is none."""
+    for reason in reasons:
+        if isinstance(reason, Unsupported):
+            return reason
+        if reason:
+            return Unsupported(reason)
+    return Supported()
 
 
 def insist(method: Method, scene: Scene) -> None:
     """Refuse what a method does not support.
 
     Raises:
-        UnsupportedSceneError: with its reason.
+        UnsupportedSceneError: With the reason.
     """
     answer = method.supports(scene)
     if isinstance(answer, Unsupported):

@@ -45,7 +45,7 @@ class _Apart:
         """Return ``function(*arguments)``, computed by the process; None if the process ended without a result.
 
         Raises:
-            Empty: after so many seconds.
+            Empty: After so many seconds.
         """
         assert self.process.stdin is not None
         pickle.dump((function, arguments), self.process.stdin)
@@ -60,8 +60,8 @@ def apart(function: Callable[..., Any], *arguments: Any, seconds: float) -> Any:
     """Return ``function(*arguments)``, computed elsewhere; it raises nothing itself and returns no None.
 
     Raises:
-        TimeLimitReached: after so many seconds.
-        ProcessDied: if the process ended by itself.
+        TimeLimitReached: After so many seconds.
+        ProcessDied: If the process ended by itself.
     """
     try:
         if not _own:

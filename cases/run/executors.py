@@ -37,7 +37,7 @@ class SerialExecutor(Executor):
 
 
 def serial(jobs: int = 1) -> Executor:
-    """Return an executor that runs in this process, whatever ``jobs``."""
+    """Return an executor that runs in this process, for any number of jobs."""
     return SerialExecutor()
 
 
@@ -45,7 +45,7 @@ def process_pool(jobs: int) -> Executor:
     """Return ``jobs`` fresh processes (spawned: no state of this one leaks in).
 
     Raises:
-        InvalidInput: unless there is at least one job.
+        InvalidInput: Unless there is at least one job.
     """
     if jobs < 1:
         raise InvalidInput(f"jobs must be at least 1, got {jobs}")
@@ -77,7 +77,7 @@ class DaskExecutor(Executor):
     """Runs each call on a Dask cluster; a call whose worker dies is repeated on another one.
 
     Raises:
-        InvalidInput: if Dask is not installed or no scheduler answers at the address.
+        InvalidInput: If Dask is not installed or no scheduler answers at the address.
     """
 
     def __init__(self, address: str) -> None:
@@ -85,43 +85,37 @@ class DaskExecutor(Executor):
             from distributed import Client, KilledWorker  # noqa: PLC0415 - an optional extra
         except ImportError:
             raise InvalidInput(f"{address}: Dask is not installed; install dask[distributed]") from None
-        # What breaks is said once, by this class.
+        # Errors of the client are reported once, by this class.
         logging.getLogger("distributed.client").setLevel(logging.CRITICAL)
-        self._address, self._killed = address, KilledWorker
+        self._lost = ClusterLost(f"the Dask scheduler at {address} does not answer any more")
+        self._killed = KilledWorker
         try:
             self._client = Client(address, set_as_default=False, timeout=PATIENCE)
         except (OSError, ValueError) as error:
             raise InvalidInput(f"no Dask scheduler answers at {address} ({error!s:.120}); start one there") from None
 
     def submit(self, fn: Callable[P, T], /, *args: P.args, **kwargs: P.kwargs) -> Future[T]:
-        """Send ``fn`` to the cluster and return its future."""
+        """Send ``fn`` to the cluster and return its future.
+
+        Its error is that of the call, `ClusterLost`, or `BrokenExecutor` if workers died of it.
+        """
         future: Future[T] = Future()
 
-        # The future belongs to the cluster: ``result`` waits if its worker died meanwhile.
         def deliver(remote: Any) -> None:
-            """Set the answer or the error of the cluster on the future."""
+            """Set the answer or the error of the cluster on the future; waits if its worker died meanwhile."""
             try:
                 future.set_result(remote.result())
+            except self._killed as error:
+                future.set_exception(BrokenExecutor(f"{error!s:.200}"))
             except Exception as error:
-                # `result` of the future raises it.
-                future.set_exception(self._named(error))
+                # Calls raise no OSError: `cases.run.solve_task.solve` turns every error into an answer.
+                lost = isinstance(error, CancelledError | OSError) or self._client.status != "running"
+                future.set_exception(self._lost if lost else error)
 
         if self._client.status != "running":
-            raise self._lost()
+            raise self._lost
         self._client.submit(fn, *args, pure=False, retries=2, **kwargs).add_done_callback(deliver)
         return future
-
-    def _lost(self) -> ClusterLost:
-        return ClusterLost(f"the Dask scheduler at {self._address} does not answer any more")
-
-    def _named(self, error: Exception) -> Exception:
-        """The error in the words of this program: a lost scheduler, workers that died of a call, or itself.
-
-        Other errors of a call are no ``OSError``: `cases.solve` turns every error into a row.
-        """
-        if isinstance(error, CancelledError | OSError) or self._client.status != "running":
-            return self._lost()
-        return BrokenExecutor(f"{error!s:.200}") if isinstance(error, self._killed) else error
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
         """Leave the cluster; it stays up for others."""
@@ -152,7 +146,7 @@ def by_name(name: str) -> ExecutorFactory:
     """Return the executor factory called ``processes``, ``serial`` or ``tcp://host:port`` (a Dask scheduler).
 
     Raises:
-        InvalidInput: for any other name.
+        InvalidInput: For any other name.
     """
     if name == "processes":
         return process_pool
@@ -164,7 +158,7 @@ def by_name(name: str) -> ExecutorFactory:
 
 
 def _follow_parent() -> None:
-    """Leave Ctrl-C to the parent, which decides what becomes of the run; end with it, however it ends."""
+    """Leave Ctrl-C to the parent, which decides when the run ends; end with the parent, however it ends."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_end_with_parent, daemon=True).start()
 
@@ -177,39 +171,41 @@ def _end_with_parent() -> None:
         os._exit(1)
 
 
-def completed(
-    submit: Callable[[A], Future[T]], arguments: Iterable[A], ahead: int, broken: list[A]
-) -> Iterator[tuple[A, T]]:
-    """Submit arguments one by one and yield each with its result as soon as it is there; nothing of it is kept.
+def completed(submit: Callable[[A], Future[T]], arguments: Iterable[A], ahead: int) -> Iterator[tuple[A, Future[T]]]:
+    """Submit arguments one by one and yield each with its finished future; nothing of it is kept.
+
+    After a process died no more arguments are submitted.
 
     Args:
-        submit: hands one argument over and returns the future of its result.
-        arguments: taken when there is room for them.
-        ahead: how many may be under way.
-        broken: gets the arguments whose process died. After the first no more are handed over.
-
-    Raises:
-        Exception: whatever a call raised, but for a process that died.
+        submit: Hands one argument over and returns the future of its result.
+        arguments: Taken when there is room for them.
+        ahead: Number of calls that may be under way.
     """
-    waiting, under_way = iter(arguments), dict[Future[T], A]()
+    waiting, under_way, is_broken = iter(arguments), dict[Future[T], A](), False
     # Finished calls are delivered by a queue, without a search through all calls under way.
     finished: SimpleQueue[Future[T]] = SimpleQueue()
     while True:
-        for argument in islice(waiting, 0 if broken else ahead - len(under_way)):
-            try:
-                future = submit(argument)
-            except BrokenExecutor:
-                broken.append(argument)
-                break
+        for argument in islice(waiting, 0 if is_broken else ahead - len(under_way)):
+            future = _submitted(submit, argument)
             under_way[future] = argument
             future.add_done_callback(finished.put)
         if not under_way:
             return
         future = finished.get()
-        argument = under_way.pop(future)
-        try:
-            result = future.result()
-        except BrokenExecutor:
-            broken.append(argument)
-        else:
-            yield argument, result
+        is_broken = is_broken or died(future)
+        yield under_way.pop(future), future
+
+
+def _submitted(submit: Callable[[A], Future[T]], argument: A) -> Future[T]:
+    """The future of the call, which is a failed one where a process has died since the last call."""
+    try:
+        return submit(argument)
+    except BrokenExecutor as error:
+        future: Future[T] = Future()
+        future.set_exception(error)
+        return future
+
+
+def died(future: Future[Any]) -> bool:
+    """Whether the process of a finished call died, or one beside it."""
+    return isinstance(future.exception(), BrokenExecutor)

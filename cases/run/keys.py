@@ -27,17 +27,32 @@ def question(task: Task) -> str:
     digits: a computed radius may end in another bit on another machine. With twelve digits one number in ten thousand
     would change its last one, with seven a change of 1e-7 would be no change.
     """
-    parts = [scene_to_mapping(task.problem), plain(task.use.settings)]
-    rounded = [json.loads(json.dumps(part), parse_float=lambda digits: f"{float(digits):.9g}") for part in parts]
-    return _digest(json.dumps(rounded, sort_keys=True).encode())
+    exact = _text([scene_to_mapping(task.problem), task.use.settings])
+    rounded = json.loads(exact, parse_float=lambda digits: f"{float(digits):.9g}")
+    return _digest(_text(rounded).encode())
 
 
 def code(task: Task) -> str:
     """Return the hash of all else that the answer depends on: sources, versions, sampling, exact inputs."""
     module, attribute = location(task.use.method or task.use.label)
-    kept = [plain(task.sampling), task.refined, task.timed, task.first, attribute, _sources(module)]
-    exact = [scene_to_mapping(task.problem), plain(task.use.settings)]
-    return _digest(json.dumps([kept, exact], sort_keys=True).encode())
+    kept = [task.sampling, task.refined, task.timed, task.first, attribute, _sources(module)]
+    exact = [scene_to_mapping(task.problem), task.use.settings]
+    return _digest(_text([kept, exact]).encode())
+
+
+def _text(value: Any) -> str:
+    """Settings, records and arrays as JSON with sorted keys."""
+    return json.dumps(value, sort_keys=True, default=_plain)
+
+
+def _plain(value: Any) -> Any:
+    """A value that JSON does not know, as one that it knows."""
+    if dataclasses.is_dataclass(value) and not isinstance(value, type):
+        fields = (field.name for field in dataclasses.fields(value) if not field.name.startswith("_"))
+        return {"record": type(value).__qualname__, **{name: getattr(value, name) for name in fields}}
+    if isinstance(value, Mapping):
+        return dict(value)
+    return value.tolist() if isinstance(value, np.ndarray | np.generic) else repr(value)
 
 
 @cache
@@ -57,27 +72,4 @@ def _sources(module: str) -> str:
 
 
 def _digest(*parts: bytes) -> str:
-    found = hashlib.sha256()
-    for part in parts:
-        found.update(part)
-    return found.hexdigest()[:16]
-
-
-def plain(value: Any) -> Any:
-    """Return settings as plain values that JSON can hold."""
-    if dataclasses.is_dataclass(value) and not isinstance(value, type):
-        fields = {f.name: plain(getattr(value, f.name)) for f in dataclasses.fields(value) if f.name[0] != "_"}
-        return {"record": type(value).__qualname__, **fields}
-    if isinstance(value, Mapping):
-        return {str(name): plain(entry) for name, entry in value.items()}
-    if isinstance(value, tuple | list | np.ndarray):
-        return [plain(entry) for entry in value]
-    if isinstance(value, np.generic):
-        return plain(value.item())
-    return value if isinstance(value, bool | int | str | None) else _number(value)
-
-
-def _number(value: Any) -> float | str:
-    if isinstance(value, float):
-        return value if np.isfinite(value) else str(value)
-    return repr(value)
+    return hashlib.sha256(b"".join(parts)).hexdigest()[:16]

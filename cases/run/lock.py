@@ -24,7 +24,7 @@ def locked(folder: Path) -> Iterator[None]:
     The files of the lock stay behind; a lock whose owner is dead is free, whatever they say.
 
     Raises:
-        InvalidInput: at once, with the owner's process number, if another run works in the folder.
+        InvalidInput: If another run works in the folder, at once, with the owner's process number.
     """
     # Commands that only solve need not wait 0.04 s for this import.
     from filelock import FileLock, Timeout  # noqa: PLC0415

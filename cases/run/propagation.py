@@ -5,8 +5,8 @@ inputs, u^2 = D R D^T (the law of propagation, GUM 5.2). Each input is moved by 
 the two sides differ much the quantity bends, and samples are the better answer: they take its whole distribution.
 """
 
-from collections.abc import Callable
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, field, replace
 from typing import TypeAlias
 
 import numpy as np
@@ -14,12 +14,11 @@ import numpy as np
 from cases.answers import Values
 from cases.case import Sampling
 from cases.declare.uncertain_inputs import UncertainInputs, read_inputs
-from cases.recording import quantities
+from cases.recording import quantities as quantities_of
 from contact import UNITS, DetachmentPath, InvalidInput, Method, Scene, Solution
 from contact.records.validation import FloatArray
+from mdr import Mdr
 
-# Quantities by name.
-Named: TypeAlias = tuple[tuple[str, Values], ...]
 # The seed of the samples: an answer repeats digit by digit.
 SEED = 20261122
 # Share of the change beyond which a difference of the two sides is noted; samples are then more accurate.
@@ -33,13 +32,13 @@ class PropagatedQuantity:
     """A quantity of the answer with both of its uncertainties, along its steps.
 
     Attributes:
-        name: of the quantity.
-        unit: SI.
-        values: at the middle of the inputs, shape (n,).
-        numerical: error that the method states, absolute, shape (n,); None where it states none.
-        inputs: standard uncertainty by the inputs, absolute, shape (n,).
-        by_input: change per standard deviation of each input, absolute, by its name; empty for samples.
-        bends: whether moving an input up and down changes it by different amounts; never for samples.
+        name: Name of the quantity.
+        unit: SI unit.
+        values: Values at the middle of the inputs, shape (n,).
+        numerical: Error that the method states, absolute, shape (n,); None where it states none.
+        inputs: Standard uncertainty by the inputs, absolute, shape (n,).
+        by_input: Change per standard deviation of each input, absolute, by its name; empty for samples.
+        bends: Whether an input changed up and down changes it by different amounts; never for samples.
     """
 
     name: str
@@ -47,8 +46,8 @@ class PropagatedQuantity:
     values: FloatArray
     numerical: FloatArray | None
     inputs: FloatArray
-    by_input: dict[str, FloatArray]
-    bends: bool
+    by_input: dict[str, FloatArray] = field(default_factory=dict)
+    bends: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -56,11 +55,11 @@ class Propagated:
     """An answer at the middle of uncertain inputs, and the uncertainty that they cause.
 
     Attributes:
-        scene: with the inputs at their middle.
-        answer: of this scene.
-        quantities: each with its uncertainties.
-        correlation: of the last steps of the quantities, in their order; zero where a quantity does not vary.
-        solved: number of scenes.
+        scene: Scene with the inputs at their middle.
+        answer: Answer to this scene.
+        quantities: Quantities with their uncertainties.
+        correlation: Correlation of the last steps of the quantities, in their order; zero where one does not vary.
+        solved: Number of scenes solved.
     """
 
     scene: Scene
@@ -73,12 +72,12 @@ class Propagated:
         """The quantity called ``name``.
 
         Raises:
-            InvalidInput: if the answer has none.
+            InvalidInput: If the answer has none.
         """
-        for one in self.quantities:
-            if one.name == name:
-                return one
-        raise InvalidInput(f"no quantity {name!r}; there are {', '.join(one.name for one in self.quantities)}")
+        for q in self.quantities:
+            if q.name == name:
+                return q
+        raise InvalidInput(f"no quantity {name!r}; there are {', '.join(q.name for q in self.quantities)}")
 
 
 def propagate(
@@ -89,104 +88,95 @@ def propagate(
     By differences (GUM 5.2), two solutions per input, or by the scatter of quantities over scenes drawn at random.
 
     Args:
-        scene: its uncertain inputs are replaced by the middles of their ranges.
-        uncertain: inputs as text, e.g. "radius=5%", or as returned by `read_inputs`.
-        method: solves the scenes; MDR by default.
-        samples: number of scenes drawn at random; differences for zero.
+        scene: Scene whose uncertain inputs are replaced by the middles of their ranges.
+        uncertain: Inputs as text, e.g. "radius=5%", or as returned by `read_inputs`.
+        method: Solves the scenes; MDR by default.
+        samples: Number of scenes drawn at random; differences for zero.
 
     Raises:
-        InvalidInput: an input that the scene does not have, or fewer than `FEWEST_SAMPLES` samples.
-        UnsupportedSceneError, NotConvergedError: as the method raises them.
+        InvalidInput: An input that the scene does not have, or fewer than `FEWEST_SAMPLES` samples.
+        UnsupportedSceneError, NotConvergedError: As the method raises them.
     """
     if samples and samples < FEWEST_SAMPLES:
         raise InvalidInput(f"samples = {samples}: take at least {FEWEST_SAMPLES}, or none for differences")
     inputs = read_inputs(uncertain, scene) if isinstance(uncertain, str) else uncertain
-    solver = method or _mdr()
-
-    def solved(numbers: FloatArray) -> Named:
-        return _physical(solver.solve(inputs.moved(scene, numbers, drawn=bool(samples))))
-
-    middle = inputs.moved(scene, np.zeros(len(inputs.inputs)))
+    solver, count = method or Mdr(), len(inputs.inputs)
+    root = _root(inputs.correlation)
+    middle = inputs.scene_at(scene, np.zeros(count))
     answer = solver.solve(middle)
     at_middle = _physical(answer)
-    found, factors = (_sampled if samples else _differences)(inputs, at_middle, solved, samples)
+    if samples:
+        deviations = np.random.default_rng(SEED).standard_normal((samples, count)) @ root.T
+    else:
+        deviations = np.concatenate([np.eye(count), -np.eye(count)])
+    scenes = (inputs.scene_at(scene, numbers, drawn=bool(samples)) for numbers in deviations)
+    solved = [_values(_physical(solver.solve(changed_scene)), at_middle) for changed_scene in scenes]
+    quantities, factors = [], []
+    for name, values in at_middle.items():
+        changed = np.array([numbers[name] for numbers in solved])
+        quantity, factor = _sampled(name, values, changed) if samples else _differences(name, values, changed, inputs)
+        quantities.append(quantity)
+        factors.append(factor[:, -1])
     return Propagated(
         scene=middle,
         answer=answer,
-        quantities=found,
-        correlation=_correlation(factors),
-        solved=1 + (samples or 2 * len(inputs.inputs)),
+        quantities=tuple(quantities),
+        correlation=_correlation(np.array(factors).T),
+        solved=1 + len(deviations),
     )
 
 
-def _physical(answer: Solution) -> Named:
+def _physical(answer: Solution) -> dict[str, Values]:
     """Quantities with a unit. Of a detachment only its scalars: the number of states varies."""
-    left = answer.SCALARS if isinstance(answer, DetachmentPath) else tuple(UNITS)
-    return tuple((name, q) for name, q in quantities(answer, Sampling()).items() if name in left)
+    names = answer.SCALARS if isinstance(answer, DetachmentPath) else tuple(UNITS)
+    return {name: values for name, values in quantities_of(answer, Sampling()).items() if name in names}
 
 
-Solve = Callable[[FloatArray], Named]
-Found = tuple[tuple[PropagatedQuantity, ...], FloatArray]
-
-
-def _differences(inputs: UncertainInputs, middle: Named, solved: Solve, _: int) -> Found:
-    """Uncertainties by central differences, and independent contributions to the last steps, each in a row."""
-    units = np.eye(len(inputs.inputs))
-    above, below = ([_values(solved(sign * unit), middle) for unit in units] for sign in (1.0, -1.0))
-    root = _root(inputs.correlation)
-    found, last = [], []
-    for number, (name, quantity) in enumerate(middle):
-        changes = np.array([(up[number] - down[number]) / 2 for up, down in zip(above, below, strict=True)])
-        curvature = np.array(
-            [up[number] + down[number] - 2 * np.array(quantity.values) for up, down in zip(above, below, strict=True)]
-        )
-        shares = root.T @ changes
-        spread = np.sqrt(np.sum(shares**2, axis=0))
-        inputs_named = [entry.name for entry in inputs.inputs]
-        bends = bool(np.any(np.abs(curvature).max(axis=0) / 2 > BENT * spread + 1e-9 * quantity.scale))
-        found.append(_quantity(name, quantity, spread, dict(zip(inputs_named, changes, strict=True)), bends=bends))
-        last.append(shares[:, -1])
-    return tuple(found), np.array(last).T
-
-
-def _sampled(inputs: UncertainInputs, middle: Named, solved: Solve, count: int) -> Found:
-    """By samples; rows of the second result are the last steps of each sample, without their mean."""
-    normal = np.random.default_rng(SEED).standard_normal((count, len(inputs.inputs)))
-    drawn = [_values(solved(row), middle) for row in normal @ _root(inputs.correlation).T]
-    found, last = [], []
-    for number, (name, one) in enumerate(middle):
-        values = np.array([sample[number] for sample in drawn])
-        found.append(_quantity(name, one, np.std(values, axis=0, ddof=1), {}, bends=False))
-        last.append(values[:, -1] - values[:, -1].mean())
-    return tuple(found), np.array(last).T
-
-
-def _values(found: Named, middle: Named) -> list[FloatArray]:
+def _values(answer: dict[str, Values], middle: dict[str, Values]) -> dict[str, FloatArray]:
     """Values of each quantity along the steps.
 
     Raises:
-        InvalidInput: if the number of steps changes with the inputs.
+        InvalidInput: If the number of steps changes with the inputs.
     """
-    for (name, one), (_, other) in zip(found, middle, strict=True):
-        if len(one.values) != len(other.values):
+    for name, q in middle.items():
+        if len(answer[name].values) != len(q.values):
             raise InvalidInput(
-                f"{name} has {len(one.values)} steps in place of {len(other.values)}: its instants follow the "
+                f"{name} has {len(answer[name].values)} steps in place of {len(q.values)}: its instants follow the "
                 "inputs; prescribe the states, or an impact"
             )
-    return [np.array(one.values) for _, one in found]
+    return {name: np.array(answer[name].values) for name in middle}
 
 
-def _quantity(
-    name: str, one: Values, spread: FloatArray, by_input: dict[str, FloatArray], *, bends: bool
-) -> PropagatedQuantity:
+# A quantity, and independent contributions to its variance, the squares of rows of shape (inputs or samples, steps).
+Contributions: TypeAlias = tuple[PropagatedQuantity, FloatArray]
+
+
+def _differences(name: str, middle: Values, changed: FloatArray, inputs: UncertainInputs) -> Contributions:
+    """Uncertainty by central differences, from solutions above and then below the middle of each input."""
+    above, below = np.split(changed, 2)
+    changes, curvature = (above - below) / 2, (above + below) / 2 - np.array(middle.values)
+    factors = _root(inputs.correlation).T @ changes
+    quantity = _quantity(name, middle, factors)
+    bends = np.any(np.abs(curvature).max(axis=0) > BENT * quantity.inputs + 5e-10 * middle.scale)
+    by_input = dict(zip((entry.name for entry in inputs.inputs), changes, strict=True))
+    return replace(quantity, by_input=by_input, bends=bool(bends)), factors
+
+
+def _sampled(name: str, middle: Values, changed: FloatArray) -> Contributions:
+    """Standard deviation of samples."""
+    # Differences from one sample are exactly zero for a quantity that does not vary.
+    differences = changed - changed[0]
+    factors = (differences - differences.mean(axis=0)) / math.sqrt(len(changed) - 1)
+    return _quantity(name, middle, factors), factors
+
+
+def _quantity(name: str, middle: Values, factors: FloatArray) -> PropagatedQuantity:
     return PropagatedQuantity(
         name=name,
-        unit=one.unit,
-        values=np.array(one.values),
-        numerical=np.array(one.error) if one.error else None,
-        inputs=spread,
-        by_input=by_input,
-        bends=bends,
+        unit=middle.unit,
+        values=np.array(middle.values),
+        numerical=np.array(middle.error) if middle.error else None,
+        inputs=np.sqrt(np.sum(factors**2, axis=0)),
     )
 
 
@@ -197,13 +187,7 @@ def _root(correlation: FloatArray) -> FloatArray:
 
 
 def _correlation(factors: FloatArray) -> FloatArray:
+    """Correlation of quantities by their contributions, shape (inputs or samples, quantities)."""
     lengths = np.sqrt(np.sum(factors**2, axis=0))
     size = np.where(lengths > 0, lengths, 1.0)
     return np.asarray(factors.T @ factors / np.outer(size, size))
-
-
-def _mdr() -> Method:
-    # A method is imported where it is used.
-    from mdr import Mdr  # noqa: PLC0415
-
-    return Mdr()

@@ -6,7 +6,7 @@ that it is incomplete; timed tasks run after all others, one by one, so that the
 
 import time
 from collections.abc import Callable, Iterable, Sequence
-from concurrent.futures import BrokenExecutor, Executor, Future
+from concurrent.futures import Executor, Future
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from functools import partial
@@ -22,6 +22,7 @@ from cases.run.executors import (
     ahead,
     closing,
     completed,
+    died,
     fresh_processes,
     process_pool,
     serial,
@@ -41,16 +42,16 @@ class ProgressEvent:
     """One event of a run.
 
     Attributes:
-        kind: "planned" once, then "finished" or "reused" for each task, "judged" for each case; "refused" before
-            "finished" for a task whose stored answer is damaged; "stopped" when the cluster that solves is lost.
-        label: the task or case in words.
-        done: tasks behind.
-        total: tasks in all.
-        status: how the task or case ended; None for "planned", "refused" and "stopped".
-        reason: of a status other than PASS, or why a stored answer was refused or the run stopped.
+        kind: "planned" once, then "finished" or "reused" for each task, "judged" for each case; "stopped" when the
+            cluster that solves is lost.
+        label: The task or case in words.
+        done: Tasks behind.
+        total: Tasks in all.
+        status: End of the task or case; None for "planned" and "stopped".
+        reason: Reason of a status other than PASS, or of the end of a run that stopped.
     """
 
-    kind: Literal["planned", "finished", "reused", "judged", "refused", "stopped"]
+    kind: Literal["planned", "finished", "reused", "judged", "stopped"]
     label: str
     done: int
     total: int
@@ -75,16 +76,16 @@ class RunOptions:
     """How a run is carried out.
 
     Attributes:
-        out: folder of results.
-        suite: name of the suite, for the record.
-        methods: that were chosen, for the record; empty for those of the cases.
-        jobs: tasks at a time; a cluster takes as many as it has threads.
-        executor: where they run.
-        resume: use answers of an earlier run of the same code in the same folder.
-        time_limit: seconds a task may take, zero for no limit; by default only methods of installed packages have one.
-        timing: whether timed tasks run; without them there are no studies of cost.
-        only_costs: whether only the tasks of studies of cost run; no claim is then judged.
-        progress: called with every event.
+        out: Folder of results.
+        suite: Name of the suite, for the record.
+        methods: Labels of chosen methods, for the record; empty for those of the cases.
+        jobs: Tasks at a time; a cluster takes as many as it has threads.
+        executor: Factory of the executor that runs them.
+        resume: Use answers of an earlier run of the same code in the same folder.
+        time_limit: Seconds a task may take, zero for no limit; by default only methods of installed packages have one.
+        timing: Whether timed tasks run; without them there are no studies of cost.
+        only_costs: Whether only the tasks of studies of cost run; no claim is then judged.
+        progress: Called with every event.
     """
 
     out: Path
@@ -108,30 +109,27 @@ class _Run:
     total: int
     answers: dict[Identity, Answer] = field(default_factory=dict)
 
-    def finish(self, job: Job, answer: Answer, *, reused: bool = False) -> None:
-        """Keep a finished task."""
+    def finish(self, job: Job, answer: Answer) -> None:
+        """Keep the answer of a task."""
         self.answers[answer.identity] = answer
-        if not reused:
-            try:
-                self.stream.write(answer.line())
-                self.stream.flush()
-            except OSError as error:
-                place = self.options.out / NAME
-                raise InvalidInput(f"{place}: cannot be written ({error.strerror}); make room and resume") from None
-        self.tell("reused" if reused else "finished", job.task.label, answer.status, answer.reason)
+        try:
+            self.stream.write(answer.line())
+            self.stream.flush()
+        except OSError as error:
+            place = self.options.out / NAME
+            raise InvalidInput(f"{place}: cannot be written ({error.strerror}); make room and resume") from None
+        self.tell("finished", job.task.label, answer.status, answer.reason)
 
-    def tell(self, kind: str, label: str, status: Status | None = None, reason: str = "") -> None:
+    def tell(
+        self,
+        kind: Literal["planned", "finished", "reused", "judged", "stopped"],
+        label: str,
+        status: Status | None = None,
+        reason: str = "",
+    ) -> None:
         """Report an event."""
-        event = ProgressEvent(
-            # Its callers pass one of the permitted words.
-            kind=kind,  # type: ignore[arg-type]
-            label=label,
-            done=len(self.answers),
-            total=self.total,
-            status=status,
-            reason=reason,
-        )
-        self.options.progress(event)
+        place: dict[str, int] = {"done": len(self.answers), "total": self.total}
+        self.options.progress(ProgressEvent(kind=kind, label=label, status=status, reason=reason, **place))
 
 
 def run_cases(cases: Sequence[Case], options: RunOptions) -> Run:
@@ -140,7 +138,7 @@ def run_cases(cases: Sequence[Case], options: RunOptions) -> Run:
     An interrupt (Ctrl-C) and a lost cluster end the run early with ``complete`` False; every finished task is kept.
 
     Raises:
-        InvalidInput: if another run works in the folder, its disk is full, or a kept answer is damaged.
+        InvalidInput: If another run works in the folder, its disk is full, or a kept answer is damaged.
     """
     with locked(options.out):
         return _run(cases, options)
@@ -155,7 +153,8 @@ def _run(cases: Sequence[Case], options: RunOptions) -> Run:
         run = _Run(options, stream, total=len(jobs))
         run.tell("planned", f"{len(cases)} case{'s' * (len(cases) != 1)}")
         for job, answer in kept:
-            run.finish(job, answer, reused=True)
+            run.answers[answer.identity] = answer
+            run.tell("reused", job.task.label, answer.status, answer.reason)
         try:
             _carry_out(run, [job for job in jobs if job.task.identity not in run.answers])
         except KeyboardInterrupt:
@@ -187,20 +186,20 @@ def judge(cases: Iterable[Case], answers: Table, made: Stamp) -> Judged:
     """Return the verdicts and records of cases from the answers present.
 
     Args:
-        cases: as they were run.
-        answers: of their tasks; a claim or study without all its answers is left out.
-        made: where and when.
+        cases: Cases as they were run.
+        answers: Answers to their tasks; a claim or study without all its answers is left out.
+        made: Stamp of the run.
     """
     cases = tuple(cases)
-    found = [record for case in cases for claim in case.claims for record in claim.records(case, answers)]
+    records = [record for case in cases for claim in case.claims for record in claim.records(case, answers)]
     return Judged(
         stamp=made,
         cases=tuple(words_of(case) for case in cases),
         verdicts=tuple(verdict for case in cases for verdict in case.verdicts(answers)),
-        convergence=tuple(one for one in found if isinstance(one, Convergence)),
-        costs=tuple(one for one in found if isinstance(one, CostOfAccuracy)),
-        stress_tests=tuple(one for one in found if isinstance(one, StressTest)),
-        effects=tuple(one for one in found if isinstance(one, Effect)),
+        convergence=tuple(record for record in records if isinstance(record, Convergence)),
+        costs=tuple(record for record in records if isinstance(record, CostOfAccuracy)),
+        stress_tests=tuple(record for record in records if isinstance(record, StressTest)),
+        effects=tuple(record for record in records if isinstance(record, Effect)),
     )
 
 
@@ -217,19 +216,21 @@ def words_of(case: Case) -> CaseText:
 
 
 def _kept(options: RunOptions, jobs: list[Job]) -> list[tuple[Job, Answer]]:
-    """Answers of an earlier run that are used again; the file is written anew with them alone."""
+    """Answers of an earlier run that are used again; the file is written anew with them alone.
+
+    They are those to the same question by the same code, but for time limits and breakdowns.
+    """
     file = options.out / NAME
     earlier = Table(read_answers(file)) if options.resume and file.is_file() else Table()
-    found = [(job, earlier.get(job.task.identity)) for job in jobs]
-    kept = [(job, answer) for job, answer in found if answer is not None and _same(job, answer)]
+    kept = [
+        (job, answer)
+        for job in jobs
+        if (answer := earlier.get(job.task.identity)) is not None
+        and answer.status not in (Status.TIMEOUT, Status.INVALID)
+        and (answer.question, answer.code) == (job.question, job.code)
+    ]
     write_whole(file, "".join(answer.line() for _, answer in kept))
     return kept
-
-
-def _same(job: Job, answer: Answer) -> bool:
-    """Whether an answer is to this question by this code, and final."""
-    final = answer.status not in (Status.TIMEOUT, Status.INVALID)
-    return final and (answer.question, answer.code) == (job.question, job.code)
 
 
 def _tell_judged(run: _Run, judged: Judged, table: Table) -> None:
@@ -248,14 +249,20 @@ def _carry_out(run: _Run, jobs: list[Job]) -> None:
 
 
 def _solve_in(run: _Run, factory: ExecutorFactory, count: int, jobs: list[Job]) -> None:
-    """Solve in an executor; when a process dies, the tasks it may have computed are repeated one by one, apart."""
+    """Solve in an executor; when a process dies, each task that it may have computed is repeated in one of its own."""
     while jobs:
+        suspects: list[Job] = []
         with closing(factory(count)) as executor:
-            suspects: list[Job] = []
-            for job, answer in completed(partial(_submit, executor, run), jobs, ahead(executor, count), suspects):
-                run.finish(job, answer)
+            for job, future in completed(partial(_submit, executor, run), jobs, ahead(executor, count)):
+                if not died(future):
+                    run.finish(job, future.result())
+                elif len(jobs) > 1:
+                    suspects.append(job)
+                else:
+                    reason = f"the process that solved it died: {future.exception()}"
+                    run.finish(job, job.answer(Status.INVALID, reason))
         for suspect in suspects:
-            _solve_apart(run, factory, suspect)
+            _solve_in(run, factory, 1, [suspect])
         jobs = [job for job in jobs if job.task.identity not in run.answers]
 
 
@@ -269,12 +276,3 @@ def _limit(options: RunOptions, method: str) -> float:
     if options.time_limit is not None:
         return options.time_limit
     return FOREIGN_TIME_LIMIT if method in registered() else 0.0
-
-
-def _solve_apart(run: _Run, factory: ExecutorFactory, job: Job) -> None:
-    with closing(factory(1)) as executor:
-        try:
-            answer = _submit(executor, run, job).result()
-        except BrokenExecutor as error:
-            answer = job.answer(Status.INVALID, f"the process that solved it died: {error}")
-    run.finish(job, answer)

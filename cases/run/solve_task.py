@@ -25,11 +25,11 @@ class Job:
     """A task with all that answers it: built where the run was started, solved anywhere.
 
     Attributes:
-        task: what to solve.
-        method: with its settings.
-        question: hash of the scene and of the settings asked for.
-        code: hash of all else that the answer depends on.
-        estimated: whether a method that states no errors is refined for them, which takes many times its own time.
+        task: Task to solve.
+        method: Method with its settings.
+        question: Hash of the scene and of the settings asked for.
+        code: Hash of all else that the answer depends on.
+        estimated: Whether a method that states no errors is refined for them, which takes many times its own time.
     """
 
     task: Task
@@ -58,7 +58,7 @@ def job_of(task: Task, *, estimates: bool = True) -> Job:
     """Return the job of a task.
 
     Raises:
-        InvalidInput: if there is no such method, or if it does not take its settings.
+        InvalidInput: If there is no such method, or if it does not take its settings.
     """
     method = task.use.build()
     for _ in range(task.refined):
@@ -71,8 +71,8 @@ def solve(job: Job, time_limit: float = 0.0) -> Answer:
     """Return the answer of a job: its numbers, or the status and the reason why there are none.
 
     Args:
-        job: what to solve.
-        time_limit: seconds, after which the process that solves is killed; zero solves in this process.
+        job: Job to solve.
+        time_limit: Seconds after which the process that solves is killed; zero solves in this process.
     """
     if not time_limit:
         return answered(job)

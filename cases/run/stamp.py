@@ -28,7 +28,7 @@ def stamp(started: datetime, wall_seconds: float) -> Stamp:
         processor=_processor(),
         cores=len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1,
         threads={_library(info): int(info["num_threads"]) for info in threadpool_info()},
-        versions={name: found for name in _PACKAGES if (found := _version(name))},
+        versions={name: number for name in _PACKAGES if (number := _version(name))},
     )
 
 

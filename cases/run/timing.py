@@ -22,7 +22,7 @@ def quartiles(samples: Sequence[float]) -> tuple[float, float, float]:
     """Return lower quartile, median and upper quartile of seconds.
 
     Raises:
-        InvalidInput: unless there is at least one sample and all are positive and finite.
+        InvalidInput: Unless there is at least one sample and all are positive and finite.
     """
     values = np.asarray(samples, dtype=np.float64)
     if values.size == 0 or not np.all(np.isfinite(values) & (values > 0)):
@@ -40,8 +40,8 @@ def timed_warm(call: Callable[[], object], *, samples: int = SAMPLES, shortest: 
     first = _seconds(call, 1)
     if first >= shortest:
         # Such a call is not repeated within a sample: it is a sample already.
-        left = (FEW_SAMPLES if first > LONG else samples) - 1
-        return (first, *(_seconds(call, 1) for _ in range(left)))
+        repeats = (FEW_SAMPLES if first > LONG else samples) - 1
+        return (first, *(_seconds(call, 1) for _ in range(repeats)))
     loops = int(np.ceil(shortest / max(first, 1e-9)))
     return tuple(_seconds(call, loops) for _ in range(samples))
 

@@ -28,10 +28,10 @@ def told_of_friction(layer: ElasticLayer, radius: FloatArray) -> tuple[str, ...]
         return ()
     if isinstance(layer, LayerStack):
         place = f"at a/h = {ratio:.3g} of the surface layer and nu = {nu:g}"
-        told = f"frictionless: {place} dry friction may raise the force, the more the stiffer what lies below"
-        return (f"{told}; contact-verify solve --advise bounds it, Friction(coefficient=..) solves it",)
+        words = f"frictionless: {place} dry friction may raise the force, the more the stiffer what lies below"
+        return (f"{words}; contact-verify solve --advise bounds it, Friction(coefficient=..) solves it",)
     slip = _COEFFICIENT * _SLIDES[layer.support] * ratio
     most = f"by up to {100.0 * slip / (1.0 - slip):.2g} %" if slip < 0.5 else "by more than half of it"
-    told = f"at a/h = {ratio:.3g} and nu = {nu:g} dry friction of {_COEFFICIENT:g} may raise the force {most}"
+    words = f"at a/h = {ratio:.3g} and nu = {nu:g} dry friction of {_COEFFICIENT:g} may raise the force {most}"
     more = "contact-verify solve --advise bounds it more closely, Friction(coefficient=..) solves it"
-    return (f"frictionless: {told}; {more}",)
+    return (f"frictionless: {words}; {more}",)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import Literal, NamedTuple, Protocol, TypeAlias
 
 import numpy as np
@@ -42,9 +42,9 @@ class Extreme:
     """The largest value of a field.
 
     Attributes:
-        radius: r [m].
-        depth: z [m].
-        value: [Pa].
+        radius: Radius r [m].
+        depth: Depth z [m].
+        value: Value of the field [Pa].
     """
 
     radius: float
@@ -57,15 +57,15 @@ class InsideFields:
     """Fields at points, each of the points' shape; tension positive, depth and axial displacement into the body.
 
     Attributes:
-        radial_displacement: u_r [m].
-        axial_displacement: u_z [m].
-        radial_stress: sigma_rr [Pa].
-        hoop_stress: sigma_tt [Pa].
-        axial_stress: sigma_zz [Pa].
-        shear_stress: sigma_rz [Pa].
-        hydrostatic_pressure: -(sigma_rr + sigma_tt + sigma_zz)/3 [Pa].
-        pressure_gradient_radial: Its derivative along r [Pa/m].
-        pressure_gradient_axial: Its derivative along z [Pa/m].
+        radial_displacement: Displacement u_r [m].
+        axial_displacement: Displacement u_z [m].
+        radial_stress: Stress sigma_rr [Pa].
+        hoop_stress: Stress sigma_tt [Pa].
+        axial_stress: Stress sigma_zz [Pa].
+        shear_stress: Stress sigma_rz [Pa].
+        hydrostatic_pressure: Pressure -(sigma_rr + sigma_tt + sigma_zz)/3 [Pa].
+        pressure_gradient_radial: Derivative of the hydrostatic pressure along r [Pa/m].
+        pressure_gradient_axial: Derivative of the hydrostatic pressure along z [Pa/m].
         error_estimate: Error of each field over its scale: the largest stress of these points; for gradients the
             largest of them, or that stress over the smaller of contact radius and thickness; the depth for
             displacements.
@@ -106,8 +106,8 @@ class KnownContact(NamedTuple):
     """Contact radius of one equilibrium, with errors of radius and pressure.
 
     Attributes:
-        radius: a [m], with all digits of what was prescribed.
-        radius_error: Its relative error.
+        radius: Contact radius a [m], with all digits of a prescribed one.
+        radius_error: Relative error of the contact radius.
         density_error: Relative error of the Abel density of its pressure, by default of the pressure itself.
         edge_error: Error of that density's value at the edge, over E* [m].
     """
@@ -130,9 +130,9 @@ class Inside:
     """The body under one equilibrium of a path.
 
     Attributes:
-        fields: Of the method that solved it.
+        fields: Fields of the method that solved the equilibrium.
         scene: The problem that was solved.
-        contact_radius: a [m] of the equilibrium.
+        contact_radius: Contact radius a [m] of the equilibrium.
         singular_edge: Whether its pressure is infinite at the edge though the scene does not say so.
     """
 
@@ -163,9 +163,8 @@ class Inside:
                     f"radius = {r[infinite][0]:g} m, depth = {z[infinite][0]:g}: stresses are infinite at this sharp "
                     f"edge; ask beside it, at least {closest:g} m away"
                 )
-        found = self.fields.at(r.ravel(), z.ravel()) if r.size else _NOTHING
-        arrays = {f.name: getattr(found, f.name).reshape(r.shape) for f in fields(found) if f.name != "error_estimate"}
-        return InsideFields(**arrays, error_estimate=found.error_estimate)
+        flat = self.fields.at(r.ravel(), z.ravel()) if r.size else _NOTHING
+        return replace(flat, **{name: getattr(flat, name).reshape(r.shape) for name in _FIELDS})
 
     @one_thread
     def largest(self, what: Searched) -> Extreme:
@@ -187,8 +186,8 @@ class Inside:
         if not faces:
             raise InvalidInput('largest("interface_shear"): a half-space has no interface')
         r = np.linspace(0.0, 2.0 * (a + thickness), 4 * _SAMPLES)
-        found = [_largest(r, [depth], lambda r, z: np.abs(self.fields.at(r, z).shear_stress)) for depth in faces]
-        return max(found, key=lambda extreme: extreme.value)
+        extremes = [_largest(r, [depth], lambda r, z: np.abs(self.fields.at(r, z).shear_stress)) for depth in faces]
+        return max(extremes, key=lambda extreme: extreme.value)
 
     @property
     def _faces(self) -> list[float]:
@@ -228,7 +227,7 @@ def _largest(radii: ArrayLike, depths: ArrayLike, value: Callable[[FloatArray, F
     points = np.stack(np.meshgrid(radii, depths)).reshape(2, -1)
     low, high = points.min(axis=1, keepdims=True), points.max(axis=1, keepdims=True)
     values = value(*points)
-    found = []
+    extremes = []
     for start in np.argsort(values)[::-1][:_STARTS]:
         best, top = points[:, [start]], values[start]
         width = (high - low) / (np.sqrt(values.size) - 1.0)
@@ -239,8 +238,8 @@ def _largest(radii: ArrayLike, depths: ArrayLike, value: Callable[[FloatArray, F
             if closer[i] > top:
                 best, top = around[:, [i]], closer[i]
             width = width / 2.0
-        found.append(Extreme(float(best[0, 0]), float(best[1, 0]), float(top)))
-    return max(found, key=lambda extreme: extreme.value)
+        extremes.append(Extreme(float(best[0, 0]), float(best[1, 0]), float(top)))
+    return max(extremes, key=lambda extreme: extreme.value)
 
 
 def _points(radius: ArrayLike, depth: ArrayLike) -> list[FloatArray]:
@@ -256,7 +255,7 @@ def _points(radius: ArrayLike, depth: ArrayLike) -> list[FloatArray]:
         if kind not in "iuf":
             raise InvalidInput(f"{name} = {value!r:.60}: must be a number of metres, or an array of numbers")
     try:
-        return [np.asarray(one, dtype=np.float64) for one in np.broadcast_arrays(radius, depth)]
+        return [np.asarray(coordinate, dtype=np.float64) for coordinate in np.broadcast_arrays(radius, depth)]
     except ValueError:
         raise InvalidInput(
             f"radius of shape {np.shape(radius)}, depth of shape {np.shape(depth)}: give both one shape, or shapes "

@@ -9,10 +9,8 @@ from typing import Any, TypeVar, cast
 
 import numpy as np
 
-from contact.answer.inside import InteriorFields, KnownContact
 from contact.answer.paths import ContactPath
 from contact.answer.stages import StageLog
-from contact.records.errors import InvalidInput
 from contact.records.validation import BoolArray, FloatArray
 from contact.scene.effects import Adhesion
 from contact.scene.loading import IndentationDepths, NormalForces
@@ -22,7 +20,7 @@ F = TypeVar("F", bound=Callable[..., Any])
 
 
 def without_contact(solve: F) -> F:
-    """A `solve` that is asked for the steps that press only, and answers zeros for the others."""
+    """A `solve` that computes the steps that press only, and answers zeros for the others."""
 
     @functools.wraps(solve)
     def wrapped(method: Any, scene: Scene) -> Any:
@@ -33,65 +31,49 @@ def without_contact(solve: F) -> F:
             return solve(method, scene)
         presses = loading.values > 0.0
         if not presses.any():
-            return _nothing(method.name, scene, presses.size)
+            zeros: dict[str, Any] = dict.fromkeys(ContactPath.ARRAYS, np.zeros(presses.size))
+            cost = StageLog().cost(unknowns=0)
+            return ContactPath(scene=scene, method=method.name, settings={}, **zeros, error_estimate=zeros, cost=cost)
         path = solve(method, scene.replace(loading=loading.replace(values=loading.values[presses])))
         return _with_zeros(path, scene, presses)
 
     return cast(F, wrapped)
 
 
+@dataclasses.dataclass(frozen=True)
 class _PressedFields:
-    """Fields of the steps that press; surface fields are zero at the others."""
+    """Fields of the steps that press, by their numbers in the whole path.
 
-    def __init__(self, fields: Any, number: list[int]) -> None:
-        """`number` is that of each step among the pressed ones, -1 for no contact."""
-        self._fields, self._number = fields, number
+    Attributes:
+        fields: Fields of the method, which solved the pressed steps alone.
+        numbers: Number of each step of the path among the pressed ones; that of a step without contact is never used.
+    """
 
-    def __getattr__(self, name: str) -> Callable[..., FloatArray]:
-        """A surface field of the method, such as `pressure`, zero without contact."""
+    fields: Any
+    numbers: list[int]
+
+    def __getattr__(self, name: str) -> Callable[..., Any]:
+        """A field of the method, such as `pressure(radius, step)`, or its `inside(step, known)`."""
         if name.startswith("_"):
             raise AttributeError(name)
-        of_method = getattr(self._fields, name)
-
-        def field(radius: FloatArray, step: int, *angle: FloatArray) -> FloatArray:
-            """Values at radii [m], zero without contact."""
-            pressed = self._number[step]
-            return np.zeros_like(radius) if pressed < 0 else np.asarray(of_method(radius, pressed, *angle))
-
-        return field
-
-    def inside(self, step: int, known: KnownContact) -> InteriorFields:
-        """The body under one step that presses.
-
-        Raises:
-            InvalidInput: If the step has no contact, or the method no fields inside.
-        """
-        if self._number[step] < 0 or not hasattr(self._fields, "inside"):
-            raise InvalidInput(f"step = {step}: nothing is known inside the body; ask mdr for a step that presses")
-        found: InteriorFields = self._fields.inside(self._number[step], known)
-        return found
-
-
-def _nothing(method: str, scene: Scene, count: int) -> ContactPath:
-    """A path without any contact."""
-    zeros: dict[str, Any] = dict.fromkeys(ContactPath.ARRAYS, np.zeros(count))
-    cost = StageLog().cost(unknowns=0)
-    return ContactPath(scene=scene, method=method, settings={}, **zeros, error_estimate=zeros, cost=cost)
+        field = getattr(self.fields, name)
+        if name == "inside":
+            return lambda step, known: field(self.numbers[step], known)
+        return lambda place, step, *angle: field(place, self.numbers[step], *angle)
 
 
 def _with_zeros(path: ContactPath, scene: Scene, presses: BoolArray) -> ContactPath:
     """The path with zeros at the steps that do not press."""
 
-    def filled(values: FloatArray) -> FloatArray:
-        """One value per step, zero in steps without contact."""
+    def with_zeros(values: FloatArray) -> FloatArray:
+        """One value per step of the scene from one per pressed step; anything else unchanged."""
         if np.size(values) != presses.sum():
             return values
-        found = np.zeros(presses.size)
-        found[presses] = values
-        return found
+        every = np.zeros(presses.size)
+        every[presses] = values
+        return every
 
-    arrays: dict[str, Any] = {name: filled(getattr(path, name)) for name in path.ARRAYS}
-    errors = {name: filled(np.atleast_1d(error)) for name, error in path.error_estimate.items()}
-    number = np.where(presses, np.cumsum(presses) - 1, -1).tolist()
-    fields: Any = None if path.fields is None else _PressedFields(path.fields, number)
+    arrays: dict[str, Any] = {name: with_zeros(getattr(path, name)) for name in path.ARRAYS}
+    errors = {name: with_zeros(np.atleast_1d(error)) for name, error in path.error_estimate.items()}
+    fields: Any = path.fields and _PressedFields(path.fields, (np.cumsum(presses) - 1).tolist())
     return dataclasses.replace(path, scene=scene, error_estimate=errors, fields=fields, **arrays)

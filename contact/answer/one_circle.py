@@ -43,9 +43,9 @@ class Circle:
     """One circle of contact and the surface outside it.
 
     Attributes:
-        contact_radius: a [m].
-        indentation_depth: delta [m].
-        displacement: w [m] at radii [m] beyond a, shape (n,).
+        contact_radius: Contact radius a [m].
+        indentation_depth: Depth delta [m].
+        displacement: Surface displacement w [m] at radii [m] beyond a, shape (n,).
         tolerance: Overlap [m] that is still an error of the displacement.
     """
 
@@ -113,11 +113,11 @@ def touching_radius(scene: Scene, circle: Circle) -> float | None:
     gap = profile.height(r) - circle.indentation_depth
     bulge = REACH * max(0.0, -float(circle.displacement(a + min(a, scene.layer.thickness) * PROBES).min()))
     # Within reach of a bulge, and around minima, the gap itself is computed, not the height above the contact's depth.
-    asked, known = np.flatnonzero(gap <= bulge), np.zeros(r.size, dtype=bool)
-    while asked.size:
-        gap[asked], known[asked] = circle.gap(profile, r[asked]), True
+    places, computed = np.flatnonzero(gap <= bulge), np.zeros(r.size, dtype=bool)
+    while places.size:
+        gap[places], computed[places] = circle.gap(profile, r[places]), True
         around = np.add.outer(_minima(gap), [-1, 0, 1]).astype(int).ravel()
-        asked = np.unique(around[~known[around]])
+        places = np.unique(around[~computed[around]])
     minima = _minima(gap)
     lowest = [(float(gap[i]), float(r[i])) for i in np.flatnonzero(gap < 0)]
     lowest += [_narrowed(profile, circle, r[i - 1], r[i + 1]) for i in minima if gap[i] >= 0]

@@ -66,9 +66,9 @@ class SampledFields:
     """Surface fields at stored radii; other radii are refused, never interpolated.
 
     Attributes:
-        radius: r [m], shape (m,) or (n, m): m radii for each of n steps, increasing.
-        pressures: p [Pa], shape (n, m).
-        displacements: w [m], shape (n, m).
+        radius: Stored radii r [m], shape (m,) or (n, m): m radii for each of n steps, increasing.
+        pressures: Pressure p [Pa], shape (n, m).
+        displacements: Surface displacement w [m], shape (n, m).
     """
 
     radius: FloatArray
@@ -95,9 +95,14 @@ class SampledFields:
 
 @one_thread
 def sampled(
-    answer: Solution, fields: object | None, name: str, radius: ArrayLike, step: int, *angle: FloatArray
+    answer: "ContactPath | FrictionHistory",
+    fields: object | None,
+    name: str,
+    radius: ArrayLike,
+    step: int,
+    *angle: FloatArray,
 ) -> FloatArray:
-    """A surface field of one step at radii [m], of a shape in directions [rad].
+    """A surface field of one step at radii [m], of a shape in directions [rad]; zero where nothing touches.
 
     Raises:
         InvalidInput: The method gave no fields, the answer has no such step, or a radius is negative or not finite.
@@ -108,6 +113,8 @@ def sampled(
     r = np.asarray(radius, dtype=np.float64)
     if not np.all(np.isfinite(r) & (r >= 0.0)):
         raise InvalidInput(f"radius = {np.min(r) if r.size else r}: radii must be finite and not negative")
+    if answer.contact_radius[step] == 0.0:
+        return np.zeros(r.shape)
     values: FloatArray = getattr(fields, name)(np.atleast_1d(r), step % len(answer), *angle)
     return finite(name, values, answer.method).reshape(r.shape)
 
@@ -117,10 +124,10 @@ class ContactPath(Solution):
     """Equilibria at the prescribed radii, depths or forces, in their order.
 
     Attributes:
-        contact_radius: a [m], shape (n,).
-        indentation_depth: delta [m], shape (n,).
-        normal_force: F_N [N], shape (n,).
-        contact_stiffness: k_N = dF/d(delta) at fixed radius [N/m], shape (n,).
+        contact_radius: Contact radius a [m], shape (n,).
+        indentation_depth: Depth delta [m], shape (n,).
+        normal_force: Normal force F_N [N], shape (n,).
+        contact_stiffness: Stiffness k_N = dF/d(delta) at fixed radius [N/m], shape (n,).
         fields: Pressure and displacement at the surface, where the method gives them.
     """
 
@@ -184,7 +191,7 @@ class ContactPath(Solution):
         """
         self.refuse_step(step)
         phi = np.asarray(angle, dtype=np.float64)
-        if not isinstance(self.scene.indenter, Shape):
+        if not isinstance(self.scene.indenter, Shape) or self.contact_radius[step] == 0.0:
             return np.full(phi.shape, self.contact_radius[step])
         of_fields = getattr(self.fields, "outline", None)
         if of_fields is None:
@@ -195,7 +202,7 @@ class ContactPath(Solution):
         """Stresses and displacements inside the layer at one step: `.at(radius, depth)`, `.largest("von_mises")`.
 
         Raises:
-            InvalidInput: If the path has no such step.
+            InvalidInput: If the path has no such step, or nothing touches there.
             UnsupportedSceneError: If the method gives no fields inside.
         """
         inside = getattr(self.fields, "inside", None)
@@ -205,6 +212,8 @@ class ContactPath(Solution):
         if "pressure" not in self.error_estimate:
             raise InvalidInput(f"{self.method} states no error of this pressure, nor of the fields that follow inside")
         radius = float(self.contact_radius[step])
+        if radius == 0.0:
+            raise InvalidInput(f"step = {step}: nothing touches; ask for a step that presses")
         names = ("contact_radius", "pressure")
         errors = (np.broadcast_to(self.error_estimate.get(name, 0.0), len(self))[step] for name in names)
         fields = inside(step % len(self), KnownContact(radius, *map(float, errors)))
@@ -242,7 +251,7 @@ class FrictionPath(ContactPath):
 
     Attributes:
         stick_radius: Radius of the outermost point that sticks [m], shape (n,); the contact's own under full stick.
-        dissipated_energy: Turned into heat since the first touch [J], shape (n,).
+        dissipated_energy: Energy turned into heat since the first touch [J], shape (n,).
     """
 
     OFFERS: ClassVar[tuple[str, ...]] = (
@@ -259,7 +268,7 @@ class FrictionPath(ContactPath):
         return sampled(self, self.fields, "tangential_traction", radius, step)
 
     def slip(self, radius: ArrayLike, step: int = 0) -> FloatArray:
-        """How far the surface has slid outward at radii [m] since it touched there [m], zero outside."""
+        """Slip [m] at radii [m]: outward sliding of the surface since it touched there, zero outside."""
         return sampled(self, self.fields, "slip", radius, step)
 
 
@@ -268,9 +277,9 @@ class ForcePath(Solution):
     """Equilibria of a solver that gives no contact radius.
 
     Attributes:
-        indentation_depth: delta [m], shape (n,).
-        normal_force: F_N [N], shape (n,).
-        contact_stiffness: dF/d(delta) [N/m], shape (n,).
+        indentation_depth: Depth delta [m], shape (n,).
+        normal_force: Normal force F_N [N], shape (n,).
+        contact_stiffness: Stiffness dF/d(delta) [N/m], shape (n,).
     """
 
     ASKED: ClassVar[tuple[str, ...]] = ("indentation_depth", "normal_force", "contact_stiffness")
@@ -291,9 +300,9 @@ class CriticalPoint:
     Attributes:
         control: "displacement", "force" or "machine" (the displacement of one that gives way).
         kind: "pull-off", "snap-in" or "start" (detachment begins at a punch's edge).
-        contact_radius: a [m].
-        indentation_depth: delta [m].
-        normal_force: F_N [N].
+        contact_radius: Contact radius a [m].
+        indentation_depth: Depth delta [m].
+        normal_force: Normal force F_N [N].
     """
 
     control: str
@@ -308,15 +317,15 @@ class DetachmentPath(Solution):
     """The equilibrium branch of an adhering indenter, in order of decreasing contact radius.
 
     Attributes:
-        contact_radius: a [m], shape (n,).
-        indentation_depth: delta [m], shape (n,).
-        normal_force: F_N [N], shape (n,).
+        contact_radius: Contact radius a [m], shape (n,).
+        indentation_depth: Depth delta [m], shape (n,).
+        normal_force: Normal force F_N [N], shape (n,).
         stable_displacement_control: Whether the state is stable at prescribed depth, shape (n,).
         stable_force_control: Whether it is stable at prescribed force, shape (n,).
         pull_off_force: Largest tensile force on the way, as a (negative) F_N [N], under the scene's control.
-        pull_off_depth: delta [m] where contact is lost under the scene's control.
-        pull_off_contact_radius: a [m] where contact is lost.
-        force_at_loss: F_N [N] just before contact is lost, often a smaller tension than the largest on the way.
+        pull_off_depth: Depth delta [m] where contact is lost under the scene's control.
+        pull_off_contact_radius: Contact radius a [m] where contact is lost.
+        force_at_loss: Normal force F_N [N] just before contact is lost; the tension is often less than the largest.
         critical_points: All changes of stability under either control, and under that of a machine that gives way.
     """
 
@@ -351,10 +360,10 @@ class HistoryPath(Solution):
     """Response to a prescribed depth or force history.
 
     Attributes:
-        time: t [s], shape (n,).
-        indentation_depth: delta [m], shape (n,).
-        normal_force: F_N [N], shape (n,).
-        contact_radius: a [m], shape (n,); zero where the indenter is free.
+        time: Time t [s], shape (n,).
+        indentation_depth: Depth delta [m], shape (n,).
+        normal_force: Normal force F_N [N], shape (n,).
+        contact_radius: Contact radius a [m], shape (n,); zero where the indenter is free.
         fields: Fields inside the body at the instants, where the method gives them.
     """
 
@@ -392,7 +401,7 @@ class FrictionHistory(HistoryPath):
 
     Attributes:
         stick_radius: Radius of the outermost point that sticks [m], shape (n,).
-        dissipated_energy: Turned into heat since the first touch [J], shape (n,).
+        dissipated_energy: Energy turned into heat since the first touch [J], shape (n,).
         surface: Tractions at the surface at each instant, where the method gives them.
     """
 
@@ -416,19 +425,19 @@ class ImpactHistory(Solution):
     """An impact from first touch (first sample) to the loss of contact (last sample).
 
     Attributes:
-        time: t [s] since first touch, shape (n,).
-        indentation_depth: delta [m], shape (n,).
-        velocity: d(delta)/dt [m/s], shape (n,).
-        normal_force: F_N [N], shape (n,).
-        contact_radius: a [m], shape (n,).
-        kinetic_energy: [J], shape (n,).
+        time: Time t [s] since first touch, shape (n,).
+        indentation_depth: Depth delta [m], shape (n,).
+        velocity: Velocity d(delta)/dt [m/s], shape (n,).
+        normal_force: Normal force F_N [N], shape (n,).
+        contact_radius: Contact radius a [m], shape (n,).
+        kinetic_energy: Kinetic energy [J], shape (n,).
         stored_energy: Recoverable energy in the layer [J], shape (n,).
-        dissipated_energy: [J], shape (n,). Energy that is stored below a point of the surface when the contact leaves
-            it does no more work on the indenter. MDR counts it as dissipated at once, finite elements as stored until
-            it has relaxed.
-        peak_force: max F_N [N], between samples too.
-        peak_depth: max delta [m].
-        peak_contact_radius: max a [m].
+        dissipated_energy: Dissipated energy [J], shape (n,). Energy stored below a point of the surface when the
+            contact leaves it does no more work on the indenter. MDR counts it as dissipated at once, finite elements
+            as stored until it has relaxed.
+        peak_force: Largest force max F_N [N], between samples too.
+        peak_depth: Largest depth max delta [m].
+        peak_contact_radius: Largest contact radius max a [m].
     """
 
     CURVE_ALONE: ClassVar[bool] = True

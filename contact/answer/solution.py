@@ -50,7 +50,7 @@ class Solution(Evidence):
     Attributes:
         scene: The problem that was solved.
         method: Name of the method.
-        settings: Its numerical settings.
+        settings: Numerical settings of the method.
         error_estimate: Own estimate of each quantity's relative error, shape (n,) or scalar; relative to `scale`.
         cost: Seconds, memory, unknowns, counters.
         stages: Which computations ran.
@@ -225,7 +225,7 @@ class Solution(Evidence):
     def _of_tree(cls, tree: Mapping[str, Any]) -> Any:
         if tree.get("schema") not in _READABLE:
             raise InvalidInput(f"schema = {shown(tree.get('schema'))}: this version reads {' and '.join(_READABLE)}")
-        kinds = {one.__name__: one for one in _subclasses(cls)}
+        kinds = {kind_of_answer.__name__: kind_of_answer for kind_of_answer in _subclasses(cls)}
         if (kind := kinds.get(tree["kind"])) is None:
             raise InvalidInput(f"a stored {tree['kind']}; read it with Solution.load")
         if missing := [name for name in (*kind.ARRAYS, *kind.SCALARS) if name not in tree["arrays"]]:
@@ -252,7 +252,7 @@ class Solution(Evidence):
 
 
 def _subclasses(cls: type[Any]) -> list[type[Any]]:
-    return [cls, *(one for direct in cls.__subclasses__() for one in _subclasses(direct))]
+    return [cls, *(kind for direct in cls.__subclasses__() for kind in _subclasses(direct))]
 
 
 def _imported(name: str) -> Any:

@@ -22,7 +22,7 @@ class StageRecord:
 
     Attributes:
         name: What was computed, such as "flat_punch_data".
-        calls: How many times.
+        calls: Number of calls.
         wall_seconds: Own wall time [s]; time inside nested stages is theirs.
         cpu_seconds: Own processor time [s].
         bytes: Size of the arrays it made, as far as the method declares them.
@@ -37,11 +37,11 @@ class StageRecord:
 
 @dataclass(frozen=True, kw_only=True)
 class Cost:
-    """What one solve cost.
+    """Cost of one solve.
 
     Attributes:
-        wall_seconds: [s].
-        cpu_seconds: [s], all threads, and processes that the method started and that have ended.
+        wall_seconds: Wall time [s].
+        cpu_seconds: Processor time [s] of all threads, and of processes that the method started and that have ended.
         peak_memory_bytes: High-water mark of the process so far, and of the largest process that it started; meaningful
             in a process of its own.
         unknowns: Size of the largest system solved.

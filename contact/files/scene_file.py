@@ -80,11 +80,11 @@ def _with_modulus(mapping: Mapping[str, Any], reading: Reading) -> Mapping[str, 
     if not isinstance(layer, Mapping) or {"kind", "youngs_modulus"} & layer.keys() or not isinstance(effects, list):
         return mapping
     names = {cls.kind(): cls for cls in EFFECTS if issubclass(cls, Viscoelasticity)}
-    given = [one for one in effects if isinstance(one, Mapping) and str(one.get("kind")) in names]
-    if not given:
+    models = [effect for effect in effects if isinstance(effect, Mapping) and str(effect.get("kind")) in names]
+    if not models:
         return mapping
     try:
-        model = read(names[given[0]["kind"]], given[0], "effect", Reading(reading.folder))
+        model = read(names[models[0]["kind"]], models[0], "effect", Reading(reading.folder))
         shear = model.relaxation.instantaneous_modulus
     except InvalidInput:
         shear = 1.0  # the scene itself refuses the effect, with its place
@@ -124,7 +124,7 @@ def table_of(item: Record) -> dict[str, Any]:
 
 def _written(value: object) -> Any:
     if isinstance(value, tuple):
-        return [_written(one) for one in value]
+        return [_written(part) for part in value]
     if isinstance(value, Record):
         return table_of(value)
     if isinstance(value, np.ndarray):

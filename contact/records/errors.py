@@ -39,7 +39,7 @@ def shown(value: object) -> str:
 
 
 def refused(*lines: str) -> PydanticCustomError:
-    """What a validator raises of parts of its value: each line begins with the name of one, as in "count = 1: ..."."""
+    """Error that a validator raises: one line for each part of its value, which begins with the name of the part."""
     return PydanticCustomError(OF_PARTS, "{told}", {"lines": lines, "told": "; ".join(lines)})
 
 

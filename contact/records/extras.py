@@ -24,7 +24,7 @@ EXTRA_OF: Final[Mapping[str, str]] = {
 
 
 def missing_extra(error: BaseException) -> str:
-    """What to install where an import failed for want of an extra; empty for any other error."""
+    """Install command of the extra for want of which an import failed; empty for any other error."""
     package = (error.name or "").partition(".")[0] if isinstance(error, ModuleNotFoundError) else ""
     extra = EXTRA_OF.get(package)
     return f"{package} {NOT_INSTALLED}: pip install 'contact-verification[{extra}]'" if extra else ""

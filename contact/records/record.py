@@ -184,8 +184,8 @@ class OneOf:
         if not isinstance(value, Mapping):
             return f"{_TAG}instance"
         kind = value.get("kind")
-        found = self.plain if kind is None else self.names.get(kind) if isinstance(kind, str) else None
-        return f"{_TAG}{found.kind()}" if found else "none of them"
+        chosen = self.plain if kind is None else self.names.get(kind) if isinstance(kind, str) else None
+        return f"{_TAG}{chosen.kind()}" if chosen else "none of them"
 
 
 def read(cls: type[R], table: Mapping[str, Any], name: str, context: object = None) -> R:
@@ -212,8 +212,8 @@ def unit_of(cls: type[Record], field: str) -> str | None:
 
 @functools.cache
 def _units(cls: type[Record]) -> dict[str, str]:
-    parts = {name: _parts(hint) for name, hint in get_type_hints(cls, include_extras=True).items()}
-    return {name: part.name for name, found in parts.items() for part in found if isinstance(part, Unit)}
+    hints = get_type_hints(cls, include_extras=True)
+    return {name: part.name for name, hint in hints.items() for part in _parts(hint) if isinstance(part, Unit)}
 
 
 def _parts(annotation: Any) -> Iterable[Any]:
@@ -226,7 +226,7 @@ def describe(error: pydantic.ValidationError, cls: type[Record], place: str, top
     """One line for each problem: path of the field below a place, its value, what is required and the remedy.
 
     Args:
-        error: Of pydantic.
+        error: Error that pydantic raised.
         cls: The record that was to be made.
         place: Beginning of every path.
         top: Name of the whole in a message that is not about one field; by default the place.
@@ -260,7 +260,7 @@ def _class_at(cls: type[Record], steps: Sequence[str | int]) -> type[Record]:
             cls = offered.get(step.removeprefix(_TAG), cls)
         elif step in _names(cls):
             parts = list(_parts(get_type_hints(cls, include_extras=True)[step]))
-            offered = {kind: one for part in parts if isinstance(part, OneOf) for kind, one in part.names.items()}
+            offered = {kind: record for part in parts if isinstance(part, OneOf) for kind, record in part.names.items()}
             cls = next((part for part in parts if isinstance(part, type) and issubclass(part, Record)), cls)
     return cls
 

@@ -40,7 +40,7 @@ class Column:
 
     Attributes:
         name: Head without its unit, empty without a head.
-        unit: As written, with "u" for micro; empty where there is none.
+        unit: Unit as written, with "u" for micro; empty where there is none.
         values: Shape (n,).
     """
 
@@ -67,7 +67,7 @@ class Table:
 
     def at_rows(self, rows: NDArray[np.int64]) -> Table:
         """The table with some of its rows."""
-        return replace(self, columns=tuple(replace(one, values=one.values[rows]) for one in self.columns))
+        return replace(self, columns=tuple(replace(column, values=column.values[rows]) for column in self.columns))
 
 
 def column_in_si(table: Mapping[str, Any], unit: str | None, folder: Path | None) -> tuple[NDArray[np.float64], str]:
@@ -84,21 +84,21 @@ def column_in_si(table: Mapping[str, Any], unit: str | None, folder: Path | None
     Raises:
         InvalidInput: If the file cannot be read, has gaps or no such column, or one in a unit of another kind.
     """
-    file, wanted, given = table["file"], table.get("column", 0), table.get("unit", "")
+    file, column, unit_name = table["file"], table.get("column", 0), table.get("unit", "")
     if folder is None:
         raise InvalidInput(f"file = {shown(file)}: only scene files name other files; give the numbers")
-    if not isinstance(file, str) or not isinstance(given, str):
-        raise InvalidInput(f"file = {shown(file)}, unit = {shown(given)}: must be texts, a CSV file and as in um")
-    found = read_table(folder / file)
-    if found.gaps:
-        raise InvalidInput(f"{folder / file}, line {found.gaps[0]}: a number is missing; leave the line out")
-    names = [column.name for column in found.columns]
-    place = names.index(wanted) if isinstance(wanted, str) and wanted in names else wanted
+    if not isinstance(file, str) or not isinstance(unit_name, str):
+        raise InvalidInput(f"file = {shown(file)}, unit = {shown(unit_name)}: must be texts, a CSV file and as in um")
+    whole = read_table(folder / file)
+    if whole.gaps:
+        raise InvalidInput(f"{folder / file}, line {whole.gaps[0]}: a number is missing; leave the line out")
+    names = [column.name for column in whole.columns]
+    place = names.index(column) if isinstance(column, str) and column in names else column
     if isinstance(place, bool) or not isinstance(place, int) or not 0 <= place < len(names):
         known = ", ".join(filter(None, names)) or f"columns 0 to {len(names) - 1}"
-        raise InvalidInput(f"column = {shown(wanted)}: {file} has no such column; it has {known}")
-    written = given or found.columns[place].unit
-    return in_unit(found.columns[place].values, written, unit), written if unit else ""
+        raise InvalidInput(f"column = {shown(column)}: {file} has no such column; it has {known}")
+    written = unit_name or whole.columns[place].unit
+    return in_unit(whole.columns[place].values, written, unit), written if unit else ""
 
 
 def in_unit(values: NDArray[np.float64], written: str, unit: str | None) -> NDArray[np.float64]:
@@ -118,13 +118,13 @@ def read_table(file: Path) -> Table:
     """
     texts = enumerate(table_text(file).splitlines(), 1)
     lines = [(number, line) for number, text in texts if (line := text.strip("\ufeff \r\n")).strip()]
-    first = next((k for k, (_, line) in enumerate(lines) if not line.startswith("#") and _is_data(line)), None)
+    first = next((k for k, (_, line) in enumerate(lines) if not line.startswith("#") and _separator(line)), None)
     if first is None:
         raise InvalidInput(f"{file}: holds no numbers")
-    separator = _separator(file, *lines[first])
+    separator = _separator(lines[first][1])
     rows = [(number, _cells(line, separator)) for number, line in lines[first:] if not line.startswith("#")]
     before, width = [line for _, line in lines[:first]], len(rows[0][1])
-    comments = {found[1]: found[2] for line in reversed(before) if (found := _COMMENT.fullmatch(line))}
+    comments = {match[1]: match[2] for line in reversed(before) if (match := _COMMENT.fullmatch(line))}
     names, units = _heads(before, comments, separator, width)
     _check_commas(file, rows[0], separator, names)
     values, gaps = _values(file, rows, width)
@@ -185,18 +185,10 @@ def _are_numbers(line: str, separator: str) -> bool:
     return None not in numbers and not np.isnan(np.array(numbers, dtype=np.float64)).all()
 
 
-def _is_data(line: str) -> bool:
-    return any(_are_numbers(line, separator) for separator in "\t;, ")
-
-
-def _separator(file: Path, number: int, line: str) -> str:
-    """The first of tab, semicolon, comma and blank that is in the first row and makes its cells numbers."""
-    for separator in "\t;, ":
-        if separator in line.strip() and _are_numbers(line, separator):
-            return separator
-    if _are_numbers(line, " "):
-        return " "
-    raise InvalidInput(f"{file}, line {number}: {printable(line[:80])!r} is no row of numbers")
+def _separator(line: str) -> str:
+    """The first of tab, semicolon, comma and blank that makes the cells of a line numbers; empty if none does."""
+    separators = [separator for separator in "\t;," if separator in line.strip()]
+    return next((separator for separator in (*separators, " ") if _are_numbers(line, separator)), "")
 
 
 def _heads(
@@ -214,8 +206,8 @@ def _heads(
             continue
         bare = [_bare_unit(cell) for cell in cells]
         if not all(bare) or any(units):
-            names, found = zip(*map(name_and_unit, cells), strict=True)
-            return list(names), [unit or old for unit, old in zip(found, units, strict=True)]
+            names, written = zip(*map(name_and_unit, cells), strict=True)
+            return list(names), [unit or old for unit, old in zip(written, units, strict=True)]
         units = bare
     return [""] * width, units
 
@@ -234,9 +226,9 @@ def _bare_unit(cell: str) -> str:
 def name_and_unit(cell: str) -> tuple[str, str]:
     """Name and unit of a head, the unit empty where there is none."""
     cell = plain_unit(cell)
-    found = _NAMED.fullmatch(cell) or _HEAD.fullmatch(cell)
-    if found and (found["name"] or found.re is _NAMED):
-        return found["name"].strip(), found["unit"]
+    match = _NAMED.fullmatch(cell) or _HEAD.fullmatch(cell)
+    if match and (match["name"] or match.re is _NAMED):
+        return match["name"].strip(), match["unit"]
     return cell, ""
 
 
@@ -259,8 +251,8 @@ def _values(
     for line, cells in rows:
         numbers = [_number(cell) for cell in (cells[:-1] if len(cells) == width + 1 and cells[-1] == "" else cells)]
         if len(numbers) != width or None in numbers:
-            told = printable(", ".join(cells)[:80])
-            raise InvalidInput(f"{file}, line {line}: {told!r} is not {width} finite numbers")
+            text = printable(", ".join(cells)[:80])
+            raise InvalidInput(f"{file}, line {line}: {text!r} is not {width} finite numbers")
         if any(math.isnan(number) for number in numbers if number is not None):
             gaps.append(line)
         else:

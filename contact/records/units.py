@@ -50,10 +50,10 @@ def in_si(value: object, unit: str) -> Any:
     Raises:
         InvalidInput: If the text has a unit of another kind, or one that nobody knows.
     """
-    found = _QUANTITY.fullmatch(value) if isinstance(value, str) and len(value) <= 80 else None
-    if found is None:
+    match = _QUANTITY.fullmatch(value) if isinstance(value, str) and len(value) <= 80 else None
+    if match is None:
         return value
-    number, written = found.groups()
+    number, written = match.groups()
     si = float(Decimal(number) * factor_of(written, unit))
     if not math.isfinite(si):
         raise InvalidInput("must fit into double precision")

@@ -58,7 +58,7 @@ class Derived(float):
 
 @dataclass
 class Reading:
-    """How the numbers of one scene are read, and whether they have units.
+    """Settings for reading the numbers of one scene, and a record of whether they have units.
 
     Attributes:
         folder: CSV files are named relative to it; None where no file may be named.
@@ -143,10 +143,10 @@ def number(
 
     def validate(value: object, info: ValidationInfo) -> float:
         """The number, or one error with what is required and the remedy."""
-        found = math.inf if infinite and value == "inf" else read_number(value, remedy, unit, info.context)
-        if not (low <= found <= high and (infinite or math.isfinite(found)) and (found > low or not above)):
+        si_value = math.inf if infinite and value == "inf" else read_number(value, remedy, unit, info.context)
+        if not (low <= si_value <= high and (infinite or math.isfinite(si_value)) and (si_value > low or not above)):
             raise ValueError(f"must {required}; {remedy}")
-        return found if math.isfinite(high) else _in_bounds(found, remedy)
+        return si_value if math.isfinite(high) else _in_bounds(si_value, remedy)
 
     limits = {"exclusiveMinimum" if above else "minimum": low} | ({"maximum": high} if math.isfinite(high) else {})
     schema = WithJsonSchema({**_written(unit, infinite=infinite), **limits})
@@ -185,7 +185,7 @@ def as_vector(value: object, remedy: str, unit: str | None, reading: Reading | N
         raise ValueError(f"must not be masked: what hides under the mask is no number; {remedy}")
     if not 0 < len(value) <= MAX_ENTRIES:
         raise ValueError(f"must hold at least one number and at most {MAX_ENTRIES} numbers, got {len(value)}; {remedy}")
-    entries = value if isinstance(value, np.ndarray) else [read_number(one, remedy, unit, reading) for one in value]
+    entries = value if isinstance(value, np.ndarray) else [read_number(entry, remedy, unit, reading) for entry in value]
     vector = np.array(entries, dtype=np.float64)
     bad = np.flatnonzero(~np.isfinite(vector))
     if bad.size:
@@ -251,21 +251,21 @@ def vector(
 
     def validate(value: object, info: ValidationInfo) -> FloatArray:
         """The vector, read-only; an error names the first offending entry."""
-        found = as_vector(value, remedy, unit, info.context)
+        values = as_vector(value, remedy, unit, info.context)
         for required, wrong in (
-            (f"be at least {least:g}", found < least),
-            (f"be above {above:g}", found <= above),
-            ("increase strictly", increasing & np.append(False, np.diff(found) <= 0.0)),
+            (f"be at least {least:g}", values < least),
+            (f"be above {above:g}", values <= above),
+            ("increase strictly", increasing & np.append(False, np.diff(values) <= 0.0)),
         ):
             if wrong.any():
                 entry = int(np.flatnonzero(wrong)[0])
-                raise ValueError(f"must {required}, but entry {entry} is {found[entry]:g}; {remedy}")
-        return found
+                raise ValueError(f"must {required}, but entry {entry} is {values[entry]:g}; {remedy}")
+        return values
 
-    one, end, text = _written(unit), {"type": ["number", "string"]}, {"type": "string"}
+    entry_schema, end_schema, text = _written(unit), {"type": ["number", "string"]}, {"type": "string"}
     span = {
-        "start": end,
-        "stop": end,
+        "start": end_schema,
+        "stop": end_schema,
         "count": {"type": "integer", "minimum": 2},
         "spacing": {"enum": ["linear", "log"]},
     }
@@ -274,6 +274,6 @@ def vector(
         {"type": "object", "properties": properties, "required": required, "additionalProperties": False}
         for properties, required in ((span, ["start", "stop", "count"]), (column, ["file"]))
     ]
-    listed = {"type": "array", "items": one, "minItems": 1, "maxItems": MAX_ENTRIES}
-    schema = WithJsonSchema({"anyOf": [listed, one, *tables]})
+    listed = {"type": "array", "items": entry_schema, "minItems": 1, "maxItems": MAX_ENTRIES}
+    schema = WithJsonSchema({"anyOf": [listed, entry_schema, *tables]})
     return PlainValidator(validate), schema, *([Unit(unit)] if unit else [])

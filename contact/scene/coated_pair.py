@@ -21,15 +21,15 @@ class CoatedPair(Record):
     """Two coated bodies of revolution in contact.
 
     Attributes:
-        first_radius: R_1 [m], radius of curvature of the first body; infinite for a plane one.
-        second_radius: R_2 [m].
-        first_thickness: h_1 [m], coating thickness of the first body.
-        second_thickness: h_2 [m]; Eq. (25) is an approximation unless h_1 = h_2.
-        youngs_modulus: E [Pa] of both coatings.
-        poissons_ratio: nu of both coatings.
-        support: How the coatings sit on their bodies.
+        first_radius: Radius of curvature R_1 [m] of the first body; infinite for a plane one.
+        second_radius: Radius of curvature R_2 [m] of the second body.
+        first_thickness: Coating thickness h_1 [m] of the first body.
+        second_thickness: Coating thickness h_2 [m] of the second body; Eq. (25) is an approximation unless h_1 = h_2.
+        youngs_modulus: Young's modulus E [Pa] of both coatings.
+        poissons_ratio: Poisson's ratio nu of both coatings.
+        support: Interface of each coating to its body, "bonded" or "unbonded".
         loading: What is prescribed, depths being the approach of the two bodies.
-        effects: As in a scene.
+        effects: Effects that are modelled, as in a `Scene`.
     """
 
     first_radius: _Radius

@@ -27,10 +27,10 @@ class Relaxation:
     """Shear relaxation G(t) = G_inf + sum_j G_j exp(-t/tau_j), and a dashpot eta in parallel.
 
     Attributes:
-        long_term_modulus: G_inf [Pa].
-        moduli: G_j [Pa], shape (m,).
-        times: tau_j [s], shape (m,).
-        viscosity: eta [Pa s].
+        long_term_modulus: Long-term modulus G_inf [Pa].
+        moduli: Moduli G_j [Pa], shape (m,).
+        times: Relaxation times tau_j [s], shape (m,).
+        viscosity: Viscosity eta [Pa s] of the dashpot.
     """
 
     long_term_modulus: float
@@ -57,7 +57,7 @@ class Adhesion(Effect):
     """Short-ranged (JKR) adhesion.
 
     Attributes:
-        work_of_adhesion: dgamma [J/m^2].
+        work_of_adhesion: Work of adhesion dgamma [J/m^2].
     """
 
     work_of_adhesion: Annotated[
@@ -69,7 +69,7 @@ class Friction(Effect):
     """Dry friction between indenter and layer (Coulomb). A coefficient of zero is frictionless contact.
 
     Attributes:
-        coefficient: mu [-]; infinity is full stick: what touches does not slide.
+        coefficient: Coefficient of friction mu [-]; infinity is full stick, without any sliding.
     """
 
     coefficient: Annotated[float, *number("give the coefficient of friction, or inf for full stick", infinite=True)]
@@ -84,8 +84,8 @@ class KelvinVoigt(Viscoelasticity):
     """A spring and a dashpot in parallel.
 
     Attributes:
-        shear_modulus: G [Pa].
-        viscosity: eta [Pa s].
+        shear_modulus: Shear modulus G [Pa].
+        viscosity: Viscosity eta [Pa s].
     """
 
     shear_modulus: Modulus
@@ -103,9 +103,9 @@ class StandardSolid(Viscoelasticity):
     """A spring in parallel with a Maxwell element (Zener).
 
     Attributes:
-        long_term_shear_modulus: G_inf [Pa].
-        maxwell_shear_modulus: G_1 [Pa].
-        viscosity: eta [Pa s] of the Maxwell element; it relaxes in eta / G_1.
+        long_term_shear_modulus: Long-term modulus G_inf [Pa].
+        maxwell_shear_modulus: Modulus G_1 [Pa].
+        viscosity: Viscosity eta [Pa s] of the Maxwell element; it relaxes in eta / G_1.
     """
 
     long_term_shear_modulus: _LongTermModulus
@@ -125,9 +125,9 @@ class PronySeries(Viscoelasticity):
     """A spring in parallel with any number of Maxwell elements.
 
     Attributes:
-        long_term_shear_modulus: G_inf [Pa].
-        shear_moduli: G_j [Pa], shape (m,).
-        relaxation_times: tau_j [s], shape (m,).
+        long_term_shear_modulus: Long-term modulus G_inf [Pa].
+        shear_moduli: Moduli G_j [Pa], shape (m,).
+        relaxation_times: Relaxation times tau_j [s], shape (m,).
     """
 
     long_term_shear_modulus: _LongTermModulus

@@ -29,15 +29,15 @@ def first_radius(indenter: Profile, reached: Callable[[float], bool]) -> float:
 
 
 def radius_of_depth(indenter: Profile, depth: float) -> float:
-    """Where f(r) is the depth [m]."""
+    """Radius [m] where f(r) is the depth [m]."""
     return first_radius(indenter, lambda r: float(indenter.height(r)) >= depth)
 
 
 def radius_of_load(indenter: Profile, load: float) -> float:
-    """Where r f(r) is the load [m^2], a force over some multiple of E*."""
+    """Radius [m] where r f(r) is the load [m^2], a force over some multiple of E*."""
     return first_radius(indenter, lambda r: r * float(indenter.height(r)) >= load)
 
 
 def radius_of_elongation(indenter: Profile, length: float) -> float:
-    """Where f(r) is the half-space's critical elongation sqrt(2 pi length r); the length [m] is dgamma/E*."""
+    """Radius [m] where f(r) is the critical elongation sqrt(2 pi length r) of a half-space; length [m] = dgamma/E*."""
     return first_radius(indenter, lambda r: float(indenter.height(r)) ** 2 >= 2.0 * math.pi * length * r)

@@ -106,8 +106,8 @@ class PowerLawDepth(DepthFunction):
 
     Attributes:
         surface: Value at z = 0.
-        reference_depth: z0 [m].
-        exponent: m, of either sign.
+        reference_depth: Reference depth z0 [m].
+        exponent: Exponent m, of either sign.
     """
 
     surface: Annotated[float, *positive(NO_ZERO, "Pa")]
@@ -129,8 +129,8 @@ class TabulatedDepth(DepthFunction):
     """Values at given depths, and piecewise cubic between them without overshoot (Fritsch and Carlson 1980).
 
     Attributes:
-        depths: z [m], increasing from zero to at least the layer's thickness, shape (n,).
-        values: There, shape (n,).
+        depths: Depths z [m], increasing from zero to at least the layer's thickness, shape (n,).
+        values: Values at these depths, shape (n,).
     """
 
     depths: Annotated[Vector, *vector("give depths in metres, from the surface down", "m", least=0.0, increasing=True)]
@@ -185,9 +185,9 @@ class GradedLayer(ElasticLayer):
     """A layer with elastic constants that change with depth.
 
     Attributes:
-        thickness: h [m].
-        youngs_modulus: E(z) [Pa].
-        poissons_ratio: nu, one number in [0, 0.5] or a `TabulatedDepth`.
+        thickness: Thickness h [m].
+        youngs_modulus: Young's modulus E(z) [Pa].
+        poissons_ratio: Poisson's ratio nu, one number in [0, 0.5] or a `TabulatedDepth`.
         support: "bonded" or "unbonded" to a rigid base, or an `ElasticBase`.
     """
 

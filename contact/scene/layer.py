@@ -22,9 +22,9 @@ class Sublayer(Record):
     """One uniform layer of a stack.
 
     Attributes:
-        thickness: h_i [m].
-        youngs_modulus: E_i [Pa].
-        poissons_ratio: nu_i in [0, 0.5]; 0.5 is exactly incompressible.
+        thickness: Thickness h_i [m].
+        youngs_modulus: Young's modulus E_i [Pa].
+        poissons_ratio: Poisson's ratio nu_i in [0, 0.5]; 0.5 is exactly incompressible.
     """
 
     thickness: PositiveLength
@@ -36,8 +36,8 @@ class ElasticBase(Record):
     """An elastic half-space below a layer.
 
     Attributes:
-        youngs_modulus: E [Pa].
-        poissons_ratio: nu in [0, 0.5].
+        youngs_modulus: Young's modulus E [Pa].
+        poissons_ratio: Poisson's ratio nu in [0, 0.5].
         interface: "bonded", or "unbonded" (frictionless, no lift-off), between base and layer.
     """
 
@@ -130,9 +130,9 @@ class Layer(ElasticLayer):
     """An elastic layer on a rigid base.
 
     Attributes:
-        thickness: h [m]; infinite for a half-space (see `Layer.half_space`).
-        youngs_modulus: E [Pa]; for a viscoelastic layer the instantaneous (glassy) value.
-        poissons_ratio: nu in [0, 0.5]; 0.5 is exactly incompressible.
+        thickness: Thickness h [m]; infinite for a half-space (see `Layer.half_space`).
+        youngs_modulus: Young's modulus E [Pa]; for a viscoelastic layer the instantaneous (glassy) value.
+        poissons_ratio: Poisson's ratio nu in [0, 0.5]; 0.5 is exactly incompressible.
         support: "bonded" (no displacement at the base) or "unbonded" (frictionless base, no lift-off).
     """
 
@@ -184,7 +184,7 @@ class Layer(ElasticLayer):
 
     @property
     def title(self) -> str:
-        """As in: bonded layer, nu = 0.45."""
+        """Short name of the layer for titles, such as "bonded layer, nu = 0.45"."""
         below = "half-space" if self.is_half_space else f"{self.support} layer"
         return f"{below}, nu = {self.poissons_ratio:g}"
 
@@ -211,8 +211,8 @@ class LayerStack(ElasticLayer):
     """Uniform layers on top of each other. A scene takes a stack of one on a rigid base as that `Layer`.
 
     Attributes:
-        sublayers: From the top; the first touches the indenter.
-        interfaces: One fewer than sublayers: "bonded", or "unbonded" (frictionless, no lift-off).
+        sublayers: Layers from the top; the first touches the indenter.
+        interfaces: Interfaces, one fewer than sublayers: "bonded", or "unbonded" (frictionless, no lift-off).
         support: "bonded" or "unbonded" to a rigid base, or an `ElasticBase`.
     """
 
@@ -237,7 +237,7 @@ class LayerStack(ElasticLayer):
     @property
     def thickness(self) -> float:
         """All sublayers together [m]."""
-        return math.fsum(one.thickness for one in self.sublayers)
+        return math.fsum(part.thickness for part in self.sublayers)
 
     @property
     def surface(self) -> Sublayer:
@@ -245,7 +245,7 @@ class LayerStack(ElasticLayer):
         return self.sublayers[0]
 
     def _ratios(self) -> tuple[float, ...]:
-        return tuple(one.poissons_ratio for one in self.sublayers)
+        return tuple(part.poissons_ratio for part in self.sublayers)
 
     @property
     def title(self) -> str:
@@ -262,12 +262,12 @@ class LayerStack(ElasticLayer):
         """The same stack with thickness 1 and E* = 1."""
         length, modulus, support = self.thickness, self.contact_modulus, self.support
         sublayers = tuple(
-            one.replace(thickness=one.thickness / length, youngs_modulus=one.youngs_modulus / modulus)
-            for one in self.sublayers
+            part.replace(thickness=part.thickness / length, youngs_modulus=part.youngs_modulus / modulus)
+            for part in self.sublayers
         )
         base = support.scaled(modulus) if isinstance(support, ElasticBase) else support
         return self.replace(sublayers=sublayers, support=base)
 
     def stretched(self, factor: float) -> Self:
         """The same stack with every sublayer so many times as thick."""
-        return self.replace(sublayers=tuple(one.replace(thickness=one.thickness * factor) for one in self.sublayers))
+        return self.replace(sublayers=tuple(part.replace(thickness=part.thickness * factor) for part in self.sublayers))

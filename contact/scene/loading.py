@@ -27,7 +27,7 @@ class ContactRadii(Loading):
     """Equilibria at given contact radii: the natural parameter of every axisymmetric contact.
 
     Attributes:
-        values: a [m], positive and increasing, shape (n,).
+        values: Contact radii a [m], positive and increasing, shape (n,).
     """
 
     values: Annotated[Vector, *vector("give contact radii in metres", "m", above=0.0, increasing=True)] = field(
@@ -43,7 +43,7 @@ class IndentationDepths(Loading):
     beginning out of contact.
 
     Attributes:
-        values: delta [m], shape (n,); negative only with adhesion.
+        values: Depths delta [m], shape (n,); negative only with adhesion.
     """
 
     values: Annotated[Vector, *vector("give indentation depths in metres", "m")] = field(kw_only=False)
@@ -53,7 +53,7 @@ class NormalForces(Loading):
     """Equilibria at given forces, each reached from the unloaded layer.
 
     Attributes:
-        values: F_N [N], pressing positive, shape (n,); negative only with adhesion.
+        values: Normal forces F_N [N], pressing positive, shape (n,); negative only with adhesion.
     """
 
     values: Annotated[Vector, *vector("give normal forces in newtons", "N")] = field(kw_only=False)
@@ -67,9 +67,9 @@ class Detachment(Loading):
 
     Attributes:
         control: What the testing machine prescribes: "displacement" (stiff) or "force" (soft).
-        machine_stiffness: K [N/m] of what holds the indenter, under displacement control; None if it is rigid.
-        initial_contact_radius: a [m] where the separation starts; a flat punch starts at its own radius, and other
-            profiles, when it is omitted, at a radius from which the whole unloading branch is seen.
+        machine_stiffness: Stiffness K [N/m] of the machine, under displacement control; None if it is rigid.
+        initial_contact_radius: Contact radius a [m] where the separation starts. A flat punch starts at its own radius.
+            Other profiles start, when it is omitted, at a radius from which the whole unloading branch is seen.
     """
 
     control: Literal["displacement", "force"] = "displacement"
@@ -89,7 +89,7 @@ class Detachment(Loading):
 
     @property
     def controlled(self) -> Controlled:
-        """What is prescribed: the depth, the force, or the displacement of a machine that gives way."""
+        """Prescribed quantity: the depth, the force, or the displacement of a machine that gives way."""
         return "machine" if self.machine_stiffness is not None else self.control
 
 
@@ -97,8 +97,8 @@ class Impact(Loading):
     """A rigid body hits the layer along its axis and rebounds.
 
     Attributes:
-        mass: M [kg].
-        velocity: v0 [m/s] at first touch, towards the layer.
+        mass: Mass M [kg].
+        velocity: Velocity v0 [m/s] at first touch, towards the layer.
     """
 
     mass: Annotated[float, *positive("give the mass in kilograms", "kg")]
@@ -109,8 +109,8 @@ class DepthHistory(Loading):
     """A prescribed depth in time, linear between the given instants.
 
     Attributes:
-        time: t [s], increasing, shape (n,), n >= 2.
-        depth: delta [m] at these instants, shape (n,).
+        time: Time t [s], increasing, shape (n,), n >= 2.
+        depth: Depths delta [m] at these instants, shape (n,).
     """
 
     time: Instants
@@ -126,8 +126,8 @@ class ForceHistory(Loading):
     """A prescribed normal force in time, linear between the given instants.
 
     Attributes:
-        time: t [s], increasing, shape (n,), n >= 2.
-        force: F_N [N] at these instants, shape (n,).
+        time: Time t [s], increasing, shape (n,), n >= 2.
+        force: Normal forces F_N [N] at these instants, shape (n,).
     """
 
     time: Instants

@@ -43,6 +43,8 @@ class Profile(Record, ABC):
     """Base of all indenters of revolution. Radii r [m] may be arrays of any shape."""
 
     NAMED = True
+    UPRIGHT_END: ClassVar[str] = "the indenter is upright there"
+    """Reason of the message for a radius where the profile is upright."""
 
     @abstractmethod
     def height(self, radius: ArrayLike) -> FloatArray:
@@ -71,11 +73,6 @@ class Profile(Record, ABC):
     def ends_upright(self) -> bool:
         """Whether the slope is infinite where the profile ends: a contact up to there would be infinitely deep."""
         return math.isfinite(self.max_radius) and not np.isfinite(self.slope_at(self.max_radius))
-
-    @property
-    def upright_end(self) -> str:
-        """Reason of the message for a radius where the profile is upright."""
-        return "the indenter is upright there"
 
     @property
     def is_convex(self) -> bool:
@@ -136,7 +133,7 @@ class FlatPunch(Profile):
     """A flat-ended cylinder; its contact radius is its own.
 
     Attributes:
-        radius: a [m].
+        radius: Radius a [m].
     """
 
     radius: PositiveLength
@@ -160,7 +157,7 @@ class Paraboloid(Pointed):
     """f(r) = r^2 / (2 R).
 
     Attributes:
-        radius_of_curvature: R [m].
+        radius_of_curvature: Radius of curvature R [m].
     """
 
     radius_of_curvature: PositiveLength
@@ -176,8 +173,10 @@ class Sphere(Pointed):
     """The exact sphere, f(r) = R - sqrt(R^2 - r^2); a paraboloid for r << R.
 
     Attributes:
-        radius: R [m].
+        radius: Radius R [m].
     """
+
+    UPRIGHT_END = "the sphere has sunk to its equator"
 
     radius: PositiveLength
 
@@ -198,16 +197,12 @@ class Sphere(Pointed):
     def max_radius(self) -> float:
         return self.radius
 
-    @property
-    def upright_end(self) -> str:
-        return "the sphere has sunk to its equator"
-
 
 class Cone(Sloped, Pointed):
     """f(r) = slope r.
 
     Attributes:
-        slope: tan(theta) [-], theta the angle between the cone's flank and the surface.
+        slope: Slope tan(theta) [-], theta the angle between the cone's flank and the surface.
     """
 
     slope: Slope
@@ -223,8 +218,8 @@ class Spheroconical(Sloped, Pointed):
     """A cone whose apex is a sphere that it touches at b = R sin(theta): f is the sphere's up to b, then straight.
 
     Attributes:
-        radius: R [m] of the sphere.
-        slope: tan(theta) [-], theta the angle between the cone's flank and the surface.
+        radius: Radius R [m] of the sphere.
+        slope: Slope tan(theta) [-], theta the angle between the cone's flank and the surface.
     """
 
     radius: PositiveLength
@@ -266,8 +261,8 @@ class TruncatedCone(Sloped, Truncated):
     """Eq. (35): flat up to b, then f(r) = slope (r - b).
 
     Attributes:
-        flat_radius: b [m].
-        slope: tan(theta) [-].
+        flat_radius: Radius b [m] of the flat end.
+        slope: Slope tan(theta) [-].
     """
 
     slope: Slope
@@ -283,8 +278,8 @@ class TruncatedParaboloid(Truncated):
     """A worn paraboloid: flat up to b, then f(r) = (r^2 - b^2) / (2 R).
 
     Attributes:
-        flat_radius: b [m].
-        radius_of_curvature: R [m].
+        flat_radius: Radius b [m] of the flat end.
+        radius_of_curvature: Radius of curvature R [m].
     """
 
     radius_of_curvature: PositiveLength
@@ -302,9 +297,9 @@ class PowerLaw(Pointed):
     """f(r) = H (r / R)^n: a cone for n = 1, a paraboloid for n = 2, ever flatter at the tip as n grows.
 
     Attributes:
-        exponent: n >= 1 [-].
-        reference_radius: R [m].
-        reference_height: H [m], the height at r = R.
+        exponent: Exponent n >= 1 [-].
+        reference_radius: Reference radius R [m].
+        reference_height: Height H [m] at r = R.
     """
 
     exponent: Annotated[float, *in_range(1.0, math.inf, "1 is a cone; a smaller exponent has an infinitely sharp tip")]
@@ -324,8 +319,8 @@ class Tabulated(Pointed):
     """A measured profile, joined by shape-preserving cubics (PCHIP: no overshoot, continuous slope).
 
     Attributes:
-        radii: r [m], increasing from zero, shape (n,), n >= 3.
-        heights: f [m] at these radii, starting at zero, shape (n,).
+        radii: Radii r [m], increasing from zero, shape (n,), n >= 3.
+        heights: Heights f [m] at these radii, starting at zero, shape (n,).
         smoothing: Largest change [m] of a height by `smoothed`; none for a table as it was measured.
     """
 
@@ -343,7 +338,7 @@ class Tabulated(Pointed):
     @model_validator(mode="wrap")
     @classmethod
     def _from_file(cls, given: Any, handler: Any, info: ValidationInfo) -> Any:
-        """In files: the first two columns of a CSV file, and the noise that is smoothed away."""
+        """Reads the first two columns of a CSV file that a table names, and smooths the noise away."""
         if not isinstance(given, Mapping):
             return handler(given)
         table = dict(given)

@@ -82,7 +82,7 @@ class Shape(Profile, ABC):
 
     @property
     def instead(self) -> str:
-        """What a user may do where shapes are not modelled."""
+        """Remedy of the message where shapes are not modelled."""
         fields = ", ".join(f"{k}={v:.6g}" for k, v in vars(self.substitute).items() if isinstance(v, float))
         return f"take {type(self.substitute).__name__}({fields}) in its place, or leave out what is not modelled"
 
@@ -97,7 +97,7 @@ class Raised(Shape):
 
     @abstractmethod
     def polar_slope(self, radius: ArrayLike, angle: ArrayLike) -> FloatArray:
-        """df/dr [-]."""
+        """Slope df/dr [-]."""
 
     def harmonic(self, orders: Sequence[int], radius: FloatArray) -> tuple[FloatArray, FloatArray]:
         """f_n [m] and df_n/dr [-] of p orders at radii [m], shape (.., p); f_0 is the average over phi."""
@@ -120,7 +120,7 @@ class Flat(Shape):
         return FlatPunch(radius=float(weight @ self.outline(angle)))
 
     def polar(self, radius: ArrayLike, angle: ArrayLike) -> FloatArray:
-        """Zero within the outline, infinite outside."""
+        """Height f [m]: zero within the outline, infinite outside."""
         return np.where(np.asarray(radius) <= self.outline(angle), 0.0, np.inf)
 
 
@@ -128,8 +128,8 @@ class EllipticParaboloid(Raised):
     """f = x^2/(2 R_1) + y^2/(2 R_2), in r and phi: r^2 [cos^2(phi)/R_1 + sin^2(phi)/R_2]/2.
 
     Attributes:
-        first_radius: R_1 [m], radius of curvature in the plane y = 0.
-        second_radius: R_2 [m], radius of curvature in the plane x = 0.
+        first_radius: Radius of curvature R_1 [m] in the plane y = 0.
+        second_radius: Radius of curvature R_2 [m] in the plane x = 0.
     """
 
     first_radius: PositiveLength
@@ -142,20 +142,20 @@ class EllipticParaboloid(Raised):
 
     @property
     def orders(self) -> tuple[int, ...]:
-        """Of cos(2 phi) alone."""
+        """The single order of cos(2 phi)."""
         return (2,)
 
     @property
     def mean(self) -> Paraboloid:
-        """Of the mean curvature."""
+        """The paraboloid of the mean curvature."""
         return Paraboloid(radius_of_curvature=2.0 / (1.0 / self.first_radius + 1.0 / self.second_radius))
 
     def polar(self, radius: ArrayLike, angle: ArrayLike) -> FloatArray:
-        """f [m]."""
+        """Height f [m]."""
         return np.asarray(radius) * self.polar_slope(radius, angle) / 2.0
 
     def polar_slope(self, radius: ArrayLike, angle: ArrayLike) -> FloatArray:
-        """df/dr [-]."""
+        """Slope df/dr [-]."""
         curvature = np.cos(angle) ** 2 / self.first_radius + np.sin(angle) ** 2 / self.second_radius
         return np.asarray(np.asarray(radius) * curvature)
 
@@ -168,7 +168,7 @@ class Pyramid(Sloped, Raised):
     Attributes:
         slope: Tangent of the angle between a face and the surface [-].
         sides: Number of faces, 3 or 4.
-        tip_radius: R [m] of the blunt tip; none for a sharp one.
+        tip_radius: Radius R [m] of the blunt tip; none for a sharp one.
     """
 
     slope: Slope
@@ -199,7 +199,7 @@ class Pyramid(Sloped, Raised):
         return np.asarray(b * np.tan(t / 2.0) + slope * (np.asarray(radius) - b))
 
     def polar_slope(self, radius: ArrayLike, angle: ArrayLike) -> FloatArray:
-        """df/dr [-]."""
+        """Slope df/dr [-]."""
         return np.asarray(np.tan(self._rays(radius, angle)[1]))
 
     @property
@@ -226,21 +226,21 @@ class Averaged(Pointed):
     shape: Pyramid
 
     def height(self, radius: ArrayLike) -> FloatArray:
-        """f_0 [m]."""
+        """Height f_0 [m]."""
         return self.shape.harmonic((0,), np.asarray(radius, dtype=np.float64))[0][..., 0]
 
     def slope_at(self, radius: ArrayLike) -> FloatArray:
-        """df_0/dr [-]."""
+        """Slope df_0/dr [-]."""
         return self.shape.harmonic((0,), np.asarray(radius, dtype=np.float64))[1][..., 0]
 
     @property
     def breakpoints(self) -> tuple[float, ...]:
-        """Those of the shape [m]."""
+        """Breakpoints of the shape [m]."""
         return self.shape.breakpoints
 
     @property
     def is_convex(self) -> bool:
-        """True: every ray is convex."""
+        """Whether the profile is convex: it is, since every ray is."""
         return True
 
 
@@ -248,9 +248,9 @@ class Harmonic(Record):
     """One term share f(r) cos(n phi) of `Harmonics`.
 
     Attributes:
-        order: n >= 2. The order 1 is a shift or tilt: move the axis there.
+        order: Order n >= 2. The order 1 is a shift or tilt: move the axis there.
         share: Factor of f [-], of either sign.
-        profile: f; the mean profile itself where none is given.
+        profile: Profile f; the mean profile itself where none is given.
     """
 
     order: Annotated[int, Field(ge=2, le=LARGEST_ORDER)]
@@ -274,7 +274,7 @@ class Harmonics(Raised):
     """f = f_0(r) + sum_n share_n f_n(r) cos(n phi).
 
     Attributes:
-        profile: f_0.
+        profile: Profile f_0.
         terms: The terms, as a list of `Harmonic`; in Python also {n: share} or {n: profile}.
     """
 
@@ -296,26 +296,26 @@ class Harmonics(Raised):
 
     @property
     def orders(self) -> tuple[int, ...]:
-        """Those of the terms."""
+        """Orders of the terms."""
         return tuple(term.order for term in self.terms)
 
     @property
     def mean(self) -> Profile:
-        """f_0."""
+        """The profile f_0."""
         return self.profile
 
     @property
     def breakpoints(self) -> tuple[float, ...]:
-        """Those of all profiles [m]."""
+        """Breakpoints of all profiles [m]."""
         return tuple(sorted({b for profile in (self.profile, *map(self._of, self.terms)) for b in profile.breakpoints}))
 
     def polar(self, radius: ArrayLike, angle: ArrayLike) -> FloatArray:
-        """f [m]."""
+        """Height f [m]."""
         rest = (t.share * self._of(t).height(radius) * np.cos(t.order * np.asarray(angle)) for t in self.terms)
         return np.asarray(self.profile.height(radius) + sum(rest))
 
     def polar_slope(self, radius: ArrayLike, angle: ArrayLike) -> FloatArray:
-        """df/dr [-]."""
+        """Slope df/dr [-]."""
         rest = (t.share * self._of(t).slope_at(radius) * np.cos(t.order * np.asarray(angle)) for t in self.terms)
         return np.asarray(self.profile.slope_at(radius) + sum(rest))
 
@@ -353,7 +353,7 @@ class PolygonalPunch(Flat):
 
     @property
     def corners(self) -> tuple[float, ...]:
-        """Where a side ends [rad]."""
+        """Direction where a side ends [rad]."""
         straight = (self.inscribed_radius - self._rounding) * math.tan(math.pi / self.sides)
         end = math.atan2(straight, self.inscribed_radius)
         return (end,) if 0.0 < self._rounding < self.inscribed_radius else ()
@@ -373,8 +373,8 @@ class EllipticPunch(Flat):
     """A flat punch with an elliptic outline.
 
     Attributes:
-        first_half_axis: A [m], along phi = 0.
-        second_half_axis: B [m].
+        first_half_axis: Half axis A [m], along phi = 0.
+        second_half_axis: Half axis B [m].
     """
 
     first_half_axis: PositiveLength

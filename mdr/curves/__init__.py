@@ -4,13 +4,12 @@ Enters: a scene, and measured depths and forces. Leaves: moduli with intervals, 
 Read `force_curve` first, then `contact_point` and `fit`.
 """
 
-from mdr.curves.fit import Limit, fit_curve
+from mdr.curves.fit import Limit, fit_curve, fit_map
 from mdr.curves.force_curve import ForceCurve
 from mdr.curves.formulas import Formula, formulas_for
 from mdr.curves.histories import fit_history
-from mdr.curves.maps import MapFit, fit_map
 from mdr.curves.reading import read_curve, read_map
-from mdr.curves.result import CurveFit, FormulaFit
+from mdr.curves.result import CurveFit, FormulaFit, MapFit
 
 __all__ = [
     "CurveFit",

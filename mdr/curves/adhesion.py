@@ -10,9 +10,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import lru_cache
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -20,8 +20,8 @@ from bem.flat_punch import IntegralEquation
 from contact import Adhesion, IndentationDepths, NotConvergedError, Paraboloid, Scene, Sphere
 from contact.records.validation import BoolArray, FloatArray
 from mdr.curves.contact_point import Data, Fitted, check_contact, least_squares, rough_indentation
-from mdr.curves.families import CurveShape, Family
-from mdr.curves.force_curve import longest_curve
+from mdr.curves.families import Family
+from mdr.curves.force_curve import CurveShape, longest_curve
 from mdr.equilibria import solve_elastic
 from mdr.spring_bed import Springs
 
@@ -33,6 +33,8 @@ _DECADES: Final = 3.0
 _DEEPER: Final = 1.5
 # First guesses of the stretch over the way in contact. Half as many are 30 % apart, and some fits end elsewhere.
 _STRETCHES: Final = tuple(10.0 ** (k / 8) for k in range(-20, 11))
+# First guesses of ln E about that of an elastic contact, with a known work. Half as many are a factor of 1.6 apart.
+_LOG_MODULI: Final = tuple(k / 4 for k in range(-20, 13))
 # Trial depths of the deepest point beyond pull-off, over the way in contact. Half as many start 15 % off.
 _DEPTHS: Final = tuple(0.9 * 1.12**k for k in range(-1, 12))
 # Depth of the dip over the scatter of its neighbours from which it is one. At half of it noise makes dips.
@@ -46,41 +48,34 @@ _NO_PULL_OFF: Final = 1e-5
 # Relative difference of moduli in which two ends of least squares are the same one.
 _SAME: Final = 1e-2
 # Range of adhesive forces [m] in the Tabor parameter: 0.2 to 0.5 nm in the literature.
-RANGE_OF_FORCES: Final = 3e-10
+_RANGE_OF_FORCES: Final = 3e-10
 
 
-@dataclass(frozen=True, eq=False)
-class Table:
-    """The elastic contact at many radii, each array of shape (n,).
+class Table(NamedTuple):
+    """The elastic contact at many radii a, each array of shape (n,).
 
     Attributes:
-        radius: a [m].
-        depth: g(a) [m].
-        force: F_el/E [m^2].
-        stiffness: k_N/E [m].
-        stretch: sqrt(2 pi a E/c_N) [m^(1/2)].
+        depth: Depth g(a) [m] without adhesion.
+        force: F_el/E [m^2] without adhesion.
+        stretch: Decrease of the depth per sqrt(w/E), sqrt(2 pi a E/c_N) [m^(1/2)].
+        pull: Decrease of F/E per sqrt(w/E), k_N/E times the stretch [m^(3/2)].
     """
 
-    radius: FloatArray
     depth: FloatArray
     force: FloatArray
-    stiffness: FloatArray
     stretch: FloatArray
+    pull: FloatArray
 
     def branch(self, root: float) -> tuple[FloatArray, FloatArray]:
         """Depths [m] and F/E [m^2] of stable equilibria under control of the depth, for sqrt(w/E), from pull-off on."""
         depths = self.depth - root * self.stretch
         stable = slice(int(np.argmin(depths)), None)
-        return depths[stable], (self.force - self.stiffness * root * self.stretch)[stable]
-
-    def every_other(self) -> Table:
-        """The table with half as many radii."""
-        return Table(*(values[::2] for values in vars(self).values()))
+        return depths[stable], (self.force - root * self.pull)[stable]
 
 
 @lru_cache(maxsize=64)
 def table_of(scene: Scene) -> Table:
-    """The table of an elastic scene whose largest depth says how far it reaches; the last 64 are cached."""
+    """The table of an elastic scene up to its largest depth; the last 64 are cached."""
     assert isinstance(scene.loading, IndentationDepths)
     # The elastic contact at the largest depth is the end of the table, and refuses what is no circle.
     largest = float(solve_elastic(scene, IntegralEquation(), {}).contact_radius[-1])
@@ -89,60 +84,7 @@ def table_of(scene: Scene) -> Table:
     values, modulus = springs.at(radius), scene.layer.surface.youngs_modulus
     state = springs.state(radius, values)
     stretch = np.sqrt(2 * np.pi * radius * modulus / (springs.modulus * values.y1**2))
-    return Table(radius, state.depth, state.force / modulus, state.stiffness / modulus, stretch)
-
-
-@dataclass(frozen=True)
-class Adhering(Family):
-    """Curves of withdrawal over u: sqrt(w/E) with a free work of adhesion, ln E with a known one.
-
-    Attributes:
-        table: The elastic contact.
-        work: Work of adhesion [J/m^2] where it is known.
-        attached: Which points are in contact, shape (n,).
-        elastic_error: Relative error of the force without adhesion.
-        varied: What u stands for.
-        is_scaled: Whether the modulus is fitted in addition to u.
-        starts: First values of u.
-    """
-
-    table: Table
-    work: float | None
-    attached: BoolArray
-    elastic_error: float
-    varied: str
-    is_scaled: bool
-    starts: Sequence[float]
-
-    def root(self, u: float) -> float:
-        """sqrt(w/E) [m^(1/2)]."""
-        return u if self.work is None else math.sqrt(self.work / self.factor(u))
-
-    def at(self, u: float) -> CurveShape:
-        """phi of the branch: beyond pull-off that of pull-off, and zero at points that are not in contact."""
-        depths, forces = self.table.branch(self.root(u))
-        return lambda depth: np.where(self.attached, np.interp(np.asarray(depth), depths, forces), 0.0)
-
-    def factor(self, u: float) -> float:
-        """E [Pa], where the work is known."""
-        return math.exp(min(max(u, -300.0), 300.0))
-
-    def value(self, u: float, modulus: float) -> tuple[float, float, float]:
-        """The work of adhesion u^2 E, or the modulus exp(u)."""
-        if self.work is None:
-            return max(u, 0.0) ** 2 * modulus, 2 * max(u, 0.0) * modulus, max(u, 0.0) ** 2
-        return self.factor(u), self.factor(u), 0.0
-
-    def size(self, u: float) -> float:
-        """The root itself or a usual one, or one of a logarithm."""
-        return max(abs(u), self.starts[len(self.starts) // 2]) if self.work is None else 1.0
-
-    def error(self, u: float, depth: FloatArray) -> float:
-        """That of the elastic contact, and of the table by its change with every other radius."""
-        coarse = replace(self, table=self.table.every_other()).at(u)(depth)
-        fine = self.at(u)(depth)
-        largest = float(np.abs(fine).max(initial=1e-300))
-        return self.elastic_error + float(np.abs(coarse - fine)[self.attached].max(initial=0.0)) / (3 * largest)
+    return Table(state.depth, state.force / modulus, stretch, state.stiffness / modulus * stretch)
 
 
 def fit_adhesive(scene: Scene, data: Data) -> Fitted:
@@ -152,35 +94,62 @@ def fit_adhesive(scene: Scene, data: Data) -> Fitted:
         InvalidInput: If the curve shows no contact.
         NotConvergedError: If no values describe the curve, or several do equally well.
     """
-    effect = scene.effect(Adhesion)
-    assert effect is not None
-    work = None if "work_of_adhesion" in data.names else effect.work_of_adhesion
     ends: list[Fitted] = []
     for attached in _hypotheses(data):
         way = max(float(np.ptp(data.depth[attached])), 1e-3 * float(np.ptp(data.depth)))
         reach = 4 * way if data.has_free_point else max(4 * way, 2 * data.deepest)
         curve = longest_curve(scene, _DEEPER * reach)
-        table, reach = table_of(curve.scene), curve.largest_depth / _DEEPER
-        varied = "work_of_adhesion" if work is None else "youngs_modulus"
-        starts = _first_values(table, work, data, way)
-        family = Adhering(table, work, attached, curve.error, varied, work is None, starts)
-        trials = {}
-        for u in family.starts:
-            first = float(table.branch(family.root(u))[0][0])
-            points = first + way * np.array(_DEPTHS) if data.has_free_point else np.array([data.deepest])
-            trials[u] = points[points < 0.9 * reach] if data.has_free_point else points
-        ends += least_squares(data, family, {u: points for u, points in trials.items() if points.size})
+        family = _family(scene, data, table_of(curve.scene), way, attached=attached, elastic_error=curve.error)
+        trials = {u: np.array([data.deepest]) for u in family.starts}
+        if data.has_free_point:
+            depths = {u: family.pull_off(u)[0] + way * np.array(_DEPTHS) for u in family.starts if family.pull_off}
+            trials = {u: trial[trial < 0.9 * curve.largest_depth / _DEEPER] for u, trial in depths.items()}
+        ends += least_squares(data, family, {u: trial for u, trial in trials.items() if trial.size})
     return _best(data, ends)
 
 
-def _first_values(table: Table, work: float | None, data: Data, way: float) -> list[float]:
-    """First values of u: stretches of the springs over the way in contact, or moduli about that without adhesion."""
-    stretch = float(np.interp(way, table.depth, table.stretch))
+def _family(scene: Scene, data: Data, table: Table, way: float, *, attached: BoolArray, elastic_error: float) -> Family:
+    """Curves over sqrt(w/E) with a free work of adhesion, over ln E with a known one.
+
+    Args:
+        scene: Scene with the known work of adhesion.
+        data: The curve.
+        table: The elastic contact.
+        way: Range of depths in contact [m].
+        attached: Points in contact, shape (n,). The force is zero at all others, and constant beyond pull-off.
+        elastic_error: Relative error of the force without adhesion.
+    """
+    effect, has_free_work = scene.effect(Adhesion), "work_of_adhesion" in data.names
+    known_work = effect.work_of_adhesion if effect else 0.0
+
+    def modulus_at(u: float) -> float:
+        return 1.0 if has_free_work else math.exp(min(max(u, -300.0), 300.0))
+
+    def branch(u: float, table: Table) -> tuple[FloatArray, FloatArray]:
+        depths, forces = table.branch(u if has_free_work else math.sqrt(known_work / modulus_at(u)))
+        return depths, modulus_at(u) * forces
+
+    def shape(u: float, table: Table = table) -> CurveShape:
+        nodes = branch(u, table)
+        return lambda depth: np.where(attached, np.interp(np.asarray(depth), *nodes), 0.0)
+
+    def error(u: float, depth: FloatArray) -> float:
+        fine, coarse = shape(u)(depth), shape(u, Table(*(values[::2] for values in table)))(depth)
+        return elastic_error + float(np.abs(coarse - fine).max()) / (3 * float(np.abs(fine).max(initial=1e-300)))
+
+    def pull_off(u: float) -> tuple[float, float]:
+        depths, forces = branch(u, table)
+        return float(depths[0]), float(forces[0])
+
+    family = Family(shape, error, attached=attached, pull_off=pull_off)
+    stretch, elastic = (float(np.interp(way, table.depth, values)) for values in (table.stretch, table.force))
+    if not has_free_work:
+        starts = [math.log(float(np.ptp(data.force)) / elastic) + step for step in _LOG_MODULI]
+        by_u = replace(family, parameter=lambda u, modulus: modulus_at(u), has_free_modulus=False)
+        return replace(by_u, varied="youngs_modulus", starts=starts)
     roots = [0.0, *(way * ratio / stretch for ratio in _STRETCHES)]
-    if work is None:
-        return roots
-    elastic = float(np.ptp(data.force)) / float(np.interp(way, table.depth, table.force))
-    return [math.log(elastic) + k / 4 for k in range(-20, 13)]
+    by_root = replace(family, parameter=lambda u, modulus: max(u, 0.0) ** 2 * modulus, unit=roots[len(roots) // 2])
+    return replace(by_root, varied="work_of_adhesion", starts=roots)
 
 
 def _hypotheses(data: Data) -> Iterator[BoolArray]:
@@ -198,30 +167,30 @@ def _hypotheses(data: Data) -> Iterator[BoolArray]:
         return
     if float(force[-1]) < level - 0.9 * dip:
         raise NotConvergedError("the withdrawal starts too close to pull-off for a modulus; press deeper before it")
-    apart = np.flatnonzero(force[: least + 1] > level - _ATTACHED * dip)
+    detached = np.flatnonzero(force[: least + 1] > level - _ATTACHED * dip)
     attached = np.zeros(data.depth.size, dtype=bool)
-    attached[order[(apart[-1] + 1 if apart.size else 0) :]] = True
+    attached[order[(detached[-1] + 1 if detached.size else 0) :]] = True
     yield attached
-    if apart.size <= 3:
+    if detached.size <= 3:
         yield np.ones(data.depth.size, dtype=bool)
 
 
 def points_beyond(data: Data, fitted: Fitted) -> int:
     """Number of points in contact beyond the pull-off of the fit, where the force of pull-off stands above scatter."""
     family = fitted.family
-    assert isinstance(family, Adhering)
-    depths, forces = family.table.branch(family.root(fitted.u))
+    assert family.attached is not None
+    assert family.pull_off is not None
+    depth, phi = family.pull_off(fitted.u)
     scatter = max(float(np.std(fitted.residual)), _NO_PULL_OFF * float(np.ptp(data.force)))
-    if abs(fitted.modulus * float(forces[0])) < 3 * scatter:
+    if abs(fitted.modulus * phi) < 3 * scatter:
         return 0
-    return int(np.sum(family.attached & (data.depth - data.deepest + fitted.indentation < depths[0])))
+    return int(np.sum(family.attached & (data.depth - data.deepest + fitted.indentation < depth)))
 
 
 def hides_pull_off(fitted: Fitted) -> bool:
     """Whether the pull-off force of the fit is within the scatter, so that the data do not show where contact ends."""
-    family = fitted.family
-    assert isinstance(family, Adhering)
-    force = fitted.modulus * float(family.table.branch(family.root(fitted.u))[1][0])
+    assert fitted.family.pull_off is not None
+    force = fitted.modulus * fitted.family.pull_off(fitted.u)[1]
     return abs(force) < _DIP * float(np.std(fitted.residual))
 
 
@@ -240,15 +209,16 @@ def _best(data: Data, ends: Sequence[Fitted]) -> Fitted:
             "check the tip of the scene and the sign of the force (pressing is positive)"
         )
     best = possible[0]
-    check_contact(data, float(data.remaining @ data.remaining) - best.squares, best.residual)
+    check_contact(data, best.residual, data.depth)
     limit = best.squares * (1 + 3 / data.force.size) + 1e-12 * float(data.force @ data.force)
     for end in possible[1:]:
-        if end.squares <= limit and abs(end.modulus / best.modulus - 1) > _SAME:
+        if end.squares <= limit and abs(end.youngs_modulus / best.youngs_modulus - 1) > _SAME:
             change = best.residual - end.residual
             if float(change @ change) > 9 * limit / data.force.size or end.modulus == 0.0:
                 raise NotConvergedError(
-                    f"two sets of values fit this curve equally well (E = {best.modulus:.4g} and {end.modulus:.4g} "
-                    "Pa); include the baseline before pull-off, or fix the work of adhesion or the contact point"
+                    f"two sets of values fit this curve equally well (E = {best.youngs_modulus:.4g} and "
+                    f"{end.youngs_modulus:.4g} Pa); include the baseline before pull-off, or fix the work of adhesion "
+                    "or the contact point"
                 )
     return best
 
@@ -261,7 +231,7 @@ def tabor_sentence(scene: Scene, modulus: float, work: float) -> str:
         case _:
             return ""
     reduced = modulus / (1 - scene.layer.surface.poissons_ratio**2)
-    mu = (radius * work**2 / reduced**2) ** (1 / 3) / RANGE_OF_FORCES
+    mu = (radius * work**2 / reduced**2) ** (1 / 3) / _RANGE_OF_FORCES
     if work == 0.0:
         return ""
     meaning = (

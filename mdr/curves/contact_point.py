@@ -6,13 +6,13 @@ quotient. So least squares run over d0, and one number u of a family of shapes, 
 
 from __future__ import annotations
 
-import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final, NamedTuple
 
 import numpy as np
 from scipy.optimize import leastsq
+from scipy.signal import correlate
 
 from contact import InvalidInput
 from contact.records.validation import FloatArray
@@ -30,6 +30,8 @@ _STARTS: Final = 4
 _BINS: Final = 400
 # Standard errors that a contact stands above scatter. The best of 240 trials in noise reaches 4; at 5 one in 1e4 does.
 _CONTACT: Final = 5.5
+# Share of the travel within which a depth rests. Half of it misses holds that creep, twice calls slow loadings holds.
+_REST: Final = 0.05
 # Standard errors of the correlation of neighbours that white noise does not reach. At 2 one curve in 40 would.
 NOT_WHITE: Final = 3.0
 
@@ -39,11 +41,11 @@ class Data:
     """One measured curve and what is linear in its fit.
 
     Attributes:
-        depth: [m], shape (n,).
-        force: [N], shape (n,).
-        names: Fitted parameters.
+        depth: Depths [m], shape (n,).
+        force: Forces [N], shape (n,).
+        names: Names of the fitted parameters.
         columns: Constant and straight line where they are fitted, orthonormal, shape (n, 0 to 2).
-        remaining: Force without these, shape (n,).
+        remaining: Force [N] without its projection on the columns, shape (n,).
     """
 
     depth: FloatArray
@@ -69,10 +71,6 @@ class Data:
         """Whether the contact point is fitted."""
         return "contact_point" in self.names
 
-    def projected(self, phi: FloatArray) -> FloatArray:
-        """Shapes, shape (..., n), without their background."""
-        return phi - (phi @ self.columns) @ self.columns.T
-
     def averaged(self) -> Data:
         """Averages of neighbours, at most `_BINS` of them."""
         size = -(-self.depth.size // _BINS)
@@ -82,6 +80,19 @@ class Data:
         depth, force = (values[order].reshape(-1, size).mean(axis=1) for values in (self.depth, self.force))
         return Data.of(depth, force, self.names)
 
+    def fitted(self, phi: FloatArray, *, has_free_modulus: bool = True) -> tuple[FloatArray, FloatArray]:
+        """Moduli E >= 0, shape (..), and residuals [N], shape (.., n), of least squares for shapes phi, shape (.., n).
+
+        Where the modulus is not free it is 1.
+        """
+        phi = phi - (phi @ self.columns) @ self.columns.T
+        square = np.asarray(np.sum(phi * phi, axis=-1))
+        modulus = np.ones_like(square)
+        if has_free_modulus:
+            product = np.maximum(phi @ self.remaining, 0.0)
+            modulus = np.divide(product, square, out=np.zeros_like(square), where=square > 0.0)
+        return modulus, self.remaining - modulus[..., None] * phi
+
 
 class Fitted(NamedTuple):
     """Values of least squares.
@@ -89,8 +100,8 @@ class Fitted(NamedTuple):
     Attributes:
         indentation: Depth of indentation at the largest depth [m].
         u: Number of the family of shapes.
-        family: Of shapes.
-        modulus: E [Pa].
+        family: Family of shapes.
+        modulus: E [Pa], or 1 where the family has no free modulus.
         residual: Measured less fitted force [N], shape (n,).
     """
 
@@ -104,6 +115,11 @@ class Fitted(NamedTuple):
     def squares(self) -> float:
         """Sum of squared residuals [N^2]."""
         return float(self.residual @ self.residual)
+
+    @property
+    def youngs_modulus(self) -> float:
+        """E [Pa], or the named modulus of the family."""
+        return self.modulus if self.family.has_free_modulus else self.family.parameter(self.u, 1.0)
 
 
 def rough_indentation(data: Data) -> float:
@@ -119,35 +135,50 @@ def rough_indentation(data: Data) -> float:
         least = max(coarse.deepest - float(np.partition(coarse.depth, -3)[-3]), 1e-3 * travel)
         trials = np.geomspace(least, FURTHEST * travel, _TRIALS)
     x = np.maximum(coarse.depth - coarse.deepest + trials[:, None], 0.0)
-    powers = (x, x * np.sqrt(x), x * x, x * x * x)
-    gains = np.stack([_gains(coarse, power) for power in powers])
-    power, trial = divmod(int(np.argmax(gains)), trials.size)
-    phi = coarse.projected(powers[power][trial])
-    square = float(phi @ phi)
-    residual = coarse.remaining - phi * (float(phi @ coarse.remaining) / square if square else 0.0)
-    check_contact(coarse, float(gains.max()), residual)
-    return float(trials[trial])
+    residuals = np.concatenate([coarse.fitted(power)[1] for power in (x, x * np.sqrt(x), x * x, x * x * x)])
+    best = int(np.argmin(np.sum(residuals**2, axis=1)))
+    check_contact(coarse, residuals[best], data.depth)
+    return float(trials[best % trials.size])
 
 
-def check_contact(data: Data, gain: float, residual: FloatArray) -> None:
+def check_contact(data: Data, residual: FloatArray, depth: FloatArray) -> None:
     """Refuse contacts that decrease the sum of squares by no more than scatter does.
 
     Args:
-        data: The curve.
-        gain: Decrease of the sum of squares by the contact in addition to the background [N^2].
-        residual: Of the fit with a contact [N], shape (n,).
+        data: The curve, or averages of its points.
+        residual: Residual of the fit with a contact [N], shape (n,).
+        depth: Measured depths [m] of all points, as they follow one another.
 
     Raises:
         InvalidInput: With the remedy.
     """
-    freedom = max(data.depth.size - len(data.names), 1)
-    ordered = residual[np.argsort(data.depth, kind="stable")]
-    variance = float(residual @ residual) / freedom * correlation_factor(ordered)
-    if not gain > _CONTACT**2 * variance or not gain > 1e-20 * float(data.force @ data.force):
+    squares = float(residual @ residual)
+    gain = float(data.remaining @ data.remaining) - squares
+    variance = squares / max(data.depth.size - len(data.names), 1)
+    variance *= correlation_factor(residual[np.argsort(data.depth, kind="stable")])
+    if gain > _CONTACT**2 * variance and gain > 1e-20 * float(data.force @ data.force):
+        return
+    refuse_hold(depth)
+    raise InvalidInput(
+        "no contact in the curve: the force does not rise above its scatter and a straight line as the depth "
+        "grows; check columns and signs (pressing is positive), or fit without tilt (--with contact_point)"
+    )
+
+
+def refuse_hold(depth: FloatArray) -> None:
+    """Refuse depths [m] that rest at the largest one, or about one, for most of the time.
+
+    Raises:
+        InvalidInput: With the remedy.
+    """
+    travel, (first, second) = float(np.ptp(depth)), np.array_split(depth, 2)
+    rests = float(np.mean(depth >= depth.max() - _REST * travel)) > 0.5
+    is_scatter = float(np.median(np.abs(np.diff(depth)))) > _REST * travel
+    if rests or (is_scatter and abs(first.mean() - second.mean()) < 2 * _REST * travel):
         raise InvalidInput(
-            "no contact in the curve: the force does not rise above its scatter and a straight line as the depth "
-            "grows; check columns and signs (pressing is positive), or fit without tilt (--with contact_point); a "
-            "hold over time needs a viscoelastic effect in the scene"
+            "the curve is a hold: its depth rests while the force relaxes, from which no elastic modulus follows; "
+            'list a viscoelastic effect in the scene (kind = "standard_solid") to fit the relaxation over a column of '
+            "time, or keep the points of loading only"
         )
 
 
@@ -157,27 +188,12 @@ def correlation_factor(residual: FloatArray) -> float:
     The sum ends at the first correlation within scatter (initial positive sequence, Geyer 1992).
     """
     n = residual.size
-    if n < 8:
+    if n < 8 or not np.ptp(residual):
         return 1.0
-    residual = residual - residual.mean()
-    square = float(residual @ residual)
-    if square == 0.0:
-        return 1.0
-    total, limit = 0.0, NOT_WHITE / math.sqrt(n)
-    for lag in range(1, n // 2):
-        rho = float(residual[lag:] @ residual[:-lag]) / square
-        if rho < limit:
-            break
-        total += rho
-    return 1.0 + 2.0 * total
-
-
-def _gains(data: Data, phi: FloatArray) -> FloatArray:
-    """Decrease of the sum of squares by E phi with E > 0, for phi of shape (m, n)."""
-    phi = data.projected(phi)
-    square = np.sum(phi * phi, axis=1)
-    product = np.maximum(phi @ data.remaining, 0.0)
-    return np.asarray(np.divide(product**2, square, out=np.zeros_like(square), where=square > 0.0))
+    products = correlate(residual - residual.mean(), residual - residual.mean())[n - 1 :]
+    rho = products[1 : n // 2] / products[0]
+    within_scatter = np.append(rho < NOT_WHITE / np.sqrt(n), True)
+    return 1.0 + 2.0 * float(rho[: np.argmax(within_scatter)].sum())
 
 
 def trial_indentations(data: Data, rough: float, reach: float) -> FloatArray:
@@ -187,9 +203,9 @@ def trial_indentations(data: Data, rough: float, reach: float) -> FloatArray:
     contact point the one trial is d_max.
 
     Args:
-        data: the measured curve.
-        rough: rough indentation by power laws [m].
-        reach: largest depth of the curve of the scene [m].
+        data: The measured curve.
+        rough: Rough indentation by power laws [m].
+        reach: Largest depth of the curve of the scene [m].
     """
     if not data.has_free_point:
         return np.array([data.deepest])
@@ -197,45 +213,34 @@ def trial_indentations(data: Data, rough: float, reach: float) -> FloatArray:
     return np.minimum(trials, min(reach, FURTHEST * float(np.ptp(data.depth))))
 
 
-def fitted_at(data: Data, family: Family, indentation: float, u: float) -> Fitted:
-    """Modulus and residual at a depth of indentation [m]."""
-    phi = data.projected(family.at(u)(data.depth - data.deepest + indentation))
-    square = float(phi @ phi)
-    if not family.is_scaled:
-        modulus = family.factor(u)
-    else:
-        modulus = max(float(phi @ data.remaining) / square, 0.0) if square > 0.0 else 0.0
-    return Fitted(indentation, u, family, modulus, data.remaining - modulus * phi)
-
-
-def least_squares(data: Data, family: Family, trials: dict[float, FloatArray]) -> list[Fitted]:
+def least_squares(data: Data, family: Family, trials: Mapping[float, FloatArray]) -> list[Fitted]:
     """Ends of least squares from the best trial contact points of each u, the smallest squares first."""
-    rated = []
+    starts = []
     for u, points in trials.items():
-        phi = family.at(u)(data.depth - data.deepest + points[:, None])
-        if family.is_scaled:
-            squares = -_gains(data, phi)
-        else:
-            squares = np.sum((data.remaining - family.factor(u) * data.projected(phi)) ** 2, axis=1)
+        phi = family.shape(u)(data.depth - data.deepest + points[:, None])
+        residuals = data.fitted(phi, has_free_modulus=family.has_free_modulus)[1]
+        squares = np.sum(residuals**2, axis=1)
         best = int(np.argmin(squares))
-        rated.append((float(squares[best]), float(points[best]), u))
-    ends = [_polished(data, family, point, u) for _, point, u in sorted(rated)[:_STARTS]]
+        starts.append((float(squares[best]), float(points[best]), u))
+    ends = [_polished(data, family, point, u) for _, point, u in sorted(starts)[:_STARTS]]
     return sorted(ends, key=lambda end: end.squares)
 
 
 def _polished(data: Data, family: Family, indentation: float, u: float) -> Fitted:
-    """Levenberg and Marquardt over the depth of indentation and u."""
-    free_point, varies = data.has_free_point, bool(family.varied)
-    unit = family.size(u)
+    """Levenberg and Marquardt over the depth of indentation and u, from first values."""
+    varies = bool(family.varied)
 
-    def unpacked(x: FloatArray) -> tuple[float, float]:
-        point = indentation * float(x[0]) if free_point else indentation
-        return point, float(x[-1]) * unit if varies else u
+    def at(x: FloatArray) -> Fitted:
+        point = indentation * float(x[0]) if data.has_free_point else indentation
+        number = float(x[-1]) * family.unit if varies else u
+        phi = family.shape(number)(data.depth - data.deepest + point)
+        modulus, residual = data.fitted(phi, has_free_modulus=family.has_free_modulus)
+        return Fitted(point, number, family, float(modulus), residual)
 
     def residual(x: FloatArray) -> FloatArray:
-        return fitted_at(data, family, *unpacked(x)).residual
+        return at(x).residual
 
-    start = np.array([1.0] * free_point + [u / unit] * varies)
-    if start.size:
-        start = leastsq(residual, start, xtol=1e-9, ftol=1e-12, maxfev=400, full_output=True)[0]
-    return fitted_at(data, family, *unpacked(start))
+    x = np.array([1.0] * data.has_free_point + [u / family.unit] * varies)
+    if x.size:
+        x = leastsq(residual, x, xtol=1e-9, ftol=1e-12, maxfev=400, full_output=True)[0]
+    return at(x)

@@ -1,31 +1,30 @@
-"""What a fit may vary: force curves of a scene as a function of one further number, F = factor phi(d; u).
+"""What a fit may vary: force curves of a scene as a function of one further number u, F = E phi(d; u).
 
-| fitted | u | factor |
+| fitted | u | E |
 |---|---|---|
-| youngs_modulus of a uniform or graded layer | none | E, linear |
-| thickness | ln h | E, linear |
-| layer[0].youngs_modulus or base.youngs_modulus of a stack | ln of that modulus | surface modulus at u |
-| youngs_modulus with a known work of adhesion w | ln E | E at u |
-| youngs_modulus and work_of_adhesion | sqrt(w/E) | E, linear |
+| youngs_modulus of a uniform or graded layer | none | free |
+| thickness | ln h | free |
+| layer[0].youngs_modulus or base.youngs_modulus of a stack | ln of that modulus | 1: phi is the force |
+| youngs_modulus with a known work of adhesion w | ln E | 1: phi is the force |
+| youngs_modulus and work_of_adhesion | sqrt(w/E) | free |
 """
 
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Callable, Sequence
-from typing import Any, Final, TypeAlias
+from dataclasses import dataclass
+from typing import Any, Final
 
 import numpy as np
-from numpy.typing import ArrayLike
+from scipy.interpolate import CubicSpline
 
 from contact import Adhesion, CoatedPair, ElasticBase, InvalidInput, LayerStack, Scene
-from contact.records.validation import FloatArray
-from mdr.curves.force_curve import blended, curve_to, longest_curve
+from contact.records.validation import BoolArray, FloatArray
+from mdr.curves.force_curve import CurveShape, curve_to, longest_curve, power_spline
 
 UNITS: Final = {"contact_point": "m", "baseline": "N", "tilt": "N/m", "thickness": "m", "work_of_adhesion": "J/m^2"}
 BACKGROUND: Final = ("contact_point", "baseline", "tilt")
-_NAMED = re.compile(r"layer\[(\d+)\]\.youngs_modulus")
 # Values of a named modulus and of a thickness whose curves are solved, over the first guess. A fitted value stays
 # between the outermost ones. With factors of 9 the splines between them err by 1e-2, with 2 the solutions double.
 _MODULI: Final = tuple(3.0**k for k in range(-5, 6))
@@ -34,87 +33,69 @@ _THICKNESSES: Final = tuple(10 ** (k / 4) for k in range(-4, 5))
 _SECOND: Final = tuple(1.1**k for k in range(-3, 4))
 
 
-# phi = F/E [m^2] at depths [m] of any size, zero where nothing touches.
-CurveShape: TypeAlias = Callable[[ArrayLike], FloatArray]
-
-
+@dataclass(frozen=True)
 class Family:
-    """Force curves over one further number u; here one curve alone.
+    """Force curves F = E phi(d; u).
 
     Attributes:
+        shape: Returns phi(.; u), [m^2] with a free modulus E, else the force of the contact [N] with E = 1.
+        error: Returns the relative error of the force by the computation at u and at depths [m].
         varied: Name of the parameter that u stands for, empty where there is none.
-        is_scaled: Whether the factor E is linear and free.
+        parameter: Returns this parameter in SI from u and E.
+        has_free_modulus: Whether E is fitted.
         starts: First values of u.
+        unit: Typical size of u.
+        attached: Points in contact, shape (n,), where the data show them; None where they are those with d > 0.
+        pull_off: Returns depth [m] and phi at pull-off at u; None without adhesion.
     """
 
+    shape: Callable[[float], CurveShape]
+    error: Callable[[float, FloatArray], float]
     varied: str = ""
-    is_scaled: bool = True
+    parameter: Callable[[float, float], float] = lambda u, modulus: 0.0
+    has_free_modulus: bool = True
     starts: Sequence[float] = (0.0,)
-
-    def __init__(self, shape: CurveShape, error: float = 0.0) -> None:
-        """The family of one curve, with the relative error of its computation."""
-        self._shape, self._error = shape, error
-
-    def at(self, u: float) -> CurveShape:
-        """phi at u."""
-        return self._shape
-
-    def factor(self, u: float) -> float:
-        """E [Pa] at u where it is not free."""
-        return 1.0
-
-    def value(self, u: float, modulus: float) -> tuple[float, float, float]:
-        """The parameter in SI, and its derivatives by u and by E."""
-        return 0.0, 0.0, 0.0
-
-    def size(self, u: float) -> float:
-        """Change of u that counts as large."""
-        return 1.0
-
-    def error(self, u: float, depth: FloatArray) -> float:
-        """Relative error of the force by the computation, at depths [m]."""
-        return self._error
+    unit: float = 1.0
+    attached: BoolArray | None = None
+    pull_off: Callable[[float], tuple[float, float]] | None = None
 
 
-class Solved(Family):
-    """Curves of a scene at several values of a modulus or thickness, and splines over the logarithm between them."""
-
-    def __init__(self, scene: Scene, name: str, values: Sequence[float], reach: float) -> None:
-        """Solve the scene at each value."""
-        scenes = [changed(scene, name, value) for value in values]
-        self.varied, self.is_scaled = name, name == "thickness"
-        self.starts = np.log(values).tolist()
-        self._scene, self._values = scene, values
-        self.reach = min(longest_curve(one, reach).largest_depth for one in scenes)
-        curves = [curve_to(one, self.reach) for one in scenes]
-        self._at, self._error = blended(values, curves), max(one.error for one in curves)
-
-    def at(self, u: float) -> CurveShape:
-        """The curve at exp(u), at the ends those of the outermost value."""
-        return self._at(self._inside(u)).extended
-
-    def factor(self, u: float) -> float:
-        """The modulus of the surface [Pa]."""
-        return float(changed(self._scene, self.varied, self._inside(u)).layer.surface.youngs_modulus)
-
-    def value(self, u: float, modulus: float) -> tuple[float, float, float]:
-        """exp(u)."""
-        return self._inside(u), self._inside(u), 0.0
-
-    def _inside(self, u: float) -> float:
-        return float(np.clip(math.exp(min(u, 700.0)), self._values[0], self._values[-1]))
+def fixed_family(shape: CurveShape, error: float = 0.0) -> Family:
+    """The family of one curve phi [m^2] with a relative error."""
+    return Family(lambda u: shape, lambda u, depth: error)
 
 
-def elastic_family(scene: Scene, names: Sequence[str], reach: float, about: float | None = None) -> Family:
-    """The family of a scene without adhesion, up to a depth [m]; about a value of the varied number, if it is given."""
-    varied = [name for name in names if name == "thickness" or "." in name]
+def elastic_family(scene: Scene, names: Sequence[str], reach: float, center: float | None = None) -> Family:
+    """Curves without adhesion up to a depth [m], of values of the varied parameter about a fitted one or the scene's.
+
+    Between the values ln F is a cubic spline of their logarithm.
+    """
+    varied = next((name for name in names if name == "thickness" or "." in name), "")
     if not varied:
         curve = longest_curve(scene, reach)
-        return Family(curve.extended, curve.error)
-    (name,) = varied
-    guess = about or number_of(scene, name)
-    factors = _SECOND if about else _THICKNESSES if name == "thickness" else _MODULI
-    return Solved(scene, name, [guess * factor for factor in factors], reach)
+        return fixed_family(curve.extended, curve.error)
+    factors = _SECOND if center else _THICKNESSES if varied == "thickness" else _MODULI
+    values = np.multiply(center or _number(scene, varied), factors).tolist()
+    scenes = [changed(scene, varied, value) for value in values]
+    reach = min(longest_curve(example, reach).largest_depth for example in scenes)
+    curves = [curve_to(example, reach) for example in scenes]
+    nodes = np.array([curve.nodes[1:] for curve in curves])
+    if varied != "thickness":
+        nodes[:, 0] += np.log([[example.layer.surface.youngs_modulus] for example in scenes])
+    starts = np.log(values)
+    spline = CubicSpline(starts, nodes)
+
+    def inside(u: float) -> float:
+        return float(np.clip(u, starts[0], starts[-1]))
+
+    return Family(
+        lambda u: power_spline(curves[0].nodes[0], *spline(inside(u))),
+        lambda u, depth: max(curve.error for curve in curves),
+        varied=varied,
+        parameter=lambda u, modulus: math.exp(inside(u)),
+        has_free_modulus=varied == "thickness",
+        starts=starts.tolist(),
+    )
 
 
 def unit_of_parameter(name: str) -> str:
@@ -135,8 +116,8 @@ def check_parameters(scene: Scene, parameters: Sequence[str]) -> None:
     Raises:
         InvalidInput: With the remedy.
     """
-    unknown = [name for name in parameters if name not in UNITS and not is_modulus(name)]
-    if unknown or len(set(parameters)) < len(parameters) or not any(is_modulus(name) for name in parameters):
+    moduli = [name for name in parameters if is_modulus(name)]
+    if not moduli or not {*parameters} <= {*UNITS, *moduli} or len(set(parameters)) < len(parameters):
         raise InvalidInput(
             f"parameters = {', '.join(parameters)}: fit youngs_modulus, and any of contact_point, baseline, tilt, "
             "thickness, work_of_adhesion, each once"
@@ -150,11 +131,13 @@ def check_parameters(scene: Scene, parameters: Sequence[str]) -> None:
     varied = [name for name in parameters if "." in name or name in ("thickness", "work_of_adhesion")]
     if len(varied) > 1 or (varied and "." in varied[0] and "youngs_modulus" in parameters):
         raise InvalidInput(f"{' and '.join(varied)}: one curve does not determine both; fit one, and keep the other")
+    if "thickness" in parameters and scene.layer.is_half_space:
+        raise InvalidInput("thickness: the layer is a half-space; give the scene a thickness as a first guess")
     if scene.effect(Adhesion) is None and "work_of_adhesion" in parameters:
         raise InvalidInput("work_of_adhesion: list Adhesion among the effects of the scene, with a first guess")
     if scene.effect(Adhesion) is not None and varied not in ([], ["work_of_adhesion"]):
         raise InvalidInput(f"Adhesion: {varied[0]} is fitted without adhesion only; fit youngs_modulus")
-    _check_moduli(scene, [name for name in parameters if is_modulus(name)])
+    _check_moduli(scene, moduli)
 
 
 def _check_moduli(scene: Scene, names: Sequence[str]) -> None:
@@ -177,20 +160,23 @@ def _check_moduli(scene: Scene, names: Sequence[str]) -> None:
 def changed(scene: Scene, name: str, value: float) -> Scene:
     """The scene with another modulus of a sublayer or of the base [Pa], or with another thickness [m]."""
     layer: Any = scene.layer
-    if found := _NAMED.fullmatch(name):
-        sublayers = list(layer.sublayers)
-        sublayers[int(found[1])] = sublayers[int(found[1])].replace(youngs_modulus=value)
-        return scene.replace(layer=layer.replace(sublayers=sublayers))
+    if name == "thickness":
+        return scene.replace(layer=layer.replace(thickness=value))
     if name == "base.youngs_modulus":
         return scene.replace(layer=layer.replace(support=layer.support.replace(youngs_modulus=value)))
-    if isinstance(layer, LayerStack | CoatedPair):
-        raise InvalidInput("thickness: only that of a single layer is fitted; a stack keeps its thicknesses")
-    return scene.replace(layer=layer.replace(thickness=value))
+    sublayers = list(layer.sublayers)
+    sublayers[_place(name)] = sublayers[_place(name)].replace(youngs_modulus=value)
+    return scene.replace(layer=layer.replace(sublayers=sublayers))
 
 
-def number_of(scene: Scene, name: str) -> float:
-    """The modulus [Pa] or thickness [m] of that name in the scene."""
+def _number(scene: Scene, name: str) -> float:
+    """The thickness [m], or the modulus [Pa] of that name in the scene."""
     layer: Any = scene.layer
-    if found := _NAMED.fullmatch(name):
-        return float(layer.sublayers[int(found[1])].youngs_modulus)
-    return float(layer.support.youngs_modulus if name == "base.youngs_modulus" else layer.thickness)
+    if name == "thickness":
+        return float(layer.thickness)
+    return float((layer.support if name.startswith("base") else layer.sublayers[_place(name)]).youngs_modulus)
+
+
+def _place(name: str) -> int:
+    """Index of the sublayer in a name like layer[0].youngs_modulus."""
+    return int(name.partition("[")[2].partition("]")[0])

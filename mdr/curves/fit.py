@@ -1,4 +1,4 @@
-"""Young's modulus from one force curve, with intervals, warnings, and what formulas in use would have said.
+"""Young's modulus from one force curve or a map of them, with intervals, warnings, and what formulas in use would say.
 
 Model: F = E phi(d - d0) + f0 + k (d - d0), with phi the force curve of the scene, of one family of shapes where more
 than E is fitted (`families`).
@@ -7,51 +7,41 @@ than E is fitted (`families`).
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Final, Literal
 
 import numpy as np
 from numpy.polynomial.polynomial import polyfit
 
-from contact import Adhesion, InvalidInput, NotConvergedError, Scene
+from contact import Adhesion, ContactError, InvalidInput, NotConvergedError, Scene
 from contact.answer.small_strains import depth_note
 from contact.records.validation import FloatArray
-from mdr.curves.adhesion import Adhering, fit_adhesive, hides_pull_off, points_beyond, tabor_sentence
+from mdr.curves.adhesion import fit_adhesive, hides_pull_off, points_beyond, tabor_sentence
 from mdr.curves.contact_point import (
     FURTHEST,
     Data,
     Fitted,
     least_squares,
+    refuse_hold,
     rough_indentation,
     trial_indentations,
 )
-from mdr.curves.families import (
-    BACKGROUND,
-    Family,
-    Solved,
-    changed,
-    check_parameters,
-    elastic_family,
-    is_modulus,
-)
+from mdr.curves.families import BACKGROUND, Family, changed, check_parameters, elastic_family, fixed_family
 from mdr.curves.force_curve import curve_to, longest_curve
 from mdr.curves.formulas import formulas_for
-from mdr.curves.result import ROUNDING, CurveFit, FormulaFit, with_intervals
+from mdr.curves.result import CurveFit, FormulaFit, MapFit, derivatives, with_intervals
 
 DEFAULT_PARAMETERS: Final = ("youngs_modulus", "contact_point", "baseline", "tilt")
-# Relative step of central differences by u. Errors grow as its square; at a tenth of it rounding shows.
+# Relative step of central differences. Errors grow as its square; at a tenth of it rounding shows.
 _STEP: Final = 1e-3
-# A baseline is too short if a quadratic background would widen the interval of E by more than this factor.
-# At twice that shifts of several intervals are silent; at half of it curves with a baseline of half the travel warn.
-_BENT: Final = 3.0
 # Least points in contact minus parameters of the contact. With one less the interval of E may be ten times too narrow.
 _SPARE_POINTS: Final = 2
 
 
 @dataclass(frozen=True)
 class Limit:
-    """How deep points are fitted.
+    """Limit of the points that are fitted.
 
     Attributes:
         kind: "depth" of indentation [m], "force" of the contact [N], or "fraction" of its largest force.
@@ -82,7 +72,7 @@ def fit_curve(
         force: Measured forces [N], shape (n,).
         parameters: "youngs_modulus", or of a stack "layer[0].youngs_modulus", "base.youngs_modulus"; and any of
             "contact_point", "baseline", "tilt", and one of "thickness", "work_of_adhesion".
-        confidence: Of the intervals.
+        confidence: Confidence of the intervals.
         limit: Points up to a depth, a force or a fraction of the largest force are fitted; by default all.
         formulas: Whether formulas in use are fitted too.
 
@@ -93,15 +83,64 @@ def fit_curve(
     """
     check_parameters(scene, parameters)
     data = _checked(depth, force, parameters)
-    found = _fitted(scene, data, confidence)
+    fit = _fitted(scene, data, confidence)
     if limit is not None:
-        found = _limited(found, limit, data)
+        fit = _limited(fit, limit, data)
     if not formulas or scene.effects or "youngs_modulus" not in parameters:
-        return found
+        return fit
     # A formula that does not suit the curve would take its misfit for tilt: it has the background of this fit.
     names = [name for name in parameters if name in ("youngs_modulus", *BACKGROUND) and name != "tilt"]
-    bare = Data.of(found.depth, found.force - found.background, names)
-    return replace(found, formulas=_by_formulas(scene, bare, found.youngs_modulus))
+    bare = Data.of(fit.depth, fit.force - fit.background, names)
+    return replace(fit, formulas=_by_formulas(scene, bare, fit.youngs_modulus))
+
+
+def fit_map(
+    scene: Scene,
+    depth: Sequence[FloatArray] | FloatArray,
+    force: Sequence[FloatArray] | FloatArray,
+    *,
+    parameters: Sequence[str] = DEFAULT_PARAMETERS,
+    confidence: float = 0.95,
+    limit: Limit | None = None,
+    positions: FloatArray | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> MapFit:
+    """Fit every curve of a map as `fit_curve` does, as if it were alone.
+
+    Args:
+        scene: As for `fit_curve`.
+        depth: Measured depths [m] of each curve, n arrays of any lengths, or one array if all curves share them.
+        force: Measured forces [N], n arrays of the lengths of their depths.
+        parameters: As for `fit_curve`.
+        confidence: Confidence of the intervals.
+        limit: As for `fit_curve`.
+        positions: Places x, y of the curves in the map [m], shape (n, 2).
+        progress: Called with the number of fitted curves and the number of all curves.
+
+    Raises:
+        InvalidInput: If depths and forces are no map, or no curve can be fitted with the scene and parameters.
+    """
+    check_parameters(scene, parameters)
+    if not len(force) or np.ndim(force[0]) != 1:
+        raise InvalidInput(f"force has the shape {np.shape(force)}: give one row per curve")
+    depths = [np.asarray(depth)] * len(force) if np.ndim(depth[0]) == 0 else list(depth)
+    if len(depths) != len(force):
+        raise InvalidInput(f"a map of {len(depths)} depths and {len(force)} forces: give one depth for each force")
+    fits: list[CurveFit | ContactError] = []
+    for d, f in zip(depths, force, strict=True):
+        try:
+            fits.append(
+                fit_curve(scene, d, f, parameters=parameters, confidence=confidence, limit=limit, formulas=False)
+            )
+        except ContactError as error:
+            fits.append(error)
+        if progress is not None:
+            progress(len(fits), len(force))
+    return MapFit(
+        curves=tuple(fit if isinstance(fit, CurveFit) else None for fit in fits),
+        reasons=tuple("" if isinstance(fit, CurveFit) else str(fit) for fit in fits),
+        positions=np.full((len(fits), 2), np.nan) if positions is None else positions,
+    )
 
 
 def _checked(
@@ -113,6 +152,8 @@ def _checked(
             f"a curve of {d.size} depths and {f.size} forces: give one force for each depth, and more points than the "
             f"{len(parameters)} parameters"
         )
+    if np.all(d == d[0]):
+        refuse_hold(d)
     fixed = "contact_point" not in parameters
     if not (np.isfinite(d).all() and np.isfinite(f).all() and np.ptp(d) > 0.0) or (fixed and not d.max() > 0.0):
         raise InvalidInput("a curve needs finite numbers, and depths that grow beyond 0; pressing is positive")
@@ -131,10 +172,8 @@ def _fit_elastic(scene: Scene, data: Data) -> Fitted:
     reach = longest_curve(scene, wanted).largest_depth
     while True:
         best = _search(data, elastic_family(scene, data.names, reach), min(rough, reach), reach)
-        if isinstance(best.family, Solved):
-            value = best.family.value(best.u, 1.0)[0]
-            _check_inside(best.family, best.u, value)
-            near = elastic_family(scene, data.names, reach, value)
+        if best.family.varied:
+            near = elastic_family(scene, data.names, reach, _inner_value(best))
             best = _search(data, near, best.indentation, reach)
         if best.indentation <= reach * (1 + 1e-9):
             return best
@@ -153,159 +192,121 @@ def _search(data: Data, family: Family, rough: float, reach: float) -> Fitted:
     return least_squares(data, family, dict.fromkeys(family.starts, points))[0]
 
 
-def _check_inside(family: Solved, u: float, value: float) -> None:
-    """Refuse values at the ends of what is tried.
+def _inner_value(fitted: Fitted) -> float:
+    """Fitted value of the varied parameter.
 
     Raises:
-        NotConvergedError: With the remedy.
+        NotConvergedError: If it is at an end of what is tried.
     """
-    if not family.starts[0] < u < family.starts[-1]:
+    family, u = fitted.family, fitted.u
+    value, low, high = family.parameter(u, 1.0), family.starts[0], family.starts[-1]
+    if not low < u < high:
         raise NotConvergedError(
-            f"{family.varied}: no value within a factor of {math.exp(family.starts[-1] - family.starts[0]) ** 0.5:.0f} "
+            f"{family.varied}: no value within a factor of {math.exp(high - low) ** 0.5:.0f} "
             f"of the scene's fits best (the fit ends at {value:.3g}); the curve does not determine it, or the scene "
             "is another one"
         )
+    return value
 
 
 def _stated(scene: Scene, data: Data, fitted: Fitted, confidence: float) -> CurveFit:
     """Covariance, intervals, band and warnings of the values of least squares."""
-    family, u = fitted.family, fitted.u
-    modulus = fitted.modulus
+    family, names = fitted.family, data.names
     point = data.deepest - fitted.indentation
-    pressed = family.attached if isinstance(family, Adhering) else data.depth > point
-    contact_names = [name for name in data.names if name not in ("baseline", "tilt")]
-    if int(pressed.sum()) < len(contact_names) + _SPARE_POINTS or not modulus > 0.0:
+    shifted = data.depth - point
+    pressed = shifted > 0.0 if family.attached is None else family.attached
+    contact_names = [name for name in names if name not in ("baseline", "tilt")]
+    if int(pressed.sum()) < len(contact_names) + _SPARE_POINTS or not fitted.modulus > 0.0:
         raise InvalidInput(
             f"{int(pressed.sum())} points in contact, from {point:.4g} m on: a fit of {' and '.join(contact_names)} "
             f"needs {len(contact_names) + _SPARE_POINTS}; measure more points in contact"
         )
-    shifted = data.depth - point
-    phi = family.at(u)(shifted)
-    line = _background(data, data.force - modulus * phi, shifted)
-    varied, by_u, by_modulus = family.value(u, modulus)
-    known = line | {"contact_point": point, family.varied: varied}
-    values = {name: known.get(name, modulus) for name in data.names}
-    by_depth, change = _derivatives(family, u, shifted, modulus)
-    columns = {"contact_point": -by_depth - line["tilt"], "baseline": np.ones_like(shifted), "tilt": shifted}
-    columns |= {family.varied: change}  # "" where nothing is varied
-    jacobian = np.stack([columns.get(name, phi) for name in values], axis=1)
-    fitted_force = modulus * phi + line["baseline"] + line["tilt"] * shifted
-    order = np.argsort(data.depth, kind="stable")
-    warnings, notes = _words(scene, data, fitted, values, modulus)
-    scatter = float(np.std(data.force - fitted_force))
-    if scatter > ROUNDING * float(np.ptp(data.force)):
-        warnings = (*warnings, *_bent_background(jacobian, list(values), shifted))
+    baseline, tilt = _background(data, fitted.modulus * family.shape(fitted.u)(shifted), shifted)
+    depth, force = max(abs(float(shifted.max())), 1e-6 * float(np.ptp(shifted))), float(np.ptp(data.force))
+    x = np.array([fitted.modulus, fitted.u, point, baseline, tilt])
+    steps = _STEP * np.array([fitted.modulus, family.unit, depth, force, force / float(np.ptp(shifted))])
+    fields = {family.varied: 1, "contact_point": 2, "baseline": 3, "tilt": 4}
+    rows = [fields.get(name, 0) for name in names]
+
+    def model(x: FloatArray) -> FloatArray:
+        """Force [N] at the measured depths, shape (n,)."""
+        modulus, u, contact_point, baseline, tilt = x.tolist()
+        d = data.depth - contact_point
+        return np.asarray(modulus * family.shape(u)(d) + baseline + tilt * d)
+
+    def parameters(x: FloatArray) -> FloatArray:
+        """The numbers in SI, with the varied parameter in place of u, shape (5,)."""
+        return np.array([x[0], family.parameter(float(x[1]), float(x[0])), *x[2:]])
+
+    values = dict(zip(names, parameters(x)[rows].tolist(), strict=True))
+    warnings, notes = _words(scene, data, fitted, values)
     return with_intervals(
-        jacobian,
-        (data.force - fitted_force)[order],
-        pressed[order],
-        _changes(values, family, by_u, by_modulus),
+        derivatives(model, x, steps)[:, rows],
+        derivatives(parameters, x, steps)[np.ix_(rows, rows)],
+        pressed,
         values=values,
         confidence=confidence,
         # w = E u^2 is flat at u = 0.
-        curvature={"work_of_adhesion": modulus} if "work_of_adhesion" in values else {},
+        curvature=[fitted.modulus * (name == "work_of_adhesion") for name in names],
         warnings=warnings,
         scene=scene,
         depth=data.depth,
         force=data.force,
-        fitted=fitted_force,
-        numerical_error=family.error(u, shifted),
+        fitted=model(x),
+        numerical_error=family.error(fitted.u, shifted),
         notes=notes,
-        per_modulus=phi,
     )
 
 
-def _bent_background(jacobian: FloatArray, names: list[str], depth: FloatArray) -> tuple[str, ...]:
-    """Warning where the baseline is too short to distinguish a quadratic background from the contact."""
-    if "tilt" not in names:
-        return ()
-    unit = jacobian / np.maximum(np.linalg.norm(jacobian, axis=0), np.finfo(float).tiny)
-    bend, inverse = (depth / np.ptp(depth)) ** 2, np.linalg.pinv(unit.T @ unit, hermitian=True)
-    shift = inverse @ (unit.T @ bend)
-    left, row = bend - unit @ shift, next(i for i, name in enumerate(names) if is_modulus(name))
-    wider = math.hypot(1.0, float(shift[row] / np.sqrt(left @ left * inverse[row, row] + np.finfo(float).tiny)))
-    text = (
-        "the baseline is too short to show whether the background is straight: with a quadratic background the "
-        f"interval of the modulus would be {min(wider, 999):.2g} times as wide; measure more points before contact"
-    )
-    return (text,) if wider > _BENT else ()
-
-
-def _background(data: Data, remaining: FloatArray, shifted: FloatArray) -> dict[str, float]:
-    """Baseline [N] at the contact point, and tilt [N/m]."""
+def _background(data: Data, contact: FloatArray, shifted: FloatArray) -> tuple[float, float]:
+    """Baseline [N] at the contact point, and tilt [N/m], by least squares of the force without that of the contact."""
     powers = [power for power, name in enumerate(("baseline", "tilt")) if name in data.names]
+    if not powers:
+        return 0.0, 0.0
     size = float(np.ptp(shifted))
-    level, tilt = (*polyfit(shifted / size, remaining, powers), 0.0, 0.0)[:2] if powers else (0.0, 0.0)
-    return {"baseline": float(level), "tilt": float(tilt) / size}
+    level, slope = (*polyfit(shifted / size, data.force - contact, powers), 0.0)[:2]
+    return float(level), float(slope) / size
 
 
-def _derivatives(family: Family, u: float, shifted: FloatArray, modulus: float) -> tuple[FloatArray, FloatArray]:
-    """Derivatives of the force of the contact by depth and u, each of shape (n,), by central differences."""
-
-    def force(at: float, move: float = 0.0) -> FloatArray:
-        factor = modulus if family.is_scaled else family.factor(at)
-        return factor * family.at(at)(shifted + move)
-
-    move = _STEP * max(abs(float(shifted.max())), 1e-6 * float(np.ptp(shifted)))
-    by_depth = (force(u, move) - force(u, -move)) / (2 * move)
-    if not family.varied:
-        return by_depth, np.zeros_like(by_depth)
-    step = _STEP * family.size(u)
-    return by_depth, (force(u + step) - force(u - step)) / (2 * step)
-
-
-def _changes(values: dict[str, float], family: Family, by_u: float, by_modulus: float) -> FloatArray:
-    """Derivatives of the parameters by those of least squares (E and u), shape (p, p)."""
-    matrix, names = np.eye(len(values)), list(values)
-    if family.varied:
-        row = names.index(family.varied)
-        matrix[row, row] = by_u
-        if family.is_scaled:
-            matrix[row, names.index("youngs_modulus")] = by_modulus
-    return matrix
-
-
-def _words(
-    scene: Scene, data: Data, fitted: Fitted, values: dict[str, float], modulus: float
-) -> tuple[tuple[str, ...], tuple[str, ...]]:
+def _words(scene: Scene, data: Data, fitted: Fitted, values: dict[str, float]) -> tuple[list[str], tuple[str, ...]]:
     """Warnings on depth and pull-off, and notes."""
-    family = fitted.family
-    as_fitted = changed(scene, family.varied, values[family.varied]) if isinstance(family, Solved) else scene
-    warnings, notes = [depth_note(as_fitted, fitted.indentation)], []
-    effect = scene.effect(Adhesion)
-    if effect is not None:
-        beyond = points_beyond(data, fitted)
-        if beyond > 1:
-            warnings.append(f"{beyond} points in contact are beyond the pull-off of the fit; see the residuals")
-        if "work_of_adhesion" in values and hides_pull_off(fitted):
-            warnings.append(
-                "the pull-off is hidden in the scatter: where contact ends is not seen, and the intervals of modulus "
-                "and work of adhesion may be too narrow; average more curves, or fix the work of adhesion"
-            )
-        notes.append(tabor_sentence(scene, modulus, values.get("work_of_adhesion", effect.work_of_adhesion)))
-    return tuple(filter(None, warnings)), tuple(filter(None, notes))
+    varied, effect = fitted.family.varied, scene.effect(Adhesion)
+    as_fitted = changed(scene, varied, values[varied]) if varied and effect is None else scene
+    warnings = [warning] if (warning := depth_note(as_fitted, fitted.indentation)) else []
+    if effect is None:
+        return warnings, ()
+    beyond = points_beyond(data, fitted)
+    if beyond > 1:
+        warnings.append(f"{beyond} points in contact are beyond the pull-off of the fit; see the residuals")
+    if "work_of_adhesion" in values and hides_pull_off(fitted):
+        warnings.append(
+            "the pull-off is hidden in the scatter: where contact ends is not seen, and the intervals of modulus "
+            "and work of adhesion may be too narrow; average more curves, or fix the work of adhesion"
+        )
+    note = tabor_sentence(scene, fitted.youngs_modulus, values.get("work_of_adhesion", effect.work_of_adhesion))
+    return warnings, (note,) if note else ()
 
 
-def _limited(found: CurveFit, limit: Limit, data: Data) -> CurveFit:
+def _limited(fit: CurveFit, limit: Limit, data: Data) -> CurveFit:
     """The fit up to the limit; twice, for the first one finds the contact point from all points."""
     largest = math.nan
     for _ in range(2):
-        deepest = found.values.get("contact_point", 0.0) + limit.value
+        deepest = fit.values.get("contact_point", 0.0) + limit.value
         if limit.kind != "depth":
-            order = np.argsort(found.depth)
-            contact = np.maximum.accumulate((found.fitted - found.background)[order])
+            order = np.argsort(fit.depth)
+            contact = np.maximum.accumulate((fit.fitted - fit.background)[order])
             largest = contact[-1] if math.isnan(largest) else largest
             share = limit.value if limit.kind == "force" else limit.value * largest
-            deepest = float(np.interp(share, contact, found.depth[order]))
+            deepest = float(np.interp(share, contact, fit.depth[order]))
         kept = data.depth <= deepest
-        found = _fitted(found.scene, _checked(data.depth[kept], data.force[kept], data.names), found.confidence)
-    return found
+        fit = _fitted(fit.scene, _checked(data.depth[kept], data.force[kept], data.names), fit.confidence)
+    return fit
 
 
-def _by_formulas(scene: Scene, data: Data, own: float) -> tuple[FormulaFit, ...]:
-    """Each formula fitted to a curve without tilt."""
-    found, rough = [], rough_indentation(data)
+def _by_formulas(scene: Scene, data: Data, modulus: float) -> tuple[FormulaFit, ...]:
+    """Each formula fitted to a curve without tilt, with its bias against the modulus [Pa] of the scene's own curve."""
+    rough, fits = rough_indentation(data), []
     for formula in formulas_for(scene):
-        best = _search(data, Family(formula.per_modulus), rough, math.inf)
-        found.append(FormulaFit(formula=formula, youngs_modulus=best.modulus, bias=best.modulus / own - 1.0))
-    return tuple(found)
+        by_formula = _search(data, fixed_family(formula.per_modulus), rough, math.inf).modulus
+        fits.append(FormulaFit(formula=formula, youngs_modulus=by_formula, bias=by_formula / modulus - 1.0))
+    return tuple(fits)

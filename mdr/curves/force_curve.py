@@ -6,13 +6,13 @@ with the exact slopes d k_N / F, for dF/dd = k_N. Outside the solved depths phi 
 
 from __future__ import annotations
 
-import copy
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from functools import lru_cache
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.interpolate import CubicHermiteSpline, CubicSpline
+from scipy.interpolate import CubicHermiteSpline
 
 from contact import IndentationDepths, InvalidInput, Scene, UnsupportedSceneError
 from contact.records.validation import FloatArray
@@ -26,6 +26,11 @@ _DEPTHS = 257
 _CLAIMED_GAIN = 8.0
 # Halvings of the reach until an indenter is long enough for it: from a travel of a million times its length.
 _HALVINGS = 20
+# Logarithm of the ratio by which power laws continue beyond the solved depths. Twice as much costs a digit there.
+_BEYOND = 1e3
+
+# A force [N], or phi = F/E [m^2], at depths [m] of any size and shape, zero where nothing touches.
+CurveShape: TypeAlias = Callable[[ArrayLike], FloatArray]
 
 
 class ForceCurve:
@@ -34,6 +39,9 @@ class ForceCurve:
     Attributes:
         scene: Layer, indenter, and a loading by depths whose largest is the reach of the curve.
         error: Stated relative error of the force: of the method and of the interpolation.
+        nodes: Logarithms of the solved depths [m] and of phi [m^2], and slopes of the latter, each of shape (n,).
+        extended: phi [m^2] at depths [m], beyond the reach as a power of the depth.
+        depth_of: Depth [m] at phi = F/E [m^2], zero where that is at most zero.
     """
 
     def __init__(self, scene: Scene, method: Mdr | None = None) -> None:
@@ -52,22 +60,21 @@ class ForceCurve:
         depths[-1] = deepest
         path = (method or Mdr()).solve(scene.replace(loading=IndentationDepths(depths), beyond_small_strains=True))
         log_depth = np.log(path.indentation_depth)
-        log_force = np.log(path.normal_force / scene.layer.surface.youngs_modulus)
+        log_phi = np.log(path.normal_force / scene.layer.surface.youngs_modulus)
         power = path.contact_stiffness * path.indentation_depth / path.normal_force
-        self._interpolate(log_depth, log_force, power)
-        coarse = CubicHermiteSpline(log_depth[::2], log_force[::2], power[::2])(log_depth[1::2])
-        interpolation = float(np.abs(coarse - log_force[1::2]).max()) / _CLAIMED_GAIN
+        self.nodes = log_depth, log_phi, power
+        self.extended, self.depth_of = (
+            power_spline(log_depth, log_phi, power),
+            power_spline(log_phi, log_depth, 1 / power),
+        )
+        coarse = CubicHermiteSpline(log_depth[::2], log_phi[::2], power[::2])(log_depth[1::2])
+        interpolation = float(np.abs(coarse - log_phi[1::2]).max()) / _CLAIMED_GAIN
         self.error = float(path.error_estimate["normal_force"].max()) + interpolation
-
-    def _interpolate(self, log_depth: FloatArray, log_force: FloatArray, power: FloatArray) -> None:
-        self._nodes = log_depth, log_force, power
-        self._log_force = CubicHermiteSpline(log_depth, log_force, power)
-        self._power = self._log_force.derivative()
 
     @property
     def largest_depth(self) -> float:
         """Reach of the curve [m]."""
-        return float(np.exp(self._nodes[0][-1]))
+        return float(np.exp(self.nodes[0][-1]))
 
     def __call__(self, depth: ArrayLike, youngs_modulus: float | None = None) -> FloatArray:
         """Force [N] at depths [m]: that of the scene's own modulus [Pa], or of another one at the surface."""
@@ -80,43 +87,36 @@ class ForceCurve:
         Raises:
             InvalidInput: If a depth is beyond the reach of the curve.
         """
-        d = np.asarray(depth, dtype=np.float64)
-        if d.size and not float(d.max()) <= self.largest_depth * (1 + 1e-12):
+        deepest = float(np.max(depth, initial=0.0))
+        if not deepest <= self.largest_depth * (1 + 1e-12):
             raise InvalidInput(
-                f"depth = {float(d.max()):g} m: this curve reaches {self.largest_depth:g} m; give the scene deeper ones"
+                f"depth = {deepest:g} m: this curve reaches {self.largest_depth:g} m; give the scene deeper ones"
             )
-        return self.extended(d)
+        return self.extended(depth)
 
-    def extended(self, depth: ArrayLike) -> FloatArray:
-        """phi [m^2], beyond the reach as a power of the depth."""
-        d = np.asarray(depth, dtype=np.float64)
-        touches = d > 0.0
-        log_depth = np.log(d[touches])
-        inside = np.clip(log_depth, self._nodes[0][0], self._nodes[0][-1])
-        log_force = self._log_force(inside)
-        outside = inside != log_depth
-        if outside.any():
-            log_force[outside] += self._power(inside[outside]) * (log_depth - inside)[outside]
-        phi = np.zeros_like(d)
-        phi[touches] = np.exp(np.minimum(log_force, 700.0))
-        return phi
 
-    def depth_of(self, per_modulus: ArrayLike) -> FloatArray:
-        """Depth [m] at F/E [m^2], zero where that is at most zero."""
-        phi = np.asarray(per_modulus, dtype=np.float64)
-        log_depth, log_force, power = self._nodes
-        touches = phi > 0.0
-        wanted = np.log(phi[touches])
-        inside = np.clip(wanted, log_force[0], log_force[-1])
-        inverse = CubicHermiteSpline(log_force, log_depth, 1 / power)
-        depth = np.zeros_like(phi)
-        depth[touches] = np.exp(inverse(inside) + (wanted - inside) / np.interp(inside, log_force, power))
-        return depth
+def power_spline(log_x: FloatArray, log_y: FloatArray, power: FloatArray) -> CurveShape:
+    """The function y(x), zero for x <= 0: ln y is a cubic of ln x between nodes with these slopes, linear beyond."""
+    x = np.concatenate([log_x[:1] - _BEYOND, log_x, log_x[-1:] + _BEYOND])
+    y = np.concatenate([log_y[:1] - _BEYOND * power[0], log_y, log_y[-1:] + _BEYOND * power[-1]])
+    spline = CubicHermiteSpline(x, y, np.concatenate([power[:1], power, power[-1:]]))
+
+    def curve(values: ArrayLike) -> FloatArray:
+        """The function at values of any size and shape."""
+        given = np.asarray(values, dtype=np.float64)
+        y, positive = np.zeros_like(given), given > 0.0
+        y[positive] = np.exp(np.minimum(spline(np.log(given[positive])), 700.0))
+        return y
+
+    return curve
+
+
+_solved_curve = lru_cache(maxsize=64)(ForceCurve)
 
 
 def curve_to(scene: Scene, reach: float) -> ForceCurve:
     """The elastic curve of the scene up to a depth [m]; the last 64 are cached."""
-    return _cached(scene.replace(loading=IndentationDepths([reach]), effects=(), beyond_small_strains=True))
+    return _solved_curve(scene.replace(loading=IndentationDepths([reach]), effects=(), beyond_small_strains=True))
 
 
 @lru_cache(maxsize=256)
@@ -134,22 +134,3 @@ def longest_curve(scene: Scene, reach: float, halvings: int = _HALVINGS) -> Forc
         if halvings == 0:
             raise
     return longest_curve(scene, reach / 2, halvings - 1)
-
-
-def blended(numbers: Sequence[float], curves: Sequence[ForceCurve]) -> Callable[[float], ForceCurve]:
-    """Curves of one reach between those at the given numbers, by cubic splines of ln(F/E) over ln(number)."""
-    spline = CubicSpline(np.log(numbers), np.stack([np.stack(one._nodes[1:]) for one in curves]))
-
-    def at(number: float) -> ForceCurve:
-        """The curve at a number."""
-        curve = copy.copy(curves[0])
-        log_force, power = spline(np.log(number))
-        curve._interpolate(curves[0]._nodes[0], log_force, power)
-        return curve
-
-    return at
-
-
-@lru_cache(maxsize=64)
-def _cached(scene: Scene) -> ForceCurve:
-    return ForceCurve(scene)

@@ -30,6 +30,7 @@ from contact.scene.effects import Relaxation, Viscoelasticity
 from mdr.curves.contact_point import correlation_factor
 from mdr.curves.force_curve import ForceCurve, longest_curve
 from mdr.curves.result import CurveFit, with_intervals
+from mdr.history.spring_law import SpringLaw
 
 HISTORY_PARAMETERS: Final = ("moduli", "times", "contact_point", "baseline")
 # Relaxation times that are tried, by equal factors over the time that was measured. With half as many pairs of times a
@@ -55,22 +56,6 @@ _SCALE: Final = "instantaneous_shear_modulus"
 _STEP: Final = 1e-5
 
 
-def creep_of(solid: Relaxation) -> tuple[float, FloatArray, FloatArray]:
-    """J(t) = J_inf - sum_j r_j exp(-t/lambda_j): J_inf [1/Pa], r_j [1/Pa] and lambda_j [s], each of shape (k,).
-
-    With D(s) = G_inf + eta s + sum_j G_j s tau_j/(1 + s tau_j) its transform is 1/(s D), and D(-1/lambda_j) = 0. The
-    zeros are eigenvalues of the equations of the strains in the dashpots. A dashpot eta allows no branches.
-    """
-    m, moduli, times = solid.moduli.size, solid.moduli, solid.times
-    if solid.viscosity > 0.0:
-        s = np.array([-solid.long_term_modulus / solid.viscosity])
-    else:
-        shares = np.broadcast_to(moduli / solid.instantaneous_modulus, (m, m))
-        s = np.linalg.eigvals((shares - np.eye(m)) / times[:, None]).real
-    slope = solid.viscosity + (moduli * times / (1 + s[:, None] * times) ** 2).sum(axis=1)
-    return 1 / solid.long_term_modulus, -1 / (s * slope), -1 / s
-
-
 def convolved(time: FloatArray, values: FloatArray, tau: float) -> FloatArray:
     """int_0^t exp(-(t - s)/tau) dv(s) for v linear between instants and zero before the first, shape (n,)."""
     x = np.diff(time) / tau
@@ -85,61 +70,50 @@ def force_of_depth(curve: ForceCurve, solid: Relaxation, time: FloatArray, depth
     Args:
         curve: phi of the layer.
         solid: G(t).
-        time: [s], shape (n,), increasing.
-        depth: [m], shape (n,).
+        time: Instants [s], shape (n,), increasing.
+        depth: Depths [m], shape (n,).
     """
-    fine = _refined(time)
+    fine, turn = _refined(time), _turn(depth)
     d = np.interp(fine, time, depth)
     phi = curve.extended(d)
-    force = solid.long_term_modulus * phi
-    for modulus, tau in zip(solid.moduli, solid.times, strict=True):
-        force = force + modulus * convolved(fine, phi, tau)
-    force = force + solid.viscosity * np.gradient(phi, fine)
-    turn = _turn(depth)
-    if turn < depth.size - 1:
-        start = int(np.searchsorted(fine, time[turn])) + 1
-        force[start:] = _withdrawn(solid, fine, d, phi, start)
-    return 3 * np.maximum(force[::_STEPS], 0.0) if turn < depth.size - 1 else 3 * force[::_STEPS]
+    # G_inf is a branch that never relaxes.
+    moduli, times = [solid.long_term_modulus, *solid.moduli.tolist()], [math.inf, *solid.times.tolist()]
+    parts = [convolved(fine, phi, tau) for tau in times]
+    force = np.dot(moduli, parts) + solid.viscosity * np.gradient(phi, fine)
+    if turn == depth.size - 1:
+        return np.asarray(3 * force[::_STEPS])
+    start = int(np.searchsorted(fine, time[turn])) + 1
+    late, early = fine[start:], fine[:start]
+    depth_parts = [convolved(fine, d, tau) for tau in times]
 
+    def after(t1: FloatArray, parts: list[FloatArray]) -> FloatArray:
+        """Terms of int_0^t1 G(t - s) dv(s) at late instants t, shape (m + 1, n), from the convolutions of v."""
+        values = np.array([np.interp(t1, early, part[:start]) for part in parts])
+        return np.asarray(values * np.exp(-(late - t1) / np.array(times)[:, None]))
 
-def _withdrawn(solid: Relaxation, time: FloatArray, d: FloatArray, phi: FloatArray, start: int) -> FloatArray:
-    """F/3 [N] from the instant `start` on; bisection gives t1 of all instants together."""
-    parts, depth_parts = ([convolved(time, values, tau) for tau in solid.times] for values in (phi, d))
-    late, n = time[start:], start - 1
-
-    def at(values: FloatArray, tau: float, part: FloatArray, t: FloatArray) -> FloatArray:
-        """The convolution at instants between those of the table."""
-        i = np.clip(np.searchsorted(time, t, side="right") - 1, 0, n - 1)
-        x, slope = (t - time[i]) / tau, (values[i + 1] - values[i]) / (time[i + 1] - time[i])
-        return part[i] * np.exp(-x) + slope * tau * -np.expm1(-x)
-
-    def unloaded(t1: FloatArray) -> FloatArray:
-        """int_t1^t G(t - s) d(d(s)), which falls with t1 while the contact grew."""
-        total = solid.long_term_modulus * (d[start:] - np.interp(t1, time, d))
-        total = total + solid.viscosity * np.gradient(d, time)[start:]
-        for g, tau, part in zip(solid.moduli, solid.times, depth_parts, strict=True):
-            total = total + g * (part[start:] - np.exp(-(late - t1) / tau) * at(d, tau, part, t1))
-        return total
-
-    low, high = np.full(late.size, float(time[0])), np.full(late.size, float(time[n]))
+    # The stretch of the spring at the edge, int_t1^t G(t - s) d(d(s)), falls with t1 while the contact grew.
+    stretch = np.dot(moduli, depth_parts)[start:] + solid.viscosity * np.gradient(d, fine)[start:]
+    low, high = np.full(late.size, float(fine[0])), np.full(late.size, float(early[-1]))
     for _ in range(_HALVINGS):
         middle = (low + high) / 2
-        above = unloaded(middle) > 0.0
-        low, high = np.where(above, middle, low), np.where(above, high, middle)
+        is_stretched = stretch > np.dot(moduli, after(middle, depth_parts))
+        low, high = np.where(is_stretched, middle, low), np.where(is_stretched, high, middle)
     t1 = (low + high) / 2
-    total = solid.long_term_modulus * np.interp(t1, time, phi)
-    for g, tau, part in zip(solid.moduli, solid.times, parts, strict=True):
-        total = total + g * np.exp(-(late - t1) / tau) * at(phi, tau, part, t1)
-    return np.where(np.minimum.accumulate(t1 > time[0]), total, 0.0)
+    force[start:] = np.where(np.minimum.accumulate(t1 > fine[0]), np.dot(moduli, after(t1, parts)), 0.0)
+    return np.asarray(3 * np.maximum(force[::_STEPS], 0.0))
 
 
 def depth_of_force(curve: ForceCurve, solid: Relaxation, time: FloatArray, force: FloatArray) -> FloatArray:
-    """Depth [m] at the instants, shape (n,), under forces [N] that do not fall."""
-    final, shares, times = creep_of(solid)
-    phi = final * force - sum(
-        (r * convolved(time, force, tau) for r, tau in zip(shares, times, strict=True)), np.zeros_like(force)
-    )
-    return curve.depth_of(phi / 3)
+    """Depth [m] at the instants, shape (n,), under forces [N] that do not fall.
+
+    Elastic springs are as deep under F + sum_k r_k int_0^t exp(-lambda_k (t - s)) F(s) ds, without F beside a dashpot.
+    """
+    order = np.argsort(solid.times)
+    modes = SpringLaw.of(replace(solid, moduli=solid.moduli[order], times=solid.times[order])).modes
+    elastic_force = force * (solid.viscosity == 0.0)
+    for rate, growth in zip(modes.rates.tolist(), modes.of_force[:, 0].tolist(), strict=True):
+        elastic_force = elastic_force + growth / rate * (force - convolved(time, force, 1 / rate))
+    return curve.depth_of(elastic_force / (3 * solid.instantaneous_modulus))
 
 
 def _refined(time: FloatArray) -> FloatArray:
@@ -161,32 +135,32 @@ class Parameter(NamedTuple):
 
     Attributes:
         name: Name of the field in the scene.
-        scale: Unit of x, in SI units.
+        scale: Unit of x in SI units, or None for a relaxation time.
         low: Lower bound of x.
         high: Upper bound of x.
     """
 
     name: str
-    scale: float
+    scale: float | None
     low: float = -math.inf
     high: float = math.inf
 
-    def value(self, x: float) -> float:
-        """Value in SI units."""
-        return math.exp(x) if self.is_time else self.scale * x
-
-    @property
-    def is_time(self) -> bool:
-        """Whether the number is a relaxation time, so that x is its logarithm."""
-        return self.name.startswith("relaxation_time")
-
 
 @dataclass(frozen=True)
-class _Problem:
-    """Measured data and what is fitted: moduli and times first, in the order G_inf, G_j .., tau_j ..."""
+class History:
+    """Measured data and what is fitted.
+
+    Attributes:
+        scene: Scene with the relaxation function whose fixed numbers are kept.
+        curve: Elastic force curve of its layer.
+        time: Instants [s], shape (n,).
+        depth: Depths [m], shape (n,).
+        force: Forces [N], shape (n,).
+        parameters: Moduli first, then relaxation times, contact point and baseline.
+        response: Name of the fitted quantity.
+    """
 
     scene: Scene
-    given: Relaxation
     curve: ForceCurve
     time: FloatArray
     depth: FloatArray
@@ -195,28 +169,34 @@ class _Problem:
     response: Literal["force", "depth"]
 
     @property
-    def measured(self) -> FloatArray:
-        return self.force if self.response == "force" else self.depth
+    def given(self) -> Relaxation:
+        """Relaxation function of the scene."""
+        effect = self.scene.effect(Viscoelasticity)
+        assert effect is not None
+        return effect.relaxation
 
     @property
-    def names(self) -> list[str]:
-        return [one.name for one in self.parameters]
+    def has_free_times(self) -> bool:
+        """Whether relaxation times are fitted."""
+        return any(parameter.scale is None for parameter in self.parameters)
 
     def values(self, x: FloatArray) -> dict[str, float]:
         """Each parameter in SI."""
-        return {one.name: one.value(float(x_i)) for one, x_i in zip(self.parameters, x, strict=True)}
+        pairs = zip(self.parameters, x.tolist(), strict=True)
+        return {p.name: math.exp(number) if p.scale is None else p.scale * number for p, number in pairs}
 
     def solid(self, values: dict[str, float]) -> Relaxation:
         """The relaxation function of the values."""
-        given, found = self.given, np.array(list(values.values()))
+        given, numbers = self.given, np.array(list(values.values()))
         if _SCALE in values:
-            share = found[0] / given.instantaneous_modulus
+            share = numbers[0] / given.instantaneous_modulus
             return replace(given, long_term_modulus=share * given.long_term_modulus, moduli=share * given.moduli)
         if given.viscosity > 0.0:
-            return replace(given, long_term_modulus=found[0], viscosity=found[1])
-        m = given.moduli.size
-        times = found[1 + m : 1 + 2 * m] if any(one.is_time for one in self.parameters) else given.times
-        return replace(given, long_term_modulus=found[0], moduli=found[1 : 1 + m], times=times)
+            return replace(given, long_term_modulus=numbers[0], viscosity=numbers[1])
+        moduli, times = np.split(numbers[1 : 1 + 2 * given.moduli.size], [given.moduli.size])
+        return replace(
+            given, long_term_modulus=numbers[0], moduli=moduli, times=times if self.has_free_times else given.times
+        )
 
     def model(self, x: FloatArray) -> FloatArray:
         """Force [N] or depth [m] at the instants, shape (n,)."""
@@ -242,27 +222,28 @@ def fit_history(
         scene: Tip, layer, and one of KelvinVoigt, StandardSolid, PronySeries among the effects, with as many branches
             as are fitted. Its moduli are not used, and its times where they are not fitted. A loading by forces over
             time says that depths are the response, any other that forces are.
-        time: [s], shape (n,), increasing.
-        depth: [m], shape (n,): it grows, rests, and may fall once.
-        force: [N], shape (n,), positive where the indenter presses.
+        time: Instants [s], shape (n,), increasing.
+        depth: Depths [m], shape (n,): they grow, rest, and may fall once.
+        force: Forces [N], shape (n,), positive where the indenter presses.
         parameters: "moduli", or "scale" for one factor of all of them (a normalised table G(t)/G_0 is kept), and any of
             "times", "contact_point", "baseline".
-        confidence: Of the intervals.
+        confidence: Confidence of the intervals.
 
     Raises:
         InvalidInput: For other scenes, and for histories that press again after a withdrawal.
         NotConvergedError: If the least squares do not converge.
     """
     t, d, f = (np.asarray(values, dtype=np.float64) for values in (time, depth, force))
-    problem = _problem(scene, t, d, f, tuple(parameters))
-    size = float(np.ptp(problem.measured))
-    lower, upper = (np.array([getattr(one, end) for one in problem.parameters]) for end in ("low", "high"))
+    history = _history(scene, t, d, f, tuple(parameters))
+    measured = f if history.response == "force" else d
+    size = float(np.ptp(measured))
+    lower, upper = (np.array([getattr(number, end) for number in history.parameters]) for end in ("low", "high"))
 
     def misfit(x: FloatArray) -> FloatArray:
-        return np.asarray((problem.model(x) - problem.measured) / size)
+        return np.asarray((history.model(x) - measured) / size)
 
     ends = []
-    for start in _starts(problem):
+    for start in _starts(history):
         first, step = np.clip(start, lower + 1e-9, upper - 1e-9), np.full(start.size, _STEP)
         ends.append(
             least_squares(misfit, first, bounds=(lower, upper), x_scale="jac", diff_step=step, max_nfev=_EVALUATIONS)
@@ -272,10 +253,27 @@ def fit_history(
     best = min(ends, key=lambda end: float(end.cost))
     if not best.success:
         raise NotConvergedError("the fit did not converge; fit fewer branches, or keep the times (--fit moduli)")
-    return _stated(problem, best.x, np.asarray(best.jac) * size, confidence)
+    values = history.values(best.x)
+    indentation = d - values.get("contact_point", 0.0)
+    note = depth_note(scene, float(indentation.max()))
+    return with_intervals(
+        np.asarray(best.jac) * size,
+        np.diag([number.scale or values[number.name] for number in history.parameters]),
+        indentation > 0.0,
+        values=values,
+        confidence=confidence,
+        warnings=[note] if note else [],
+        scene=scene,
+        depth=d,
+        force=f,
+        fitted=history.model(best.x),
+        numerical_error=history.curve.error,
+        time=t,
+        response=history.response,
+    )
 
 
-def _problem(scene: Scene, t: FloatArray, d: FloatArray, f: FloatArray, names: tuple[str, ...]) -> _Problem:
+def _history(scene: Scene, t: FloatArray, d: FloatArray, f: FloatArray, names: tuple[str, ...]) -> History:
     """The problem of a scene that can be fitted.
 
     Raises:
@@ -303,15 +301,15 @@ def _problem(scene: Scene, t: FloatArray, d: FloatArray, f: FloatArray, names: t
     if not np.all(np.diff(t) > 0.0):
         row = int(np.argmin(np.diff(t))) + 1
         raise InvalidInput(f"time = {t[row]:g} s at point {row + 1} follows {t[row - 1]:g} s: times have to increase")
-    response: Literal["force", "depth"] = "depth" if isinstance(scene.loading, ForceHistory) else "force"
-    _check_course(d if response == "force" else f, response)
+    by_force = isinstance(scene.loading, ForceHistory)
+    _check_course(f if by_force else d, may_fall=not by_force)
     reach = max(float(np.ptp(d)), float(d.max()))
     curve = longest_curve(scene, 2 * reach)
-    modulus = float(np.ptp(f)) / (3 * float(curve.extended(np.array([reach]))[0]))
+    modulus = float(np.ptp(f)) / (3 * float(curve.extended(reach)))
     fitted = [*_of_solid(effect, names, modulus, t)]
     fitted += [Parameter("contact_point", float(np.ptp(d)))] * ("contact_point" in names)
     fitted += [Parameter("baseline", float(np.ptp(f)))] * ("baseline" in names)
-    return _Problem(scene, effect.relaxation, curve, t, d, f, tuple(fitted), response)
+    return History(scene, curve, t, d, f, tuple(fitted), "depth" if by_force else "force")
 
 
 def _of_solid(effect: Viscoelasticity, names: Sequence[str], modulus: float, t: FloatArray) -> list[Parameter]:
@@ -321,79 +319,51 @@ def _of_solid(effect: Viscoelasticity, names: Sequence[str], modulus: float, t: 
     span = float(np.ptp(t))
     if isinstance(effect, KelvinVoigt):
         return [Parameter("shear_modulus", modulus, _LEAST), Parameter("viscosity", modulus * span, _LEAST)]
-    alone, m = isinstance(effect, StandardSolid), effect.relaxation.moduli.size
-    moduli = ["maxwell_shear_modulus"] if alone else [f"shear_moduli[{j}]" for j in range(m)]
-    times = ["relaxation_time"] if alone else [f"relaxation_times[{j}]" for j in range(m)]
+    moduli, times = ["maxwell_shear_modulus"], ["relaxation_time"]
+    if not isinstance(effect, StandardSolid):
+        numbers = range(effect.relaxation.moduli.size)
+        moduli, times = [f"shear_moduli[{j}]" for j in numbers], [f"relaxation_times[{j}]" for j in numbers]
     ends = math.log(0.1 * float(np.diff(t).min())), math.log(100 * span)
-    found = [Parameter(name, modulus, _LEAST) for name in ("long_term_shear_modulus", *moduli)]
-    return found + [Parameter(name, 1.0, *ends) for name in times if "times" in names]
+    fitted = [Parameter(name, modulus, _LEAST) for name in ("long_term_shear_modulus", *moduli)]
+    return fitted + [Parameter(name, None, *ends) for name in times if "times" in names]
 
 
-def _check_course(given: FloatArray, response: str) -> None:
-    turn, size = _turn(given), float(np.ptp(given))
-    after = given[turn:]
-    if response == "depth" and turn < given.size - 1:
+def _check_course(prescribed: FloatArray, *, may_fall: bool) -> None:
+    turn = _turn(prescribed)
+    if turn < prescribed.size - 1 and not may_fall:
         raise InvalidInput(
             f"the force falls from point {turn + 1} on: depths are fitted under forces that grow or rest; keep the "
             "points before, or fit forces (a loading by depth_history in the scene)"
         )
-    if float((after - np.minimum.accumulate(after)).max()) > _FALLS * size:
+    after = prescribed[turn:]
+    if float((after - np.minimum.accumulate(after)).max()) > _FALLS * float(np.ptp(prescribed)):
         raise InvalidInput("the depth grows again after it has fallen: keep one loading, rest and withdrawal")
 
 
-def _starts(problem: _Problem) -> list[FloatArray]:
+def _starts(history: History) -> list[FloatArray]:
     """First values: non-negative moduli by linear least squares, of sets of trial times and contact points the best."""
-    names, given = problem.names, problem.given
-    turn = _turn(problem.depth) + 1 if problem.response == "force" else problem.time.size
-    time, depth, force = problem.time[:turn], problem.depth[:turn], problem.force[:turn]
-    span, way = float(np.ptp(time)), float(np.ptp(depth))
-    grid = np.geomspace(max(float(np.median(np.diff(time))), 1e-4 * span), span, _TRIAL_TIMES).tolist()
-    fits_times = any(one.is_time for one in problem.parameters)
-    sets = list(combinations(grid, given.times.size)) if fits_times else [tuple(given.times.tolist())]
-    points = [depth.max() - way * share for share in _TRIAL_POINTS] if "contact_point" in names else [0.0]
-    rated: list[tuple[float, int, list[float]]] = []
+    names, given = [number.name for number in history.parameters], history.given
+    turn = _turn(history.depth) + 1 if history.response == "force" else history.time.size
+    time, depth, force = history.time[:turn], history.depth[:turn], history.force[:turn]
+    span, shares = float(np.ptp(time)), np.array([given.long_term_modulus, *given.moduli]) / given.instantaneous_modulus
+    shortest = max(float(np.median(np.diff(time))), 1e-4 * span)
+    trial_times = [tuple(given.times.tolist())]
+    if history.has_free_times:
+        trial_times = list(combinations(np.geomspace(shortest, span, _TRIAL_TIMES).tolist(), given.times.size))
+    points = depth.max() - float(np.ptp(depth)) * np.array(_TRIAL_POINTS) if "contact_point" in names else [0.0]
+    starts: list[tuple[float, int, list[float]]] = []
     for point in points:
-        phi = 3 * problem.curve.extended(depth - point)
-        level = [np.ones_like(phi), -np.ones_like(phi)] if "baseline" in names else []
-        columns = {tau: convolved(time, phi, tau) for tau in {tau for times in sets for tau in times}}
-        for times in sets:
-            parts = [phi, *(columns[tau] for tau in times), *level]
-            if _SCALE in names:
-                shares = np.array([given.long_term_modulus, *given.moduli]) / given.instantaneous_modulus
-                parts = [np.tensordot(shares, parts[: shares.size], 1), *level]
-            sizes = np.array([float(np.abs(part).max()) or 1.0 for part in parts])
-            found, misfit = nnls(np.stack(parts, axis=1) / sizes, force)
-            found = found / sizes
-            known = [*found[: len(parts) - len(level)], *([0.1 * found[0] * span] if given.viscosity else [])]
-            known += [*times] * fits_times + [point] * ("contact_point" in names)
-            known += [found[-2] - found[-1]] if level else []
-            rated.append((float(misfit), len(rated), known))
-    return [
-        np.array(
-            [math.log(v) if one.is_time else v / one.scale for one, v in zip(problem.parameters, known, strict=True)]
-        )
-        for *_, known in sorted(rated)[:_STARTS]
-    ]
-
-
-def _stated(problem: _Problem, x: FloatArray, jacobian: FloatArray, confidence: float) -> CurveFit:
-    """Parameters in SI with their intervals, and warnings."""
-    values, fitted = problem.values(x), problem.model(x)
-    point = values.get("contact_point", 0.0)
-    note = depth_note(problem.scene, float(problem.depth.max()) - point)
-    return with_intervals(
-        jacobian,
-        problem.measured - fitted,
-        problem.depth > point,
-        np.diag([values[one.name] if one.is_time else one.scale for one in problem.parameters]),
-        values=values,
-        confidence=confidence,
-        warnings=[note] if note else [],
-        scene=problem.scene,
-        depth=problem.depth,
-        force=problem.force,
-        fitted=fitted,
-        numerical_error=problem.curve.error,
-        time=problem.time,
-        response=problem.response,
-    )
+        phi = 3 * history.curve.extended(depth - point)
+        levels = [np.ones_like(phi), -np.ones_like(phi)] if "baseline" in names else []
+        columns = {tau: convolved(time, phi, tau) for tau in {tau for times in trial_times for tau in times}}
+        for times in trial_times:
+            parts = [phi, *(columns[tau] for tau in times)]
+            parts = [np.tensordot(shares, parts, 1)] if _SCALE in names else parts
+            sizes = np.array([float(np.abs(part).max()) or 1.0 for part in (*parts, *levels)])
+            factors, misfit = nnls(np.stack([*parts, *levels], axis=1) / sizes, force)
+            moduli, level = np.split(factors / sizes, [len(parts)])
+            start = [*moduli, *[0.1 * moduli[0] * span] * (given.viscosity > 0 and _SCALE not in names)]
+            start += [*np.log(times).tolist()] * history.has_free_times + [point] * ("contact_point" in names)
+            starts.append((float(misfit), len(starts), [*start, *(level[:1] - level[1:])]))
+    scales = np.array([number.scale or 1.0 for number in history.parameters])
+    return [np.array(start) / scales for *_, start in sorted(starts)[:_STARTS]]

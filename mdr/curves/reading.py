@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any, Final, Literal, TypeAlias
 
 import numpy as np
+from scipy.signal import find_peaks
 
 from contact import InvalidInput
 from contact.records.tables import Column, Table, in_unit, name_and_unit, plain_unit, read_table, table_text
@@ -36,10 +37,10 @@ _NAMES: Final = {
     "x": ("x ", "position x", "x position", "xposition"),
     "y": ("y ", "position y", "y position", "yposition"),
 }
-# Words by which columns of loading and of withdrawal are told apart in one head.
+# Words in heads by which columns of loading and of withdrawal differ.
 _SIDES: Final = {
-    "loading": r"extend|approach|loading|ex|trace",
-    "withdrawal": r"retract|withdraw(?:al)?|unloading|rt|retrace",
+    "loading": re.compile(r"(?i)(?:^|[\s_(-])(extend|approach|loading|ex|trace)(?=$|[\s_).-])"),
+    "withdrawal": re.compile(r"(?i)(?:^|[\s_(-])(retract|withdraw(?:al)?|unloading|rt|retrace)(?=$|[\s_).-])"),
 }
 # Share of the travel by which a depth goes back before it is another direction. Noise of a tenth of it turns nothing.
 _TURN: Final = 0.2
@@ -47,10 +48,10 @@ _TURN: Final = 0.2
 
 @dataclass(frozen=True)
 class Cantilever:
-    """Numbers given by hand.
+    """Calibration of a cantilever, given by hand.
 
     Attributes:
-        spring_constant: [N/m], or None.
+        spring_constant: Spring constant [N/m], or None.
         sensitivity: Deflection over signal [m/V], or None.
     """
 
@@ -63,11 +64,11 @@ class Measured:
     """One force curve.
 
     Attributes:
-        depth: [m] from any zero, shape (n,).
-        force: [N], shape (n,).
-        notes: What was recognised and converted, in words.
-        time: [s], shape (n,), or empty.
-        position: x and y in the map [m], not a number where unknown.
+        depth: Depths [m] from any zero, shape (n,).
+        force: Forces [N], shape (n,).
+        notes: Sentences on what was recognised and converted.
+        time: Instants [s], shape (n,), or empty.
+        position: Position x and y in the map [m], not a number where unknown.
     """
 
     depth: FloatArray
@@ -75,6 +76,11 @@ class Measured:
     notes: tuple[str, ...] = ()
     time: FloatArray = field(default_factory=lambda: np.empty(0))
     position: tuple[float, float] = (np.nan, np.nan)
+
+    def at_rows(self, rows: Any) -> Measured:
+        """The curve with some of its points."""
+        time = self.time[rows] if self.time.size else self.time
+        return replace(self, depth=self.depth[rows], force=self.force[rows], time=time)
 
 
 def read_curve(
@@ -99,42 +105,31 @@ def read_curve(
 def read_map(
     file: str | Path, *, units: str = "", cantilever: Cantilever | None = None, direction: Direction = "loading"
 ) -> list[Measured]:
-    """The curves of a map.
-
-    Args:
-        file: A microscope's file; or a table with a column that numbers the curves, and x and y where they are known;
-            or one with depths in its first column and forces of a curve in each other one.
-        units: As for `load_curves`.
-        cantilever: As for `load_curves`.
-        direction: As for `load_curves`.
+    """The curves of a map: as `load_curves` reads them, or each column after the first as forces of a curve.
 
     Raises:
         InvalidInput: As `load_curves` does, or if a table has a single column.
     """
-    if _is_of_microscope(Path(file)):
-        return load_curves(file, cantilever=cantilever, direction=direction)
-    table = _with_units(Path(file), units)
-    if _named(table.columns, "curve") is not None:
-        return load_curves(file, units=units, cantilever=cantilever, direction=direction)
-    if len(table.columns) < 2:
-        raise InvalidInput(f"{file}: a map has depths in its first column, and forces of a curve in each other one")
-    first, *others = table.columns
-    if not units and others[0].unit:
-        others = [one if one.unit else replace(one, unit=others[0].unit) for one in others]
-    depth = _si(first, "m", file)
-    return [_one_direction(Measured(depth, _si(one, "N", file)), direction, f"{file}, {one.name}") for one in others]
+    return load_curves(file, units=units, cantilever=cantilever, direction=direction, is_map=True)
 
 
 def load_curves(
-    file: str | Path, *, units: str = "", cantilever: Cantilever | None = None, direction: Direction = "loading"
+    file: str | Path,
+    *,
+    units: str = "",
+    cantilever: Cantilever | None = None,
+    direction: Direction = "loading",
+    is_map: bool = False,
 ) -> list[Measured]:
     """The curves of a file in one direction, with what was recognised.
 
     Args:
-        file: Table, or what a microscope has written.
-        units: Of the columns of a table, "nm,nN", where their heads have none.
+        file: Table, perhaps with a column that numbers the curves, and columns x and y; or a microscope's file.
+        units: Units of the columns of a table, "nm,nN", where their heads have none.
         cantilever: Spring constant and sensitivity for columns of height and deflection.
         direction: Which part of a curve with loading and withdrawal; "history" is all of it.
+        is_map: Whether a table that numbers no curves has depths in its first column, and forces of a curve in each
+            other one.
 
     Raises:
         InvalidInput: If the file cannot be read, has no such columns, no units, or more than two directions.
@@ -144,10 +139,18 @@ def load_curves(
         return _read_measured(path, known, direction)
     table = _with_units(path, units)
     numbers = _named(table.columns, "curve")
-    rows = [np.arange(table.columns[0].values.size)]
     if numbers is not None:
         rows = [np.flatnonzero(numbers.values == number) for number in np.unique(numbers.values)]
-    return [_one_curve(table.at_rows(index), known, direction, str(file)) for index in rows]
+        return [_one_curve(table.at_rows(index), known, direction, str(file)) for index in rows]
+    if not is_map:
+        return [_one_curve(table, known, direction, str(file))]
+    if len(table.columns) < 2:
+        raise InvalidInput(f"{file}: a map has depths in its first column, and forces of a curve in each other one")
+    depth, forces = _si(table.columns[0], "m", file), table.columns[1:]
+    forces = tuple(replace(force, unit=force.unit or forces[0].unit) for force in forces)
+    return [
+        _one_direction(Measured(depth, _si(force, "N", file)), direction, f"{file}, {force.name}") for force in forces
+    ]
 
 
 def _with_units(file: Path, given: str) -> Table:
@@ -159,8 +162,9 @@ def _with_units(file: Path, given: str) -> Table:
     table = read_table(file)
     if given:
         units = [plain_unit(part) for part in given.split(",")]
-        units += [units[-1]] * (len(table.columns) - len(units))
-        return replace(table, columns=tuple(replace(one, unit=u) for one, u in zip(table.columns, units, strict=False)))
+        units += [units[-1]] * len(table.columns)
+        columns = (replace(column, unit=unit) for column, unit in zip(table.columns, units, strict=False))
+        return replace(table, columns=tuple(columns))
     if not any(column.unit for column in table.columns):
         names = ", ".join(column.name for column in table.columns if column.name)
         raise InvalidInput(
@@ -172,128 +176,99 @@ def _with_units(file: Path, given: str) -> Table:
 
 def _one_curve(table: Table, cantilever: Cantilever, direction: Direction, place: str) -> Measured:
     """The curve of all rows of a table."""
-    table, side = _one_side(table, direction)
-    gaps = [f"{len(table.gaps)} rows with gaps are left out (first: line {table.gaps[0]})"] if table.gaps else []
-    if cantilever.spring_constant is None and table.spring_constant:
-        cantilever = replace(cantilever, spring_constant=table.spring_constant)
-    time, x, y = (_named(table.columns, name) for name in ("time", "x", "y"))
-    found = _converted(table, cantilever, place)
-    whole = replace(
-        found,
-        notes=(*gaps, *side, *found.notes),
-        time=_si(time, "s", place) if time is not None and time.unit else np.empty(0),
-        position=(_place(x, place), _place(y, place)),
+    notes = [f"{len(table.gaps)} rows with gaps are left out (first: line {table.gaps[0]})"] if table.gaps else []
+    beside = _columns_of("withdrawal" if direction == "withdrawal" else "loading", table)
+    if beside:
+        table, notes = replace(table, columns=beside), [*notes, f"columns of {direction} are used"]
+    cantilever = replace(cantilever, spring_constant=cantilever.spring_constant or table.spring_constant)
+    depth, force, conversions = _converted(table, cantilever, place)
+    further = [_named(table.columns, name) for name in ("time", "x", "y")]
+    time, x, y = (
+        _si(column, unit, place) if column and column.unit else np.empty(0)
+        for column, unit in zip(further, ("s", "m", "m"), strict=True)
     )
-    return _one_direction(whole, direction, place)
+    position = float(x[0]) if x.size else np.nan, float(y[0]) if y.size else np.nan
+    return _one_direction(Measured(depth, force, (*notes, *conversions), time, position), direction, place)
 
 
-def _place(column: Column | None, place: str) -> float:
-    return float(_si(column, "m", place)[0]) if column is not None and column.unit else np.nan
-
-
-def _one_side(table: Table, direction: Direction) -> tuple[Table, list[str]]:
-    """The table with the columns of one direction, and a note, where heads say which those are."""
-    sides = {
-        side: [
-            (c, pattern)
-            for c in table.columns
-            for pattern in [rf"(?i)(?:^|[\s_(-])({words})(?=$|[\s_).-])"]
-            if re.search(pattern, c.name)
-        ]
-        for side, words in _SIDES.items()
-    }
-    if not (len(sides["loading"]) >= 2 and len(sides["withdrawal"]) >= 2):
-        return table, []
+def _columns_of(side: str, table: Table) -> tuple[Column, ...]:
+    """Columns of one direction without the word for it in their heads; none where heads do not name both directions."""
+    if min(sum(bool(words.search(column.name)) for column in table.columns) for words in _SIDES.values()) < 2:
+        return ()
     columns = []
-    for column, pattern in sides["withdrawal" if direction == "withdrawal" else "loading"]:
-        name, unit = name_and_unit(re.sub(pattern, "", column.name).strip(" _-"))
-        columns.append(replace(column, name=name, unit=column.unit or unit))
-    return replace(table, columns=tuple(columns)), [f"columns of {direction} are used"]
+    for column in table.columns:
+        if _SIDES[side].search(column.name):
+            name, unit = name_and_unit(_SIDES[side].sub("", column.name).strip(" _-"))
+            columns.append(replace(column, name=name, unit=column.unit or unit))
+    return tuple(columns)
 
 
-def _converted(table: Table, cantilever: Cantilever, file: str | Path) -> Measured:
-    """Depth and force from the columns that the table has."""
-    found = {kind: _named(table.columns, kind) for kind in ("depth", "separation", "height", "force", "deflection")}
-    notes = []
-    if found["deflection"] is not None and found["force"] is None and found["deflection"].unit.endswith("N"):
-        found["force"] = found["deflection"]
-    height = found["height"]
-    if height is not None and found["force"] is not None and _is_indenter(height.name, found["force"].name):
-        found["depth"] = found["depth"] or height
-    place = next((found[kind] for kind in ("depth", "separation", "height") if found[kind] is not None), None)
-    signal = found["force"] or found["deflection"]
-    if place is None or signal is None:
-        if len(table.columns) != 2 or any(column is not None for column in found.values()):
-            heads = ", ".join(column.name or "?" for column in table.columns)
-            raise InvalidInput(
-                f"{file}: needs a column of depth or height and one of force or deflection; rename the heads ({heads})"
-            )
-        place, signal = table.columns
-        found["depth"] = place
-    bending: FloatArray | None
-    if found["force"] is None and found["deflection"] is not None:
-        force, bending = _bent(signal, cantilever, file)
-        notes.append("force and depth from the deflection, by the spring constant")
-    else:
-        force = _si(signal, "N", file)
-        bending = force / cantilever.spring_constant if cantilever.spring_constant else None
-    depth = _si(place, "m", file)
-    if _falls(depth, force):
+def _converted(table: Table, cantilever: Cantilever, file: str) -> tuple[FloatArray, FloatArray, list[str]]:
+    """Depth [m] and force [N] from the columns that the table has, and notes on the conversion."""
+    kinds = ("depth", "separation", "height", "force", "deflection")
+    depth, separation, height, force, deflection = (_named(table.columns, kind) for kind in kinds)
+    if deflection and not force and deflection.unit.endswith("N"):
+        force = deflection
+    if height and force and height.name.lower().startswith("displacement") and force.name.lower().startswith("load"):
+        depth = depth or height  # these are the heads of an indenter, whose displacement is the depth
+    place, signal = depth or separation or height, force or deflection
+    if not place and not signal and len(table.columns) == 2:
+        depth, force = place, signal = table.columns
+    if not place or not signal:
+        heads = ", ".join(column.name or "?" for column in table.columns)
+        raise InvalidInput(
+            f"{file}: needs a column of depth or height and one of force or deflection; rename the heads ({heads})"
+        )
+    forces = _si(signal, "N", file) if force else _force_of_deflection(signal, cantilever, file)
+    notes = [] if force else ["force and depth from the deflection, by the spring constant"]
+    depths = _si(place, "m", file)
+    high = forces >= forces.min() + 0.7 * np.ptp(forces)
+    if np.mean(depths[high]) < 0.5 * (depths.min() + depths.max()):
         notes.append(f"{place.name or 'the first column'} falls into the contact: its sign is changed")
-        depth = -depth
-    if place is height and found["depth"] is None:
-        if bending is None:
-            raise InvalidInput(
-                f"{file}: {place.name} is a height, which holds the bending of the cantilever; give its spring "
-                'constant (--spring-constant "0.05 N/m"), or a column of depth'
-            )
-        notes.append("depth = height less bending of the cantilever")
-        depth = depth - bending
-    return Measured(depth, force, tuple(notes))
+        depths = -depths
+    if place is not height or depth:
+        return depths, forces, notes
+    if not cantilever.spring_constant:
+        raise InvalidInput(
+            f"{file}: {place.name} is a height, which holds the bending of the cantilever; give its spring "
+            'constant (--spring-constant "0.05 N/m"), or a column of depth'
+        )
+    return (
+        depths - forces / cantilever.spring_constant,
+        forces,
+        [*notes, "depth = height less bending of the cantilever"],
+    )
 
 
-def _is_indenter(height: str, force: str) -> bool:
-    """Whether the heads are those of an indenter, whose displacement is the depth."""
-    return height.lower().startswith("displacement") and force.lower().startswith("load")
-
-
-def _bent(signal: Column, cantilever: Cantilever, file: str | Path) -> tuple[FloatArray, FloatArray]:
-    """Force [N] and deflection [m] from a column of deflection in metres or volts."""
+def _force_of_deflection(signal: Column, cantilever: Cantilever, file: str) -> FloatArray:
+    """Force [N] from a column of deflection in metres or volts."""
     if cantilever.spring_constant is None:
         raise InvalidInput(f'{file}: {signal.name} is a deflection; give --spring-constant "0.05 N/m"')
-    if signal.unit.endswith("V"):
-        if cantilever.sensitivity is None:
-            raise InvalidInput(f'{file}: {signal.name} is in {signal.unit}; give --sensitivity "50 nm/V"')
-        factor = {"": 1.0, "m": 1e-3, "u": 1e-6, "k": 1e3}[signal.unit[:-1]]
-        bending = signal.values * factor * cantilever.sensitivity
-    else:
-        bending = _si(signal, "m", file)
-    return cantilever.spring_constant * bending, bending
+    if not signal.unit.endswith("V"):
+        return cantilever.spring_constant * _si(signal, "m", file)
+    if cantilever.sensitivity is None:
+        raise InvalidInput(f'{file}: {signal.name} is in {signal.unit}; give --sensitivity "50 nm/V"')
+    volts = signal.values * {"": 1.0, "m": 1e-3, "u": 1e-6, "k": 1e3}[signal.unit[:-1]]
+    return cantilever.spring_constant * volts * cantilever.sensitivity
 
 
 def _named(columns: Sequence[Column], kind: str) -> Column | None:
     """The column whose head is, or begins with, a name of that kind; short names have to be the whole head."""
     for name in _NAMES[kind]:
-        for one in columns:
-            head = one.name.lower().replace("_", " ").strip()
+        for column in columns:
+            head = column.name.lower().replace("_", " ").strip()
             if head == name.strip() or (len(name.strip()) > 2 and head.startswith(name)):
-                return one
+                return column
     return None
 
 
-def _si(one: Column, unit: str, file: str | Path) -> FloatArray:
-    if not one.unit:
-        raise InvalidInput(f"{file}, column {one.name!r}: has no unit; write it in the head, as in depth [nm]")
+def _si(column: Column, unit: str, file: str | Path) -> FloatArray:
+    if not column.unit:
+        raise InvalidInput(f"{file}, column {column.name!r}: has no unit; write it in the head, as in depth [nm]")
     try:
-        return in_unit(one.values, one.unit, unit)
+        return in_unit(column.values, column.unit, unit)
     except InvalidInput as error:
-        raise InvalidInput(f"{file}, column {one.name!r}, unit {one.unit!r}: {error}") from None
-
-
-def _falls(depth: FloatArray, force: FloatArray) -> bool:
-    """Whether the largest forces are at the least depths."""
-    high = force >= force.min() + 0.7 * np.ptp(force)
-    return bool(np.mean(depth[high]) < 0.5 * (depth.min() + depth.max()))
+        raise InvalidInput(f"{file}, column {column.name!r}, unit {column.unit!r}: {error}") from None
 
 
 def _one_direction(curve: Measured, direction: Direction, place: str) -> Measured:
@@ -302,54 +277,39 @@ def _one_direction(curve: Measured, direction: Direction, place: str) -> Measure
     Raises:
         InvalidInput: If the depth turns more than once.
     """
-    kept = np.isfinite(curve.depth) & np.isfinite(curve.force)
-    if int(kept.sum()) < 3:
+    curve = curve.at_rows(np.isfinite(curve.depth) & np.isfinite(curve.force))
+    if curve.depth.size < 3:
         raise InvalidInput(f"{place}: fewer than three points")
-    whole = _at_rows(curve, kept)
     if direction == "history":
-        if not whole.time.size:
+        if not curve.time.size:
             raise InvalidInput(f"{place}: needs a column of time with its unit, for the scene relaxes over time")
-        return whole
-    turns = _turning_points(whole.depth)
+        return curve
+    turns = _turning_points(curve.depth)
+    if not turns:
+        return curve
     if len(turns) > 1:
         raise InvalidInput(
             f"{place}: the depth turns {len(turns)} times (first at point {turns[0] + 1}); keep one loading or "
             "withdrawal"
         )
-    if not turns:
-        return whole
-    parts = slice(0, turns[0] + 1), slice(turns[0] + 1, None)
-    rises = [whole.depth[part][-1] > whole.depth[part][0] for part in parts]
-    found = _at_rows(whole, parts[rises.index(direction == "loading")])
-    note = f"loading and withdrawal in one curve: the {direction} is used ({found.depth.size} points)"
-    return replace(found, notes=(*found.notes, note))
-
-
-def _at_rows(curve: Measured, rows: Any) -> Measured:
-    time = curve.time[rows] if curve.time.size else curve.time
-    return replace(curve, depth=curve.depth[rows], force=curve.force[rows], time=time)
+    first, second = curve.at_rows(slice(0, turns[0] + 1)), curve.at_rows(slice(turns[0] + 1, None))
+    part = first if (first.depth[-1] > first.depth[0]) == (direction == "loading") else second
+    note = f"loading and withdrawal in one curve: the {direction} is used ({part.depth.size} points)"
+    return replace(part, notes=(*part.notes, note))
 
 
 def _turning_points(depth: FloatArray) -> list[int]:
     """Numbers of the points at which the depth turns back by more than noise."""
-    turns, extreme, sign, least = list[int](), 0, 0, _TURN * float(np.ptp(depth))
-    for i, d in enumerate(depth.tolist()):
-        moved = d - float(depth[extreme])
-        if sign == 0 and abs(moved) > least:
-            sign, extreme = (1 if moved > 0 else -1), i
-        elif sign * moved > 0.0:
-            extreme = i
-        elif sign and -sign * moved > least:
-            turns.append(extreme)
-            sign, extreme = -sign, i
-    return turns
+    least = _TURN * float(np.ptp(depth))
+    peaks, dips = (find_peaks(values, prominence=least, plateau_size=1)[1] for values in (depth, -depth))
+    return sorted([*peaks["left_edges"].tolist(), *dips["left_edges"].tolist()])
 
 
 def _is_of_microscope(file: Path) -> bool:
     """Whether afmformats reads the file: by its ending, and tables of AFM Workshop by their first line."""
     if file.suffix in ENDINGS:
         return True
-    return file.suffix == ".csv" and file.is_file() and table_text(file)[: len(_WORKSHOP)] == _WORKSHOP
+    return file.suffix == ".csv" and file.is_file() and table_text(file).startswith(_WORKSHOP)
 
 
 def _is_of_nova(file: Path) -> bool:
@@ -379,7 +339,7 @@ def _read_measured(file: Path, cantilever: Cantilever, direction: Direction) -> 
         # It would print a traceback of what is refused here in one line.
         logging.getLogger("afmformats.formats").disabled = True
         measured: Sequence[Any] = afmformats.load_data(file, meta_override=override)
-        curves = [_segment(one, direction) for one in measured if one.modality != "unknown"]
+        curves = [_segment(curve, direction) for curve in measured if curve.modality != "unknown"]
     except InvalidInput as error:
         raise InvalidInput(f"{file}: {error}") from None
     except afmformats.errors.MissingMetaDataError:
@@ -409,5 +369,4 @@ def _segment(measured: Any, direction: Direction) -> Measured:
         if not stiffness > 0.0:
             raise InvalidInput('has no spring constant of the cantilever; give it (--spring-constant "0.05 N/m")')
         depth = -np.asarray(segment[height], dtype=np.float64) - force / stiffness
-    kept = np.isfinite(depth) & np.isfinite(force)
-    return _at_rows(Measured(depth, force, (), time, (place[0], place[1])), kept)
+    return Measured(depth, force, (), time, (place[0], place[1])).at_rows(np.isfinite(depth) & np.isfinite(force))

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+import math
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Final, Literal
 
@@ -19,17 +20,20 @@ from mdr.curves.formulas import Formula
 # other one known, 1/sqrt(1 - 0.99^2).
 _CONFOUNDED: Final = 0.99
 # Residuals below this share of the largest force have no warning: rounding of files. At 1e-3 some misfits are silent.
-ROUNDING: Final = 1e-4
+_ROUNDING: Final = 1e-4
+# A baseline is too short if a quadratic background would widen the interval of E by more than this factor.
+# At twice that shifts of several intervals are silent; at half of it curves with a baseline of half the travel warn.
+_TOO_WIDE: Final = 3.0
 
 
 @dataclass(frozen=True, kw_only=True)
 class FormulaFit:
-    """What a fit by a formula in use gives on the same curve.
+    """A fit of the same curve by a formula in use.
 
     Attributes:
-        formula: Which.
+        formula: The formula.
         youngs_modulus: E [Pa].
-        bias: E over that of the scene's own curve, less one.
+        bias: Relative difference of E from that of the scene's own curve.
     """
 
     formula: Formula
@@ -42,25 +46,25 @@ class CurveFit:
     """A fitted curve.
 
     Attributes:
-        scene: As given; the fitted numbers are in `values`.
-        depth: As measured [m], shape (n,).
-        force: As measured [N], shape (n,).
+        scene: Scene as given; the fitted numbers are in `values`.
+        depth: Measured depths [m], shape (n,).
+        force: Measured forces [N], shape (n,).
         fitted: Force [N] of the fit at these depths, shape (n,), or depth [m] where depths over time were fitted.
-        values: Each fitted parameter, SI.
-        standard_error: Of each, from the scatter of the curve, widened where the residuals are not white noise.
-        covariance: Of the parameters in the order of `values`, shape (p, p).
-        quantile: Student's, for intervals of `confidence`.
-        confidence: Of intervals and bands.
+        values: Value of each fitted parameter, in SI units.
+        standard_error: Standard error of each parameter from the scatter of the curve, widened where the residuals are
+            not white noise.
+        covariance: Covariance of the parameters in the order of `values`, shape (p, p).
+        quantile: Student's quantile, for intervals of `confidence`.
+        confidence: Confidence of intervals and bands.
         band: Half width of the band in which the fitted curve lies with that confidence, shape (n,).
         numerical_error: Relative error of E by the computation itself; no part of `standard_error`.
-        warnings: What a reader should know before relying on the numbers.
-        notes: What the fit means, in words.
-        per_modulus: F/E [m^2] at each point by the fit, shape (n,).
-        time: [s], shape (n,), of histories; else empty.
-        response: What was fitted, "force" or "depth".
+        warnings: Sentences to read before relying on the numbers.
+        notes: Sentences on the meaning of the fit.
+        time: Instants [s], shape (n,), of histories; else empty.
+        response: Name of the fitted quantity, "force" or "depth".
         input_error: Standard uncertainty of each parameter by uncertain numbers of the scene, where they were asked
             for (`cases.uncertain_fit`).
-        formulas: The same curve fitted by formulas in use.
+        formulas: Fits of the same curve by formulas in use.
     """
 
     scene: Scene
@@ -76,7 +80,6 @@ class CurveFit:
     numerical_error: float
     warnings: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
-    per_modulus: FloatArray = field(default_factory=lambda: np.empty(0))
     time: FloatArray = field(default_factory=lambda: np.empty(0))
     response: Literal["force", "depth"] = "force"
     input_error: Mapping[str, float] = field(default_factory=dict)
@@ -94,94 +97,157 @@ class CurveFit:
 
     @property
     def measured(self) -> FloatArray:
-        """What was fitted: force [N], or depth [m], shape (n,)."""
+        """The fitted quantity as measured: force [N], or depth [m], shape (n,)."""
         return self.force if self.response == "force" else self.depth
+
+    @property
+    def indentation(self) -> FloatArray:
+        """Depths [m] from the contact point, shape (n,)."""
+        return self.depth - self.values.get("contact_point", 0.0)
 
     @property
     def background(self) -> FloatArray:
         """Baseline and tilt [N] at the depths, shape (n,)."""
-        shifted = self.depth - self.values.get("contact_point", 0.0)
-        return self.values.get("baseline", 0.0) + self.values.get("tilt", 0.0) * shifted
+        return self.values.get("baseline", 0.0) + self.values.get("tilt", 0.0) * self.indentation
 
     @property
     def r_squared(self) -> float:
         """1 less the variance of the residuals over that of the data in contact; 1 for a perfect fit."""
-        pressed = self.depth > self.values.get("contact_point", 0.0)
+        pressed = self.indentation > 0.0
         measured, residual = self.measured[pressed], (self.measured - self.fitted)[pressed]
         return 1.0 - float(residual @ residual) / max(float(np.sum((measured - measured.mean()) ** 2)), 1e-300)
 
     @property
     def modulus_at_depth(self) -> FloatArray:
-        """E [Pa] from each point alone, (force less background)/phi; not a number outside contact, shape (n,)."""
-        if not self.per_modulus.size or not is_modulus(self.modulus_name):
+        """E [Pa] from each point alone, the fitted E times measured over fitted force; nan outside contact, (n,)."""
+        contact = self.fitted - self.background
+        if self.time.size:
             return np.full(self.depth.shape, np.nan)
         with np.errstate(divide="ignore", invalid="ignore"):
-            return np.where(self.per_modulus > 0.0, (self.force - self.background) / self.per_modulus, np.nan)
+            moduli = self.youngs_modulus * (self.force - self.background) / contact
+        return np.where(contact > 0.0, moduli, np.nan)
 
     def interval(self, parameter: str) -> tuple[float, float]:
-        """In which the parameter lies with `confidence`; with uncertain inputs, and of E with the numerical error."""
+        """Lower and upper end of a parameter with `confidence`, uncertain inputs and numerical error included."""
         half = self.quantile * float(np.hypot(self.standard_error[parameter], self.input_error.get(parameter, 0.0)))
         if is_modulus(parameter):
             half += self.numerical_error * self.values[parameter]
         return self.values[parameter] - half, self.values[parameter] + half
 
 
+@dataclass(frozen=True, kw_only=True)
+class MapFit:
+    """Fits of n curves, each array of shape (n,).
+
+    Attributes:
+        curves: Fit of each curve; None where there is none, see `reasons`.
+        reasons: Reason in words why a curve has no fit; empty where it has one.
+        positions: Positions of the curves in the map [m], shape (n, 2), not a number where unknown.
+    """
+
+    curves: tuple[CurveFit | None, ...]
+    reasons: tuple[str, ...]
+    positions: FloatArray
+
+    def of(self, quantity: Callable[[CurveFit], float]) -> FloatArray:
+        """A number of each curve, not a number where it has no fit, shape (n,)."""
+        return np.array([np.nan if fit is None else quantity(fit) for fit in self.curves])
+
+    @property
+    def youngs_modulus(self) -> FloatArray:
+        """E [Pa]: the first fitted modulus."""
+        return self.of(lambda fit: fit.youngs_modulus)
+
+    @property
+    def standard_error(self) -> FloatArray:
+        """Standard error of E [Pa]."""
+        return self.of(lambda fit: fit.standard_error[fit.modulus_name])
+
+    @property
+    def contact_point(self) -> FloatArray:
+        """Contact point d0 [m], zero where it was not fitted."""
+        return self.of(lambda fit: fit.values.get("contact_point", 0.0))
+
+    @property
+    def converged(self) -> BoolArray:
+        """Whether a curve has a fit."""
+        return np.array([fit is not None for fit in self.curves])
+
+    @property
+    def interval(self) -> FloatArray:
+        """Lower and upper end [Pa] of the interval of each E, numerical error included, shape (2, n)."""
+        low = self.of(lambda fit: fit.interval(fit.modulus_name)[0])
+        return np.stack([low, self.of(lambda fit: fit.interval(fit.modulus_name)[1])])
+
+
+def derivatives(function: Callable[[FloatArray], FloatArray], x: FloatArray, steps: FloatArray) -> FloatArray:
+    """Derivatives of a function of shape (n,) by x, shape (n, p), by central differences."""
+    shifts = zip(np.diag(steps), 2 * steps, strict=True)
+    return np.stack([(function(x + shift) - function(x - shift)) / width for shift, width in shifts], axis=1)
+
+
 def with_intervals(
     jacobian: FloatArray,
-    residual: FloatArray,
-    pressed: BoolArray,
     changes: FloatArray,
+    pressed: BoolArray,
     *,
     values: Mapping[str, float],
     confidence: float,
-    curvature: Mapping[str, float] | None = None,
-    warnings: Iterable[str] = (),
+    curvature: Sequence[float] | float = 0.0,
+    warnings: Sequence[str] = (),
     **fields: Any,
 ) -> CurveFit:
     """The fit with covariance, intervals and band, widened where residuals are correlated or larger in contact.
 
     Args:
         jacobian: Derivatives of the fitted curve by the numbers that least squares vary, shape (n, p).
-        residual: Measured less fitted, in the order of depth or time, shape (n,).
-        pressed: Which of them are in contact, shape (n,).
         changes: Derivatives of the parameters by the numbers that least squares vary, shape (p, p).
-        values: Each parameter.
-        confidence: Of the intervals.
-        curvature: Half the second derivative of a parameter by its number, where the first one may vanish.
-        warnings: On the fit.
-        fields: Further ones of `CurveFit`.
+        pressed: Which points are in contact, shape (n,).
+        values: Value of each parameter.
+        confidence: Confidence of the intervals.
+        curvature: Half the second derivative of each parameter by its number, where the first one may vanish.
+        warnings: Warnings on the fit.
+        fields: Further fields of `CurveFit`.
     """
+    depth, measured = fields["depth"], fields[fields.get("response", "force")]
+    order = np.arange(depth.size) if "time" in fields else np.argsort(depth, kind="stable")
+    residual = (measured - fields["fitted"])[order]
     freedom = max(residual.size - jacobian.shape[1], 1)
     variance = float(residual @ residual) / freedom
-    size = float(np.ptp(fields["depth" if fields.get("response") == "depth" else "force"]))
-    wider, lines = _widening(residual, pressed, variance, size)
-    length = np.linalg.norm(jacobian, axis=0)
-    length[length == 0.0] = 1.0
-    unit = jacobian / length
-    raw = variance * wider * np.linalg.pinv(unit.T @ unit, hermitian=True) / np.outer(length, length)
+    wider, lines = _widening(residual, pressed[order], variance)
+    lines = [*_bent_background(jacobian, values, depth), *lines]
+    raw = variance * wider * _inverse(jacobian)
     covariance = changes @ raw @ changes.T
     quantile = float(stdtrit(freedom, 0.5 + confidence / 2))
-    errors = dict(zip(values, np.sqrt(np.maximum(np.diag(covariance), 0.0)).tolist(), strict=True))
-    for name, half in (curvature or {}).items():
-        row = list(values).index(name)
-        errors[name] = float(np.hypot(errors[name], half * raw[row, row]))
+    errors = np.hypot(np.sqrt(np.maximum(np.diag(covariance), 0.0)), np.multiply(curvature, np.diag(raw)))
+    is_noisy = math.sqrt(variance) > _ROUNDING * float(np.ptp(measured))
     return CurveFit(
         values=values,
-        standard_error=errors,
+        standard_error=dict(zip(values, errors.tolist(), strict=True)),
         covariance=covariance,
         quantile=quantile,
         confidence=confidence,
         band=quantile * np.sqrt(np.maximum(np.sum((jacobian @ raw) * jacobian, axis=1), 0.0)),
-        warnings=(*warnings, *lines, *_confounded(values, covariance, quantile)),
+        warnings=(*warnings, *lines * is_noisy, *_confounded(values, covariance, quantile)),
         **fields,
     )
 
 
-def _widening(residual: FloatArray, pressed: BoolArray, variance: float, size: float) -> tuple[float, list[str]]:
+def _inverse(jacobian: FloatArray) -> FloatArray:
+    """(J^T J)^-1, shape (p, p); columns of zeros count as undetermined by nothing."""
+    length = np.linalg.norm(jacobian, axis=0)
+    length[length == 0.0] = 1.0
+    unit = jacobian / length
+    return np.linalg.pinv(unit.T @ unit, hermitian=True) / np.outer(length, length)
+
+
+def _widening(residual: FloatArray, pressed: BoolArray, variance: float) -> tuple[float, list[str]]:
     """Factor of the covariance, and warnings, where the residuals are not white noise."""
     correlated = max(correlation_factor(residual), correlation_factor(residual[pressed]))
-    larger = _larger_in_contact(residual, pressed, variance)
-    warnings = []
+    n, larger, warnings = max(int(pressed.sum()), 1), 1.0, []
+    ratio = float(residual[pressed] @ residual[pressed]) / n / (variance or 1.0)
+    if n >= 8 and ratio > 1 + NOT_WHITE * np.sqrt(2 / n):
+        larger = ratio
     if correlated > 1.0:
         warnings.append(
             f"the residuals are not noise (neighbours are correlated): intervals are {np.sqrt(correlated):.2g} times "
@@ -193,16 +259,22 @@ def _widening(residual: FloatArray, pressed: BoolArray, variance: float, size: f
             f"residuals in contact are {np.sqrt(larger):.2g} times the average: intervals are as much wider; see the "
             "residuals"
         )
-    return correlated * larger, warnings if np.sqrt(variance) > ROUNDING * size else []
+    return correlated * larger, warnings
 
 
-def _larger_in_contact(residual: FloatArray, pressed: BoolArray, variance: float) -> float:
-    """Variance of the points in contact over the average, one within scatter."""
-    n = int(pressed.sum())
-    if n < 8 or variance == 0.0:
-        return 1.0
-    ratio = float(residual[pressed] @ residual[pressed]) / n / variance
-    return ratio if ratio > 1 + NOT_WHITE * np.sqrt(2 / n) else 1.0
+def _bent_background(jacobian: FloatArray, values: Mapping[str, float], depth: FloatArray) -> list[str]:
+    """Warning where the baseline is too short to distinguish a quadratic background from the contact."""
+    if "tilt" not in values:
+        return []
+    row = next(i for i, name in enumerate(values) if is_modulus(name))
+    square = ((depth - values.get("contact_point", 0.0)) / np.ptp(depth)) ** 2
+    ratio = _inverse(np.column_stack([jacobian, square]))[row, row] / _inverse(jacobian)[row, row]
+    text = (
+        "the baseline is too short to show whether the background is straight: with a quadratic background the "
+        f"interval of the modulus would be {min(math.sqrt(ratio), 999):.2g} times as wide; measure more points before "
+        "contact"
+    )
+    return [text] if ratio > _TOO_WIDE**2 else []
 
 
 def _confounded(values: Mapping[str, float], covariance: FloatArray, quantile: float) -> tuple[str, ...]:

@@ -38,14 +38,14 @@ def run_gate(directory: Path, baselines: Path, *, methods: Collection[str], stri
     Pages with figures are drawn by `contact-verify report`: a gate is asked often, and a figure takes half a second.
 
     Args:
-        directory: of the run.
-        baselines: folder of the accepted numbers.
-        methods: that are gated; if none is named, those that the run was made with.
-        strict: whether verdicts that stay open fail.
-        quiet: whether only the verdict is shown.
+        directory: Folder of the run.
+        baselines: Folder of the accepted numbers.
+        methods: Methods that are gated; if none is named, those that the run was made with.
+        strict: Whether verdicts that stay open fail.
+        quiet: Whether only the verdict is shown.
 
     Raises:
-        InvalidInput: if there is no run or no baseline.
+        InvalidInput: If there is no run or no baseline.
     """
     read_run(directory)
     with locked(directory), progress_bar("comparing with the accepted numbers"):
@@ -61,8 +61,9 @@ def _gated(run: Run, baselines: Path, methods: Collection[str]) -> Run:
     accepted = read_baselines(baselines)
     if not accepted:
         raise InvalidInput(f"no baselines in {baselines}; name their folder, or accept a case first")
-    library = load_cases() if run.judged.suite != "ci" else {}
-    unwatched = {(case.name, *place) for case in library.values() for place in case.nightly_only()}
+    unwatched = {(case.name, *place) for case in load_cases().values() for place in case.nightly_only()}
+    if run.judged.suite == "nightly":
+        unwatched -= {(a.case, a.scene, a.method) for baseline in accepted for a in baseline.answers}
 
     def watched(answer: Answer) -> bool:
         return (answer.case, answer.scene, answer.method) not in unwatched
@@ -70,17 +71,17 @@ def _gated(run: Run, baselines: Path, methods: Collection[str]) -> Run:
     return gate(run, accepted, methods=methods, watched=watched)
 
 
-def accept_cases(names: list[str], directory: Path, baselines: Path, **asked: Any) -> None:
+def accept_cases(*, names: list[str], directory: Path, baselines: Path, **asked: Any) -> None:
     """Show for each case (all of the run if none is named) what would change; write it when told to.
 
     Args:
-        names: of cases.
-        directory: of the run that the numbers come from.
-        baselines: folder they are written to.
-        asked: reason, loosen, write and jobs, as `_accept` takes them.
+        names: Names of cases.
+        directory: Folder of the run that the numbers come from.
+        baselines: Folder that they are written to.
+        asked: Arguments reason, loosen, write and jobs, as `_accept` takes them.
 
     Raises:
-        InvalidInput: naming every case that may not be accepted and why; the others are written all the same.
+        InvalidInput: With every case that may not be accepted and why; the others are written all the same.
     """
     run = read_run(directory)
     solved_by = {answer.method for answer in run.answers}
@@ -105,8 +106,8 @@ def _accept(case: Case, run: Run, baselines: Path, *, reason: str, loosen: bool,
     """Accept a case; one without scenes, such as the stress tests, need not be part of a suite's runs.
 
     Args:
-        case: That ran.
-        run: Its answers and verdicts.
+        case: Case that ran.
+        run: Answers and verdicts of the case.
         baselines: Folder that its numbers are written to.
         reason: Why these numbers are right.
         loosen: Whether a tolerance may grow or a record be withdrawn.
@@ -121,7 +122,8 @@ def _accept(case: Case, run: Run, baselines: Path, *, reason: str, loosen: bool,
     with progress_bar("repeating"):
         spreads = measured_spreads(case, watched.answers, jobs=jobs)
     before = accepted_before(baselines, name)
-    proposal = propose(watched, name, suites=suites, before=before, spreads=spreads, reason=reason)
+    unsolved = case.nightly_only()
+    proposal = propose(watched, name, suites=suites, before=before, spreads=spreads, reason=reason, unsolved=unsolved)
     show_table(change_table(proposal), on=terminal)
     for refusal in refusals(proposal, run, now, loosen=loosen):
         terminal.print(f"refused: {refusal}", style=STYLES["bad"])

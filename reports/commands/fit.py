@@ -42,6 +42,8 @@ def fit_file(
     Raises:
         InvalidInput: For a wrong scene, curve, parameter or file.
     """
+    if uncertain and (number is None or until):
+        raise InvalidInput("--uncertain is for whole single curves; leave --map and --until out")
     check_outputs(outputs, {".csv": "CSV", **PICTURES})
     scene = load_scene(scene_file)
     if _relaxes(scene) and (number is None or uncertain or until):
@@ -110,7 +112,7 @@ def read_limit(until: str) -> Limit | None:
         if text.endswith("%"):
             return Limit("fraction", float(text[:-1]) / 100)
         kind: Literal["depth", "force"] = "force" if text.endswith("N") else "depth"
-        return Limit(kind, read_quantity(text, "N" if kind == "force" else "m", "--until"))
+        return Limit(kind, float(read_quantity(text, "N" if kind == "force" else "m", "--until")))
     except ValueError as error:
         raise InvalidInput(f"--until {text}: write a depth, a force or a share, 300nm, 2nN or 60% ({error})") from None
 

@@ -4,6 +4,7 @@ import dataclasses
 import os
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 from rich.padding import Padding
 from rich.text import Text
@@ -17,7 +18,6 @@ from cases.run.executors import by_name
 from cases.run.lock import locked
 from cases.run.runner import RunOptions, plan, run_cases
 from cases.runs import Run, read_run
-from cases.stress import summary
 from cases.verdicts import ExitCode, Status, exit_code
 from contact import InvalidInput
 from contact.files.whole import write_whole
@@ -26,8 +26,8 @@ from reports import comparison
 from reports.book import claim_table, method_table, scene_table
 from reports.ci import annotation_lines, junit_text, summary_text
 from reports.findings import causes, findings, headline, nothing_ran, tone_of, who
-from reports.progress import RunDisplay
-from reports.tables import matrix_table, shortest_times
+from reports.progress import run_progress
+from reports.tables import matrix_table, shortest_times, stress_tests
 from reports.terminal import STYLES, console, progress_bar, show_table
 from reports.words import Table, display_name
 
@@ -37,60 +37,73 @@ REFEREE = "mdr"
 WORST_SHOWN = 12
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
-class Asked:
-    """What the command line names.
+def run(
+    *,
+    names: list[str],
+    suite: str,
+    methods: list[str],
+    others: list[str],
+    settings: list[str],
+    executor: str,
+    only: str,
+    listed: bool,
+    strict: bool,
+    quiet: bool,
+    **options: Any,
+) -> int:
+    """Run cases, list them, or carry out a part of a run alone, and return the exit code.
 
-    Attributes:
-        names: of cases; all of the suite if none.
-        methods: that solve them; all of the project if none.
-        others: methods that these are compared with, and with nothing else.
-        settings: of methods of installed packages, in words or files.
+    Args:
+        names: Names of cases; all of the suite if none.
+        suite: Name of a suite, or empty.
+        methods: Methods that solve the cases; all of the project if none.
+        others: Methods that these are compared with, and with nothing else.
+        settings: Settings of methods of installed packages, in words or files.
+        executor: Where solutions run, in words.
+        only: "cost", "stability" or empty.
+        listed: Whether the cases are listed instead.
+        strict: Whether verdicts that stay open fail.
+        quiet: Whether the verdict alone is shown.
+        options: Folder, jobs, resume, time limit and timing, as in `RunOptions`.
     """
-
-    names: list[str]
-    methods: list[str]
-    others: list[str]
-    settings: list[str]
-
-
-def run(asked: Asked, options: RunOptions, *, executor: str, quiet: bool, strict: bool) -> int:
-    """Run cases in an executor and return the exit code; with `strict`, verdicts that stay open fail."""
-    methods = asked.methods
-    settings = read_settings(asked.settings, methods)
-    cases = [with_settings(case, settings) for case in _cases(asked, options.suite)]
-    chosen = tuple(dict.fromkeys((*methods, *asked.others)))
-    found = _solved(cases, dataclasses.replace(options, methods=chosen, executor=by_name(executor)), quiet=quiet)
-    show_verdict(found, page_of(options.out), quiet=quiet)
-    if not found.judged.complete:
+    if listed:
+        return list_cases(names, suite)
+    run_options = RunOptions(suite=suite, methods=tuple(dict.fromkeys((*methods, *others))), **options)
+    if only == "stability":
+        return stress(names, methods, run_options, quiet=quiet)
+    if only == "cost":
+        return cost(names, run_options, methods=methods, settings=settings, quiet=quiet)
+    values = read_settings(settings, methods)
+    cases = [with_settings(case, values) for case in _cases(names, methods, others, suite)]
+    result = _solved(cases, dataclasses.replace(run_options, executor=by_name(executor)), quiet=quiet)
+    show_verdict(result, page_of(run_options.out), quiet=quiet)
+    if not result.judged.complete:
         return ExitCode.INTERRUPTED
-    code = exit_code(found.statuses, strict=strict)
-    return ExitCode.NOTHING_RAN if found.unjudged and code is not ExitCode.GATE_FAILED else code
+    code = exit_code(result.statuses, strict=strict)
+    return ExitCode.NOTHING_RAN if result.unjudged and code is not ExitCode.GATE_FAILED else code
 
 
 def _solved(cases: Sequence[Case], options: RunOptions, *, quiet: bool) -> Run:
     """Solve and judge cases with their progress shown, and write the pages; no other run may use the folder."""
     with locked(options.out):
-        with RunDisplay(console(), quiet=quiet) as display:
-            found = run_cases(cases, dataclasses.replace(options, progress=display))
-        write_pages(found, options.out)
-    return found
+        with run_progress(quiet=quiet) as progress:
+            result = run_cases(cases, dataclasses.replace(options, progress=progress))
+        write_pages(result, options.out)
+    return result
 
 
-def _cases(asked: Asked, suite: str) -> Sequence[Case]:
-    """The cases that are asked for, open to methods of installed packages."""
-    library, methods = load_cases(), asked.methods
-    if asked.others:
-        chosen = [library[case.name] for case in select(library, names=asked.names, suite=suite)]
-        return against(chosen, methods, asked.others)
-    opened = {name: with_registered(case, methods) for name, case in library.items()}
-    cases = select(opened, names=asked.names, suite=suite)
+def _cases(names: list[str], methods: list[str], others: list[str], suite: str) -> Sequence[Case]:
+    """The cases that are named, open to methods of installed packages."""
+    library = load_cases()
+    if others:
+        return against([library[case.name] for case in select(library, names=names, suite=suite)], methods, others)
+    cases = select({name: with_registered(case, methods) for name, case in library.items()}, names=names, suite=suite)
     if methods and set(methods) <= set(registered()):
         return [beside(case, methods, REFEREE) for case in cases]
     # Of a suite those cases run that have one of the methods.
     solved = [case for case in cases if not methods or any(use.label in methods for use in case.methods)]
-    chosen = [case.only_methods(methods) for case in ((not asked.names and solved) or cases)]
-    return [case for case in chosen if asked.names or next(case.tasks(), None) is not None]
+    chosen = [case.only_methods(methods) for case in ((not names and solved) or cases)]
+    return [case for case in chosen if names or next(case.tasks(), None) is not None]
 
 
 def show_verdict(run: Run, page: Path, *, quiet: bool) -> None:
@@ -98,8 +111,8 @@ def show_verdict(run: Run, page: Path, *, quiet: bool) -> None:
     terminal = console()
     if not quiet:
         show_table(matrix_table(run), on=terminal)
-    for one in [one for one in findings(run) if one.tone == "bad"][:WORST_SHOWN]:
-        terminal.print(Text.assemble((one.word, STYLES["bad"]), f" {one.sentence}: {one.message}"))
+    for finding in [finding for finding in findings(run) if finding.tone == "bad"][:WORST_SHOWN]:
+        terminal.print(Text.assemble((finding.word, STYLES["bad"]), f" {finding.sentence}: {finding.message}"))
     for sentence in causes(run):
         terminal.print(sentence)
     words, tone = headline(run)
@@ -110,17 +123,17 @@ def show_verdict(run: Run, page: Path, *, quiet: bool) -> None:
             terminal.print(line, soft_wrap=True)
 
 
-def list_cases(names: list[str], suite: str) -> None:
-    """Print the cases of a suite, or all; a single named one in full.
+def list_cases(names: list[str], suite: str) -> int:
+    """Print the cases of a suite, or all; a single named one in full. Returns the exit code.
 
     Raises:
-        InvalidInput: naming the case and what is wrong with it.
+        InvalidInput: With the name of the case and the mistake in it.
     """
     library = {name: with_registered(case) for name, case in load_cases().items()}
     cases = select(library, names=names, suite=suite)
     if len(names) == 1:
         _show_case(*cases)
-        return
+        return ExitCode.PASSED
     with progress_bar("checking cases"):
         tasks = len(plan(cases))
     claims = sum(len(case.claims) for case in cases)
@@ -132,6 +145,7 @@ def list_cases(names: list[str], suite: str) -> None:
         words=6,
     )
     show_table(table, on=console())
+    return ExitCode.PASSED
 
 
 def _line(case: Case) -> tuple[str, ...]:
@@ -158,7 +172,7 @@ def cost(names: list[str], options: RunOptions, *, methods: list[str], settings:
     A setting that is a list is a ladder of an installed package's method.
 
     Raises:
-        InvalidInput: if no study times such a method.
+        InvalidInput: If no study times such a method.
     """
     for method in methods:
         check_known(method)
@@ -167,7 +181,7 @@ def cost(names: list[str], options: RunOptions, *, methods: list[str], settings:
     timed = [case for case in (_of_methods(case, methods, asked) for case in chosen) if case.costs]
     if methods and not timed:
         raise InvalidInput(f"{', '.join(case.name for case in chosen)}: nothing times {' or '.join(methods)} there")
-    result = _solved(timed, dataclasses.replace(options, methods=tuple(methods), only_costs=True), quiet=quiet)
+    result = _solved(timed, dataclasses.replace(options, only_costs=True), quiet=quiet)
     terminal = console()
     if (table := shortest_times(result)) is not None:
         show_table(table, on=terminal)
@@ -189,7 +203,7 @@ def stress(names: list[str], methods: list[str], options: RunOptions, *, quiet: 
     """Carry out stress tests (all if none is named) by these methods, MDR if none is named; 1 if one failed.
 
     Raises:
-        InvalidInput: if no test has such a name.
+        InvalidInput: If no test has such a name.
     """
     case = load_cases()["stability"].only_methods(methods or ["mdr"])
     chosen = tuple(test for test in case.claims if not names or any(name in test.name for name in names))
@@ -197,24 +211,24 @@ def stress(names: list[str], methods: list[str], options: RunOptions, *, quiet: 
         raise InvalidInput(f"no stress test {names[0]!r}; there are {', '.join(test.name for test in case.claims)}")
     result = _solved([dataclasses.replace(case, claims=chosen)], options, quiet=quiet)
     terminal = console()
-    for test in result.judged.stress_tests:
-        stopped = (step for step in test.steps if step.status is not Status.PASS)
-        refusals = (f"  {test.parameter} = {step.value:g}: {step.status}: {step.reason}" for step in stopped)
-        terminal.print("\n".join((summary(test), *refusals)), soft_wrap=True)
+    if (table := stress_tests(result.judged.stress_tests)) is not None:
+        show_table(table, on=terminal)
     terminal.print(f"report: {page_of(options.out)}")
     return exit_code(result.statuses)
 
 
-def rebuild(directory: Path, *, single_file: bool = False) -> int:
-    """Write the pages of the run in `directory` again; return 5 if nothing ran in it, else 0."""
+def report(directory: Path, other: Path | None = None, *, single_file: bool = False) -> int:
+    """Write the pages of a run again, or compare a second run with it; return 5 if nothing ran in one, else 0."""
+    if other is not None:
+        return compare_runs(directory, other)
     read_run(directory)
     with locked(directory):
-        run = read_run(directory)
-        write_pages(run, directory, single_file=single_file)
-    words, tone = headline(run)
+        result = read_run(directory)
+        write_pages(result, directory, single_file=single_file)
+    words, tone = headline(result)
     console().print(words, style=STYLES[tone])
     console().print(f"report: {page_of(directory)}")
-    return _code(run)
+    return _code(result)
 
 
 def _code(*runs: Run) -> ExitCode:
@@ -245,7 +259,7 @@ def write_summaries(run: Run, directory: Path) -> None:
 
 
 def page_of(directory: Path) -> Path:
-    """Where a reader begins: the report, or the summary where no pages could be drawn."""
+    """First page for a reader: the report, or the summary where no pages could be drawn."""
     report = directory / "report.html"
     return report if report.is_file() else directory / "summary.md"
 

@@ -48,18 +48,18 @@ ADVISED_AT = 1e-2
 
 @dataclass(frozen=True, kw_only=True)
 class Request:
-    """What the command line asks of a scene.
+    """Options of `contact-verify solve`.
 
     Attributes:
-        method: name, empty for the default.
-        accuracy: relative accuracy of the numbers, or None.
-        pressure_accuracy: relative accuracy of the pressure, or None.
-        uncertain: uncertain inputs in words, or empty.
-        samples: scenes to draw for them, 0 for differences.
-        over: number and range in words, or empty.
-        advise: whether effects are left out in turn.
-        against: second method, or empty.
-        outputs: files to write.
+        method: Name of the method, empty for the default.
+        accuracy: Relative accuracy of the numbers, or None.
+        pressure_accuracy: Relative accuracy of the pressure, or None.
+        uncertain: Uncertain inputs in words, or empty.
+        samples: Number of scenes to draw for uncertain inputs, 0 for differences.
+        over: Number that is varied and its range in words, or empty.
+        advise: Whether effects are left out in turn.
+        against: Name of a second method, or empty.
+        outputs: Files to write.
     """
 
     method: str = ""
@@ -76,7 +76,7 @@ class Request:
         """Refuse what cannot be asked, before anything is solved.
 
         Raises:
-            InvalidInput: for a wrong accuracy, file or combination.
+            InvalidInput: For a wrong accuracy, file or combination.
         """
         check_outputs(self.outputs, {".csv": "CSV", **PICTURES} if self.over else ENDINGS)
         for name, wanted in (("accuracy", self.accuracy), ("pressure-accuracy", self.pressure_accuracy)):
@@ -103,12 +103,13 @@ class Request:
         return build_guarded(name, {key: value for key, value in asked.items() if key in known and value is not None})
 
 
-def solve(scene_file: Path, request: Request) -> None:
-    """Solve the scene of a TOML file, print what was asked for, and write the files.
+def solve(scene_file: Path, **asked: Any) -> None:
+    """Solve the scene of a TOML file, print what was asked for (see `Request`), and write the files.
 
     Raises:
-        InvalidInput: for a wrong scene, method or ending; before anything is solved.
+        InvalidInput: For a wrong scene, method or ending; before anything is solved.
     """
+    request = Request(**asked)
     request.check()
     scene = load_scene(scene_file)
     if request.advise:
@@ -143,9 +144,9 @@ def _solved(scene: Scene, request: Request) -> tuple[Solution, list[tuple[str, s
         return told_where_less(solution, request.accuracy, request.pressure_accuracy), []
     from cases.accuracy import solve as solve_to_accuracy  # noqa: PLC0415 - where it is asked for
 
-    found = solve_to_accuracy(scene, accuracy=request.accuracy, pressure_accuracy=request.pressure_accuracy)
-    stated = f"stated error {small(found.stated_error)}, asked for {small(request.accuracy)}, by {found.method}"
-    return found.answer, [("achieved", stated)]
+    reached = solve_to_accuracy(scene, accuracy=request.accuracy, pressure_accuracy=request.pressure_accuracy)
+    stated = f"stated error {small(reached.stated_error)}, asked for {small(request.accuracy)}, by {reached.method}"
+    return reached.answer, [("achieved", stated)]
 
 
 def _show_answer(solution: Solution) -> None:
@@ -155,16 +156,16 @@ def _show_answer(solution: Solution) -> None:
 
 
 def _notes(solution: Solution) -> list[tuple[str, str]]:
-    """What smoothing a tip changes, and where the theory is valid."""
+    """Notes on the effect of a smoothed tip, and on the validity of the theory."""
     from cases.advice import validity_lines  # noqa: PLC0415 - MDR only where it is asked for
 
-    told: list[tuple[str, str]] = []
+    notes: list[tuple[str, str]] = []
     indenter = solution.scene.indenter
     if isinstance(indenter, Tabulated) and indenter.smoothing and isinstance(solution, ContactPath):
-        moved = float(solution.contact_stiffness.max()) * indenter.smoothing
+        force_change = float(solution.contact_stiffness.max()) * indenter.smoothing
         tip = f"smoothing changed the tip by at most {with_prefix(indenter.smoothing, 'm')}"
-        told = [("note", f"{tip}, and so the force by at most about {with_prefix(moved, 'N')}")]
-    return told + [("validity", line) for line in validity_lines(solution.scene, solution)]
+        notes = [("note", f"{tip}, and so the force by at most about {with_prefix(force_change, 'N')}")]
+    return notes + [("validity", line) for line in validity_lines(solution.scene, solution)]
 
 
 def _refuse_less(solution: Solution, accuracy: float, pressure_accuracy: float | None) -> None:
@@ -185,12 +186,12 @@ def _uncertain(scene: Scene, scene_file: Path, request: Request) -> Solution:
 
     inputs = read_inputs(request.uncertain, scene, with_units=uses_units(scene_file))
     with progress_bar("solving"):
-        found = propagate(scene, inputs, method=request.solver(), samples=request.samples)
+        propagated = propagate(scene, inputs, method=request.solver(), samples=request.samples)
     if request.accuracy is not None:
-        _refuse_less(found.answer, request.accuracy, request.pressure_accuracy)
-    _show_answer(found.answer)
-    show_table(propagated_table(found), on=console())
-    return found.answer
+        _refuse_less(propagated.answer, request.accuracy, request.pressure_accuracy)
+    _show_answer(propagated.answer)
+    show_table(propagated_table(propagated), on=console())
+    return propagated.answer
 
 
 def _advise(scene: Scene, request: Request) -> None:
@@ -207,22 +208,22 @@ def _sweep(scene: Scene, scene_file: Path, request: Request) -> None:
     """Solve the scene over a range of one of its numbers, print the table and write the files.
 
     Raises:
-        InvalidInput: if every value is refused.
+        InvalidInput: If every value is refused.
     """
     from cases.sweep import read_range, sweep  # noqa: PLC0415 - only where it is asked for
 
     swept = read_range(request.over, scene, with_units=uses_units(scene_file))
     with progress_bar("solving") as progress:
-        found = sweep(scene, swept, request.solver(), progress)
-    if not found.answers:
-        raise InvalidInput(f"over {request.over}: no value was answered; the first refusal: {found.refused[0][1]}")
-    pressed = [(answer.scene, depths_of(answer)) for _, answer in found.answers]
-    note = depth_note(*max(pressed, key=lambda one: depth_share(*one)))
+        result = sweep(scene, swept, request.solver(), progress)
+    if not result.answers:
+        raise InvalidInput(f"over {request.over}: no value was answered; the first refusal: {result.refused[0][1]}")
+    pressed = [(answer.scene, depths_of(answer)) for _, answer in result.answers]
+    note = depth_note(*max(pressed, key=lambda pair: depth_share(*pair)))
     show_facts([("warning", f"at its deepest, {note}")] * bool(note), on=console())
-    show_table(sweep_table(found), on=console())
-    show_facts([("refused", f"{value:g}: {reason}") for value, reason in found.refused], on=console())
-    pictures = picture_writers(lambda: _pictures().sweep_figure(found), key="sweep")
-    write_outputs(request.outputs, {**csv_writer(found.to_csv), **pictures})
+    show_table(sweep_table(result), on=console())
+    show_facts([("refused", f"{value:g}: {reason}") for value, reason in result.refused], on=console())
+    pictures = picture_writers(lambda: _pictures().sweep_figure(result), key="sweep")
+    write_outputs(request.outputs, {**csv_writer(result.to_csv), **pictures})
 
 
 def _pictures() -> Any:

@@ -19,7 +19,6 @@ BORDERS = {
     "meshio": "fem_reference/",
     "matplotlib": "reports/",
     "jinja2": "reports/",
-    "typer": "reports/",
     "rich": "reports/",
 }
 

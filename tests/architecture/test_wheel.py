@@ -13,7 +13,7 @@ from tests.architecture.test_distributions import built  # noqa: F401  # the fix
 
 ROOT = Path(__file__).parents[2]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-HEAVY = ("scipy", "matplotlib", "gmsh", "skfem", "meshio", "h5py", "pyfftw", "jinja2", "rich", "typer", "pint")
+HEAVY = ("scipy", "matplotlib", "gmsh", "skfem", "meshio", "h5py", "pyfftw", "jinja2", "rich", "pint")
 # Processor time [s] that `import mdr` may take: the requirement.
 IMPORT_SECONDS = 0.2
 

@@ -128,7 +128,7 @@ def test_too_few_samples_are_refused():
 
 
 def test_the_command_prints_both_uncertainties_and_correlations(tmp_path, capsys):
-    from reports.commands.solve import Request, solve
+    from reports.commands.solve import solve
 
     scene = tmp_path / "scene.toml"
     scene.write_text(
@@ -136,9 +136,9 @@ def test_the_command_prints_both_uncertainties_and_correlations(tmp_path, capsys
         '[indenter]\nkind = "paraboloid"\nradius_of_curvature = 1e-2\n'
         '[loading]\nkind = "indentation_depths"\nvalues = [5e-5]\n'
     )
-    solve(scene, Request(uncertain="thickness=3%,poissons_ratio=0.48..0.5"))
+    solve(scene, uncertain="thickness=3%,poissons_ratio=0.48..0.5")
     printed = " ".join(capsys.readouterr().out.split())
     for words in ("numerical error", "by inputs", "thickness", "poissons_ratio", "Correlated", "4.6 %"):
         assert words in printed
     with pytest.raises(InvalidInput, match="--samples"):
-        solve(scene, Request(samples=20))
+        solve(scene, samples=20)

@@ -44,7 +44,7 @@ def test_the_body_below_a_pressed_step_is_the_same_and_none_without_contact():
     path, alone = (Mdr().solve(press(IndentationDepths(values))) for values in ([0.0, 0.05], [0.05]))
     one, other = path.inside(1).at([0.1], [0.2]), alone.inside(0).at([0.1], [0.2])
     assert one.axial_stress.tolist() == other.axial_stress.tolist()
-    with pytest.raises(InvalidInput, match="step = 0: nothing is known inside"):
+    with pytest.raises(InvalidInput, match="step = 0: nothing touches"):
         path.inside(0)
 
 

@@ -7,8 +7,7 @@ import pytest
 from cases.accuracy import solve
 from cases.declare.methods import build
 from cases.referees.calculix import CalculiX
-from cases.referees.contact_mechanics import ContactMechanics
-from cases.referees.tamaas import Tamaas
+from cases.referees.grids import ContactMechanics, Tamaas
 from contact import (
     ContactRadii,
     ExponentialDepth,

@@ -8,8 +8,7 @@ import pytest
 from bem import Bem
 from bem.direct_method import IntegralEquationMethod
 from cases.referees.calculix import CalculiX
-from cases.referees.contact_mechanics import ContactMechanics
-from cases.referees.tamaas import Tamaas
+from cases.referees.grids import ContactMechanics, Tamaas
 from cases.units import Units, in_units
 from contact import (
     Adhesion,

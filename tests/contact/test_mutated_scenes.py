@@ -1,10 +1,6 @@
-"""Scene files with one mistake each: one clear message, or the scene that the file says; never a traceback.
-
-More files: python -m tests.contact.test_mutated_scenes 3000
-"""
+"""Scene files with one mistake each: one clear message, or the scene that the file says; never a traceback."""
 
 import random
-import sys
 import tomllib
 from pathlib import Path
 
@@ -146,15 +142,3 @@ def test_a_scene_that_is_read_otherwise_and_a_traceback_are_seen(tmp_path):
     for reader in (lambda _: other, lambda _: {}["place"]):
         draw = random.Random(1)
         assert sum(bool(fault) for _, fault in (judged(draw, tmp_path, reader) for _ in range(20))) >= 15
-
-
-if __name__ == "__main__":
-    import collections
-    import tempfile
-
-    with tempfile.TemporaryDirectory() as place:
-        draws = random.Random(2026)
-        found = [judged(draws, Path(place)) for _ in range(int(sys.argv[1]))]
-    for fault in filter(None, (fault for _, fault in found)):
-        sys.stdout.write(f"{fault}\n")
-    sys.stdout.write(f"{collections.Counter(kind for kind, _ in found)}\n")

@@ -153,11 +153,11 @@ def test_html_without_matplotlib_is_the_table_alone(monkeypatch):
 @pytest.mark.parametrize(
     ("shown", "line"),
     [
-        (ContactPath, "normal_force: F_N [N], shape (n,)."),
-        (DetachmentPath, "pull_off_depth: delta [m] where contact is lost"),
-        (HistoryPath, "time: t [s], shape (n,)."),
-        (ImpactHistory, "peak_force: max F_N [N]"),
-        (Layer, "youngs_modulus: E [Pa]"),
+        (ContactPath, "normal_force: Normal force F_N [N], shape (n,)."),
+        (DetachmentPath, "pull_off_depth: Depth delta [m] where contact is lost"),
+        (HistoryPath, "time: Time t [s], shape (n,)."),
+        (ImpactHistory, "peak_force: Largest force max F_N [N]"),
+        (Layer, "youngs_modulus: Young's modulus E [Pa]"),
     ],
 )
 def test_help_shows_fields_with_units(shown, line):

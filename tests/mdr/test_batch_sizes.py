@@ -11,8 +11,6 @@ import pytest
 
 from bem.flat_punch import IntegralEquation
 from contact import (
-    Adhesion,
-    Detachment,
     FlatPunch,
     Impact,
     IndentationDepths,
@@ -26,9 +24,8 @@ from contact import (
     TruncatedCone,
 )
 from mdr import Mdr, batches
-from mdr.batches import equilibria, impacts, pull_offs
+from mdr.batches import equilibria, impacts
 from mdr.impact import solver as impact_solver
-from mdr.pull_offs import pull_off_groups
 
 PUNCH = IntegralEquation()
 LAYER = Layer.incompressible(thickness=1e-3, shear_modulus=1e6)
@@ -57,20 +54,6 @@ def assert_repeated(together, alone, count, tolerance=1e-9):
         np.testing.assert_allclose(
             getattr(together, name), np.resize(expected, count), rtol=tolerance, atol=0.0, err_msg=name
         )
-
-
-@pytest.mark.first(1)
-@pytest.mark.parametrize("size", around(batches._CHUNK)[::2])
-def test_pull_offs_of_every_size(size):
-    effects = (Adhesion(work_of_adhesion=0.05),)
-    paths = [Mdr(flat_punch=PUNCH).solve(scene) for scene in scenes(Detachment(), effects)]
-    alone = {
-        "contact_radius": [p.pull_off_contact_radius for p in paths],
-        "depth": [p.pull_off_depth for p in paths],
-        "force": [p.pull_off_force for p in paths],
-    }
-    assert len(pull_off_groups(scenes(Detachment(), effects), PUNCH)) == 1
-    assert_repeated(pull_offs(scenes(Detachment(), effects, size), PUNCH), alone, size)
 
 
 @pytest.mark.parametrize("size", around(impact_solver.CHUNK)[1:4:2])
@@ -133,17 +116,14 @@ def test_equilibria_of_every_size(size, loading):
 
 def test_a_scene_without_an_answer_is_refused(monkeypatch):
     """At first an uncomputed scene of a batch was whatever the memory held."""
-    from mdr import pull_offs as batch
+    solve = batches._together
 
-    def last_one_forgotten(*arguments):
-        def forgetful(solve):
-            return lambda chunk: np.where(np.arange(len(chunk)) < len(chunk) - 1, solve(chunk), np.nan)
+    def without_the_last(some, flat_punch):
+        return np.where(np.arange(len(some)) < len(some) - 1, solve(some, flat_punch), np.nan)
 
-        return [(members, forgetful(solve)) for members, solve in pull_off_groups(*arguments)]
-
-    monkeypatch.setattr(batch, "pull_off_groups", last_one_forgotten)
+    monkeypatch.setattr(batches, "_together", without_the_last)
     with pytest.raises(NotConvergedError, match=r"scenes\[6\]: no finite answer"):
-        pull_offs(scenes(Detachment(), (Adhesion(work_of_adhesion=0.05),)), PUNCH)
+        equilibria(scenes(NormalForces([0.1])), PUNCH)
 
 
 @pytest.mark.slow

@@ -8,7 +8,6 @@ from contact import (
     Adhesion,
     Cone,
     ContactRadii,
-    Detachment,
     FlatPunch,
     IndentationDepths,
     InvalidInput,
@@ -20,7 +19,7 @@ from contact import (
     TruncatedCone,
 )
 from mdr import Mdr
-from mdr.batches import equilibria, pull_offs
+from mdr.batches import equilibria
 
 PUNCH = IntegralEquation()
 RNG = np.random.default_rng(7)
@@ -42,34 +41,6 @@ LAYERS = (
 
 def shuffled(scenes):
     return [scenes[i] for i in RNG.permutation(len(scenes))]
-
-
-@pytest.mark.slow
-def test_pull_offs_are_what_detachment_paths_say():
-    scenes = shuffled(
-        [
-            Scene(
-                layer=layer,
-                indenter=indenter,
-                loading=Detachment(control=control),
-                effects=(Adhesion(work_of_adhesion=work),),
-            )
-            for layer in LAYERS
-            for indenter in INDENTERS
-            for control, work in (("displacement", 0.01), ("force", 0.05))
-        ]
-    )
-    seen = []
-    together = pull_offs(scenes, PUNCH, progress=lambda done, total: seen.append((done, total)))
-    paths = [Mdr(flat_punch=PUNCH).solve(scene) for scene in scenes]
-    displaced = np.array([scene.loading.control == "displacement" for scene in scenes])
-    depths = np.array([p.pull_off_depth for p in paths])
-    # under force control the depth passes through zero: there it is as exact as its two terms are long
-    np.testing.assert_allclose(together.depth, depths, rtol=1e-12, atol=1e-12 * np.abs(depths).max())
-    np.testing.assert_allclose(together.contact_radius, [p.pull_off_contact_radius for p in paths], rtol=1e-8)
-    np.testing.assert_allclose(together.force, [p.pull_off_force for p in paths], rtol=1e-12)
-    assert displaced.any()
-    assert seen[-1] == (len(scenes), len(scenes))
 
 
 def test_equilibria_are_what_single_scenes_say():
@@ -96,8 +67,6 @@ def test_what_a_batch_refuses():
     scene = Scene(layer=LAYERS[1], indenter=INDENTERS[0], loading=ContactRadii([1e-3, 2e-3]))
     with pytest.raises(InvalidInput, match=r"scenes\[0\].loading: give one"):
         equilibria([scene], PUNCH)
-    with pytest.raises(InvalidInput, match=r"scenes\[0\].loading = ContactRadii"):
-        pull_offs([scene], PUNCH)
     adhesive = scene.replace(effects=(Adhesion(work_of_adhesion=0.1),))
     with pytest.raises(InvalidInput, match=r"scenes\[0\].effects"):
         equilibria([adhesive], PUNCH)

@@ -131,6 +131,17 @@ def test_noise_and_drift_show_no_contact(seed, effects):
             fit_curve(HALF_SPACE.replace(effects=effects), depth, force)
 
 
+@pytest.mark.parametrize("loading_points", [0, 40])
+@pytest.mark.parametrize("scatter", [0.0, 1e-10])
+def test_a_hold_fitted_with_an_elastic_scene_says_first_that_it_is_one(loading_points, scatter):
+    time = np.arange(200.0)
+    rest = 5e-7 + scatter * np.random.default_rng(4).standard_normal(time.size)
+    depth = np.append(np.linspace(0, 5e-7, loading_points), rest)
+    force = hertz(depth) * np.append(np.ones(loading_points), 0.2 + 0.8 * np.exp(-time / 40))
+    with pytest.raises(InvalidInput, match=r"^the curve is a hold: .* list a viscoelastic effect in the scene"):
+        fit_curve(HALF_SPACE, depth, force)
+
+
 def test_an_offset_and_a_tilt_are_fitted_by_default():
     depth = np.linspace(-1e-6, 5e-7, 400)
     force = with_noise(hertz(depth) + 1e-2 * hertz(depth).max() - 1e-4 * depth, 3e-3)
@@ -360,6 +371,20 @@ def test_units_on_the_command_line_are_needed_where_heads_have_none(tmp_path, sc
         assert "--units nm,nN" in capsys.readouterr().err
         assert run(["fit", str(file), scene_file, "--units", "nm,nN"]) == 0
         assert modulus_in(capsys.readouterr().out) == pytest.approx(5e3, rel=1e-3, abs=0.0)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (["--until", "deep"], "--until deep: write a depth, a force or a share"),
+        (["--fit", "youngs_modulus,thickness"], "thickness: the layer is a half-space"),
+    ],
+)
+def test_wrong_options_are_refused_in_words(tmp_path, scene_file, capsys, options, message):
+    file = tmp_path / "curve.csv"
+    file.write_text("\n".join(FILES["slash"]))
+    assert run(["fit", str(file), scene_file, *options]) == 4
+    assert message in " ".join(capsys.readouterr().err.split())
 
 
 def test_height_and_deflection_need_the_cantilever(tmp_path, scene_file, capsys):

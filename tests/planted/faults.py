@@ -385,19 +385,6 @@ def seen_at_the_end(patch):
     patch.setattr(spring_bed, "first_fall", wrong)
 
 
-def without_the_last_of_a_full_chunk(groups):
-    """The last scene of 512 is whatever the memory held."""
-
-    def uncomputed(solve):
-        def wrong(chunk):
-            found = solve(chunk)
-            return np.hstack([found[:, :-1], np.ones((3, 1))]) if len(chunk) == 512 else found
-
-        return wrong
-
-    return lambda *arguments: [(members, uncomputed(solve)) for members, solve in groups(*arguments)]
-
-
 TIME_STEPPING = {
     "free springs recover one per cent too fast": (
         creeping_too_fast,
@@ -409,10 +396,6 @@ TIME_STEPPING = {
     "touches within a step unseen": (
         seen_at_the_end,
         Test("mdr.test_recovery:test_a_spring_that_is_touched_and_released_within_one_step"),
-    ),
-    "last scene of each full chunk of pull-offs left out": (
-        swap("mdr.pull_offs:pull_off_groups", without_the_last_of_a_full_chunk),
-        Test("mdr.test_batch_sizes:test_pull_offs_of_every_size", (513,)),
     ),
     "a hundredth of the force left out of the motion": (
         swap("mdr.impact.blows:_together", weaker),

@@ -7,7 +7,7 @@ import pytest
 from cases.answers import NAME, Table
 from cases.runs import RUN, Run, write_run
 from cases.verdicts import Status
-from reports.commands.runs import compare_runs, rebuild
+from reports.commands.runs import compare_runs, report
 from reports.comparison import changed_claims, changed_numbers, headline, worst_first
 from tests.cases.example_run import passing_run
 from tests.reports.example import example
@@ -56,9 +56,9 @@ def test_what_got_worse_is_the_headline(runs, capsys):
 @pytest.mark.slow
 def test_pages_are_rebuilt_from_stored_results_without_a_change(runs, capsys):
     first, _ = runs
-    rebuild(first)
+    report(first)
     written = {path: path.read_bytes() for path in first.rglob("*") if path.is_file()}
-    rebuild(first)
+    report(first)
     assert {path: path.read_bytes() for path in first.rglob("*") if path.is_file()} == written
     assert {"report.html", "summary.md", "junit.xml", RUN} <= {path.name for path in written}
     assert "PASSED: all 3 checks" in capsys.readouterr().out

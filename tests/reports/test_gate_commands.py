@@ -16,6 +16,7 @@ from reports.command_line import run
 from reports.commands import baselines
 from tests.cases.fake_case import FAST, SLOW, fake_case, spoiled
 from tests.cases.fake_method import FakeHertz
+from tests.cases.test_narrow import with_a_nightly_method
 
 CLEAN = WriteConditions(revision=revision(), changed=(), in_ci=False)
 
@@ -69,6 +70,19 @@ def test_without_baselines_the_gate_is_not_configured(capsys):
     run_cases()
     assert gate_run() == 4
     assert "accept a case first" in capsys.readouterr().err
+
+
+def test_what_only_the_suite_nightly_solves_stays_accepted_and_is_not_missed(here, tmp_path):
+    run_cases()
+    accept_case("--write")
+    case = with_a_nightly_method()
+    here(case)
+    run_cases(case.in_suite("ci"))
+    assert accept_case("--loosen", "--write") == 0
+    lines = (tmp_path / "baselines" / f"{case.name}.jsonl").read_text(encoding="utf-8").splitlines()[1:]
+    answered = {(row["scene"], row["method"]) for row in map(json.loads, lines)}
+    assert answered >= case.nightly_only()
+    assert gate_run() == 0
 
 
 @pytest.mark.usefixtures("here")

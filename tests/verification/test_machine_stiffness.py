@@ -7,7 +7,6 @@ import pytest
 from scipy.optimize import brentq
 
 from bem import Bem
-from bem.flat_punch import IntegralEquation
 from contact import (
     Adhesion,
     Cone,
@@ -23,7 +22,6 @@ from contact import (
 from contact.files.scene_file import scene_from_mapping
 from fem_reference import Fem
 from mdr import Mdr
-from mdr.batches import pull_offs
 
 E_STAR, R, WORK = 4.0 / 3.0 * 1e6, 0.01, 0.05
 HALF_SPACE = Layer(thickness=np.inf, youngs_modulus=1e6, poissons_ratio=0.5, support="bonded")
@@ -114,12 +112,6 @@ def test_contact_is_lost_between_the_limits():
     assert ends[0] < radii[0]
     assert radii[-1] < ends[1]
     assert np.all(np.diff(radii) > 0.0)
-
-
-def test_the_batch_gives_the_same_pull_offs():
-    scenes = [scene(k, THIN) for k in (100.0, None)]
-    together, alone = pull_offs(scenes, IntegralEquation()), [Mdr().solve(one) for one in scenes]
-    np.testing.assert_allclose(together.depth, [path.pull_off_depth for path in alone], rtol=1e-12)
 
 
 def test_what_a_machine_cannot_be_is_refused():

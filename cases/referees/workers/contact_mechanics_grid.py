@@ -9,7 +9,7 @@ from ContactMechanics import FreeFFTElasticHalfSpace, PeriodicFFTElasticHalfSpac
 from ContactMechanics.Factory import make_system
 from SurfaceTopography import Topography
 
-# Higher than any depth: such cells never touch.
+# Height in units of the depth at which cells never touch.
 HIGH = 1e3
 # Its iteration stands still at 15 of 200 depths of a paraboloid on 16 points, at 7 on 32; where it ends it takes at
 # most a tenth of these steps. It starts again from the displacements of one deeper contact after another.
@@ -17,7 +17,7 @@ MOST_STEPS, DEEPER = 500, (1.05, 1.1, 1.2, 1.5, 2.0)
 
 
 def substrate(question: dict[str, Any]) -> Any:
-    """The half-space, where E stands for E*, or the bonded layer, where E is Young's modulus."""
+    """The half-space, which takes E* for E, or the bonded layer, which takes Young's modulus."""
     grid, size = (len(question["heights"]),) * 2, (question["size"],) * 2
     young, poisson, thickness = question["young"], question["poisson"], question["thickness"]
     if thickness is None:
@@ -46,19 +46,22 @@ def solved(question: dict[str, Any], surface: np.ndarray, depth: float) -> tuple
     return float(system.compute_normal_force()), np.asarray(system.force[:n, :n]) > 0
 
 
-def main() -> None:
-    """Answer one question."""
-    question = json.load(sys.stdin)
+def answer(question: dict[str, Any]) -> dict[str, list[float]]:
+    """Force, contact radius and, where asked for, stiffness at each depth."""
     surface = np.array(question["heights"])
-    cell, rows = (question["size"] / len(surface)) ** 2, []
-    for depth in question["depths"]:
+    cell = (question["size"] / len(surface)) ** 2
+    answers: dict[str, list[float]] = {}
+    for depth in question["loads"]:
         force, touching = solved(question, surface, depth)
-        # The stiffness at this contact is that of a flat punch of its shape.
-        punch, _ = solved(question, np.where(touching, 0.0, -HIGH * depth), depth)
-        rows.append((force, float(np.sqrt(touching.sum() * cell / np.pi)), punch / depth))
-    names = ("normal_force", "contact_radius", "contact_stiffness")
-    sys.stdout.write("\n" + json.dumps(dict(zip(names, zip(*rows, strict=True), strict=True))) + "\n")
+        numbers = {"normal_force": force, "contact_radius": float(np.sqrt(touching.sum() * cell / np.pi))}
+        if question["with_stiffness"]:
+            # The stiffness at this contact is that of a flat punch of its shape.
+            punch = solved(question, np.where(touching, 0.0, -HIGH * depth), depth)[0]
+            numbers["contact_stiffness"] = punch / depth
+        for name, value in numbers.items():
+            answers.setdefault(name, []).append(value)
+    return answers
 
 
 if __name__ == "__main__":
-    main()
+    sys.stdout.write("\n" + json.dumps(answer(json.load(sys.stdin))) + "\n")

@@ -1,4 +1,4 @@
-"""Tamaas inside its own interpreter: forces in, depths and radii out, on a half-space that is not periodic."""
+"""Tamaas inside its own interpreter: forces in; depths, radii and stiffnesses out, on a half-space, not periodic."""
 
 import json
 import sys
@@ -6,6 +6,9 @@ from typing import Any
 
 import numpy as np
 import tamaas
+
+# Forces of the difference quotient of the stiffness, relative; of second order, 2e-5 of it for a power law.
+STEP = 1e-2
 
 
 def half_space(question: dict[str, Any]) -> Any:
@@ -17,9 +20,9 @@ def half_space(question: dict[str, Any]) -> Any:
     return model
 
 
-def solved(question: dict[str, Any], surface: np.ndarray, force: float) -> tuple[float, float]:
+def solved(question: dict[str, Any], force: float) -> tuple[float, float]:
     """Depth and contact radius at a force; displacements of the solver have no absolute value, the operator's have."""
-    size, model = question["size"], half_space(question)
+    surface, size, model = np.array(question["heights"]), question["size"], half_space(question)
     solver = tamaas.PolonskyKeerRey(model, surface, question["tolerance"])
     solver.setIntegralOperator("dcfft")
     error = solver.solve(force / size**2)
@@ -32,14 +35,16 @@ def solved(question: dict[str, Any], surface: np.ndarray, force: float) -> tuple
     return float(np.average((shift - surface)[touching], weights=pressure[touching])), float(radius)
 
 
-def main() -> None:
-    """Answer one question."""
-    question = json.load(sys.stdin)
-    surface = np.array(question["heights"])
-    rows = [solved(question, surface, force) for force in question["forces"]]
-    names = ("indentation_depth", "contact_radius")
-    sys.stdout.write("\n" + json.dumps(dict(zip(names, zip(*rows, strict=True), strict=True))) + "\n")
+def answer(question: dict[str, Any]) -> dict[str, list[float]]:
+    """Depth, contact radius and, where asked for, stiffness at each force."""
+    forces = question["loads"]
+    depths, radii = map(list, zip(*(solved(question, force) for force in forces), strict=True))
+    answers = {"indentation_depth": depths, "contact_radius": radii}
+    if question["with_stiffness"]:
+        less, more = ([solved(question, side * force)[0] for force in forces] for side in (1.0 - STEP, 1.0 + STEP))
+        answers["contact_stiffness"] = (2.0 * STEP * np.array(forces) / np.subtract(more, less)).tolist()
+    return answers
 
 
 if __name__ == "__main__":
-    main()
+    sys.stdout.write("\n" + json.dumps(answer(json.load(sys.stdin))) + "\n")

@@ -1,10 +1,14 @@
 """Conformance of every case of the library, just by being listed."""
 
+from fnmatch import fnmatchcase
+
 import pytest
 
 from cases.claims import Claim
 from cases.declare.registry import load_cases
+from cases.library import _common
 from cases.verdicts import Kind, Origin
+from contact import InvalidInput
 
 CASES = load_cases()
 # Stress tests, and finite elements as a program, have no scenes and no claims about them.
@@ -57,3 +61,16 @@ def test_every_task_can_be_planned_and_its_identity_is_unique_or_the_same_questi
 def test_timed_settings_name_their_method(name):
     """Their labels name settings: a report once said what accuracy costs by a method without a name."""
     assert all(use.method for study in CASES[name].costs for use in (*study.ladder, *study.cheap, study.reference))
+
+
+def test_every_pattern_of_the_suite_ci_is_about_a_scene_and_a_method_of_its_case():
+    for name, lists in _common.IN_CI.items():
+        case = CASES[name]
+        assert set(lists) <= {"*"} | {use.label for scene in case.scenes for use in case.methods_of(scene)}, name
+        patterns = (pattern for own in lists.values() for pattern in own)
+        assert [p for p in patterns if not any(fnmatchcase(scene.name, p) for scene in case.scenes)] == [], name
+
+
+def test_a_docstring_without_a_question_is_refused_by_the_name_of_its_file():
+    with pytest.raises(InvalidInput, match=r"hertz\.py: a docstring is"):
+        _common.paper("cases.hertz", "Title.\n\nText.", (), (), ())

@@ -6,13 +6,14 @@ import pytest
 from cases.referees.calculix import (
     CalculiX,
     _place,
-    _read,
     at_zero,
     deck,
     extrapolated,
+    mesh,
     observed_order,
     program,
-    section,
+    reactions,
+    read_reactions,
 )
 from contact import (
     ContactRadii,
@@ -40,16 +41,16 @@ def test_odd_numbers_of_cells_are_refused():
 @pytest.mark.parametrize("support", ["bonded", "unbonded"])
 @pytest.mark.parametrize("kinks", [(), (0.5,)])
 def test_meshes_are_nested(kinks, support):
-    coarse, fine = (section(1.0, 0.7, cells, kinks, support) for cells in (6, 12))
-    for few, many in ((coarse.radius[::2], fine.radius[::2]), (coarse.depth[::2], fine.depth[::2])):
+    coarse, fine = (mesh(0.7, cells, kinks, support) for cells in (6, 12))
+    for few, many in ((coarse.radius[::2], fine.radius[::2]), (coarse.height[::2], fine.height[::2])):
         assert np.max(np.min(np.abs(few[:, None] - many[None, :]), axis=1)) < 1e-14
     for radius in (*kinks, 1.0):
         assert np.min(np.abs(coarse.radius[::2] - radius)) < 1e-14
 
 
 def test_numbers_of_the_deck_are_not_cut():
-    mesh = section(1.0, 1.0, 4)
-    lines = deck(mesh, LAYER.replace(youngs_modulus=1.0), 1.0, mesh.radius**2).splitlines()
+    section = mesh(1.0, 4)
+    lines = deck(section, LAYER.replace(youngs_modulus=1.0), section.radius**2).splitlines()
     assert max(len(word) for line in lines if "*" not in line for word in line.split(",")) <= 20
     assert sum("CAX8" in line for line in lines) == 1
 
@@ -78,8 +79,8 @@ def test_a_polynomial_at_its_zero_covers_what_it_lacks():
 
 
 def test_elements_that_do_not_lock_where_nu_is_large():
-    mesh = section(1.0, 1.0, 2)
-    kinds = [deck(mesh, LAYER.replace(poissons_ratio=nu), 1.0, mesh.radius) for nu in (0.3, 0.49)]
+    section = mesh(1.0, 2)
+    kinds = [deck(section, LAYER.replace(poissons_ratio=nu), section.radius) for nu in (0.3, 0.49)]
     assert ["TYPE=CAX8," in kinds[0], "TYPE=CAX8R," in kinds[1]] == [True, True]
 
 
@@ -87,15 +88,13 @@ def test_a_base_that_does_not_carry_the_load_is_refused():
     line = "  1.000000E-09 {} 0.000000E+00\n"
     printed = "".join(line.format(force) for force in ("-1.0E+00", "9.0E-01", "-1.0E-03") * 2)
     with pytest.raises(NotConvergedError, match="they must be equal"):
-        _read(printed.replace("1.0E", "1.000000E").replace("9.0E", "9.000000E"))
+        read_reactions(printed.replace("1.0E", "1.000000E").replace("9.0E", "9.000000E"))
 
 
 @installed
 def test_an_inverted_element_is_an_error_of_its_name():
-    mesh = section(1.0, 1.0, 2)
-    broken = deck(mesh, LAYER.replace(poissons_ratio=0.3), 1.0, mesh.radius**2).replace("*ELASTIC", "*NONSENSE")
-    from cases.referees.calculix import reactions
-
+    section = mesh(1.0, 2)
+    broken = deck(section, LAYER.replace(poissons_ratio=0.3), section.radius**2).replace("*ELASTIC", "*NONSENSE")
     with pytest.raises(NotConvergedError, match="calculix ended with code"):
         reactions(broken)
 

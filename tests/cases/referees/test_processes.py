@@ -8,7 +8,7 @@ import pytest
 from cases.declare.guarded_method import build_guarded
 from cases.declare.methods import REFEREES, build
 from cases.referees import process
-from cases.referees.grid import FAR, box, surface
+from cases.referees.grids import FAR, box, heights
 from contact import (
     Cone,
     ContactRadii,
@@ -98,8 +98,8 @@ def test_grids_take_no_radii():
 
 
 def test_heights_on_the_grid_are_those_of_the_indenter_and_nothing_beyond_a_rim_touches():
-    cone = np.array(surface(pressed(indenter=Cone(slope=0.1)), 4, 4.0))
+    cone = np.array(heights(pressed(indenter=Cone(slope=0.1)), 4, 4.0))
     assert cone[0, 0] == pytest.approx(-0.1 * np.hypot(1.5, 1.5), rel=1e-14, abs=0.0)
     assert np.all(cone == cone[::-1, ::-1])
-    punch = np.array(surface(pressed(indenter=FlatPunch(radius=1.0)), 4, 4.0))
+    punch = np.array(heights(pressed(indenter=FlatPunch(radius=1.0)), 4, 4.0))
     assert sorted(set(punch.ravel())) == [-FAR * 4.0, 0.0]

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from cases.library.outside_referees import CURVES
-from cases.referees import contact_mechanics, process
-from cases.referees.contact_mechanics import ContactMechanics
+from cases.referees import process
+from cases.referees.grids import ContactMechanics
 from contact import IndentationDepths
 
 
@@ -82,7 +82,7 @@ def test_an_iteration_that_never_ends_is_told_with_its_depth(script):
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(bool(process.lacks(contact_mechanics.PACKAGE)), reason="ContactMechanics is not installed")
+@pytest.mark.skipif(bool(process.lacks(ContactMechanics.package)), reason="ContactMechanics is not installed")
 def test_a_depth_at_which_it_stands_still_is_answered():
     """The 17th of 200 depths on 16 points ended in 500 steps without an answer before it started again."""
     scene = CURVES[0].scene
