@@ -93,7 +93,7 @@ def course(impacts: Impacts, nodes: int, guess: Course) -> Course:
     growths = _growths(impacts, nodes, guess.growths)
     shrinkages, state = list[Shrinkage](), growths[-1].finish()
     for number, growth in enumerate(growths[::-1]):
-        similar = guess.shrinkages[number] if guess.shrinkages else None
+        similar = guess.shrinkages[number] if guess.shrinkages and not impacts.are_elastic else None
         shrinkages.append(_shrinkage(growth, state, similar))
         state = shrinkages[-1].finish()
     return Course(growths, shrinkages, state)
@@ -154,7 +154,7 @@ def _largest_force(growth: Growth) -> FloatArray:
     values, derivative = growth.force[:, :-1], growth.rule.derivative
     slope = times(derivative, values)
     force = np.stack([values, slope, times(derivative, slope)], axis=1)
-    places = np.broadcast_to(gauss(_PLACES)[0], (len(force), _PLACES))
+    places = gauss(_PLACES)[0][None]
     samples = interpolated(force[:, :1], places)[:, 0]
     s = places[0, samples.argmax(axis=1)][:, None]
     for _ in range(_PEAK_STEPS):

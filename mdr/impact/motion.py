@@ -69,6 +69,11 @@ class Impacts:
     rates: FloatArray
     viscosity: FloatArray
 
+    @property
+    def are_elastic(self) -> bool:
+        """Whether every layer is elastic, so that shrinkages are growths reversed."""
+        return not (self.rates.any() or self.viscosity.any())
+
     def springs(self, depth: FloatArray, piece: int) -> FloatArray:
         """K, dK/d(depth) and a at depths of shape (n, k) on one piece, shape (3, n, k)."""
         values = np.empty((3, *depth.shape))
@@ -124,14 +129,16 @@ class Phase(ABC):
 
     @abstractmethod
     def forces(self) -> FloatArray:
-        """Compute K, a and the force; returns its derivatives by the speeds at the nodes, shape (n, k, k)."""
+        """Compute K, a and the force; returns its derivatives by the speeds at the nodes, shape (n, k + 1, k)."""
 
     @abstractmethod
-    def end(self, end_speed_slope: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """What vanishes at the end, its derivatives by the speeds at the nodes, shape (n, k), and its rate in time.
+    def end(self, step: FloatArray, speed: FloatArray, force: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """What vanishes at the end, and its rate in time, after a step of the speeds.
 
         Args:
-            end_speed_slope: Derivatives of v at the end by the speeds at the nodes, shape (n, k).
+            step: Changes of the speeds at the nodes, shape (n, k).
+            speed: v at the end after them, shape (n,).
+            force: Force over 2 E* at the end after them, without the dashpot, shape (n,).
         """
 
     @abstractmethod
@@ -145,8 +152,7 @@ class Phase(ABC):
 
     def speed_at(self, s: FloatArray) -> FloatArray:
         """Speeds at places s, shape (n, q) or (q,)."""
-        places = np.broadcast_to(s, (len(self.speed), s.shape[-1]))
-        return interpolated(self.speed[:, None], places)[:, 0]
+        return interpolated(self.speed[:, None], np.atleast_2d(s))[:, 0]
 
     def solve(self) -> None:
         """Newton's method for the speeds and ln T.
@@ -194,10 +200,12 @@ class Phase(ABC):
         impulses = (self.impacts.pull * self.duration)[:, None, None] * self.rule.integrals
         change = self.start.speed[:, None] - times(impulses, self.force[:, :-1])
         self.end_speed = change[:, -1]
-        matrix = impulses @ by_speed
+        matrix = impulses @ by_speed[:, :k]
         step = _solved(matrix[:, :k] + np.eye(k), change[:, :k] - self.speed)
-        value, slope, rate = self.end(-matrix[:, -1])
-        return step, -(value + (slope * step).sum(axis=1)) / (rate * self.duration)
+        end_speed = self.end_speed - (matrix[:, -1] * step).sum(axis=1)
+        end_force = self.force[:, -1] + (by_speed[:, -1] * step).sum(axis=1)
+        value, rate = self.end(step, end_speed, end_force)
+        return step, -value / (rate * self.duration)
 
     def _operators(self) -> None:
         """Matrices that depend on the duration: integrals with memory, fading, and response of the stress to v."""
@@ -243,7 +251,7 @@ class Growth(Phase):
     def forces(self) -> FloatArray:
         """F/(2 E*) = sum_j L_j + eta K v."""
         v, T, eta, k = self.speed, self.duration[:, None], self.impacts.viscosity[:, None], self.speed.shape[1]
-        integrals, response = self.rule.integrals[:-1], self.response[:, :-1]
+        integrals, response = self.rule.integrals[:-1], self.response
         self.stiffness, slope, self.radius = self.impacts.springs(self.depth, self.piece)
         K = self.stiffness[:, :k]
         self.load = self.relaxed(K * v, self.start.load)
@@ -251,12 +259,11 @@ class Growth(Phase):
         self.force[:, :k] += eta * K * v
         return np.asarray(response * K[:, None] + (response * (v * slope[:, :k] * T)[:, None]) @ integrals)
 
-    def end(self, end_speed_slope: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    def end(self, step: FloatArray, speed: FloatArray, force: FloatArray) -> tuple[FloatArray, FloatArray]:
         """The speed at the turn, or the depth less that of the break."""
         if self.until is None:
-            force = self.force[:, -1] + self.impacts.viscosity * self.stiffness[:, -1] * self.end_speed
-            return self.end_speed, end_speed_slope, -self.impacts.pull * force
-        return self.depth[:, -1] - self.until, self.duration[:, None] * self.rule.integrals[-1], self.end_speed
+            return speed, -self.impacts.pull * (force + self.impacts.viscosity * self.stiffness[:, -1] * speed)
+        return self.depth[:, -1] + self.duration * (self.rule.integrals[-1] * step).sum(axis=1) - self.until, speed
 
     def finish(self) -> State:
         """State at the end; a shrinkage looks up s_j, L_j, depth and v, `past`, at the start, the nodes and the end."""
@@ -288,10 +295,14 @@ class Shrinkage(Phase):
     stress: FloatArray = field(init=False)
     forgotten: FloatArray = field(init=False)
 
+    def _operators(self) -> None:
+        """Matrices that depend on the duration, and the stresses."""
+        super()._operators()
+        self.stress = self.relaxed(self.speed, self.start.stress)
+
     def forces(self) -> FloatArray:
         """F/(2 E*) = K (sum_j s_j + eta v) - sum_j forgotten_j."""
         g, m, k = self.growth, self.impacts.rates.shape[1], self.speed.shape[1]
-        self.stress = self.relaxed(self.speed, self.start.stress)
         first = self._first_spring()
         if self.sweeps > 1 or self.is_guessed:
             self._find_edge(first[:, :k])
@@ -301,22 +312,21 @@ class Shrinkage(Phase):
         self.stiffness, _, self.radius = self.impacts.springs(past[:, -2], self.piece)
         self.forgotten = self.fading_since(share) * (past[:, :m] * self.stiffness[:, None] - past[:, m : 2 * m])
         self.force = self.stiffness * first - self.forgotten.sum(axis=1)
-        return np.asarray(self.stiffness[:, :k, None] * self.response[:, :k])
+        return np.asarray(self.stiffness[..., None] * self.response)
 
-    def end(self, end_speed_slope: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    def end(self, step: FloatArray, speed: FloatArray, force: FloatArray) -> tuple[FloatArray, FloatArray]:
         """The stress of the innermost spring of the growth."""
         b, eta, first = self.impacts, self.impacts.viscosity, self.growth.start.stress
-        stress = self.stress[..., -1] - self.fading_since(np.zeros_like(self.force))[..., -1] * first
-        acceleration = -b.pull * (self.force[:, -1] + eta * self.stiffness[:, -1] * self.end_speed)
-        rate = (b.weights * self.end_speed[:, None] - b.rates * stress).sum(axis=1) + eta * acceleration
-        value = stress.sum(axis=1) + eta * self.end_speed
-        return value, self.response[:, -1] + eta[:, None] * end_speed_slope, rate
+        change = b.weights * (self.memory[:, :, -1] * step[:, None]).sum(axis=-1)
+        stress = self.stress[..., -1] + change - self.fading_since(np.zeros_like(self.force))[..., -1] * first
+        acceleration = -b.pull * (force + eta * self.stiffness[:, -1] * speed)
+        rate = (b.weights * speed[:, None] - b.rates * stress).sum(axis=1) + eta * acceleration
+        return stress.sum(axis=1) + eta * speed, rate
 
     def beyond_end(self) -> BoolArray:
         """Whether even the innermost spring is released: a layer that relaxed nearly whole lets go early."""
         if self.sweeps == 1 and not self.is_guessed:
             return np.zeros(self.speed.shape, dtype=bool)
-        self.stress = self.relaxed(self.speed, self.start.stress)
         innermost = self.growth.start.stress[..., None] * self.fading_since(np.zeros_like(self.fading[:, 0]))
         released = self._first_spring() < innermost.sum(axis=1)
         return np.asarray(released[:, :-1] & (self.impacts.viscosity == 0)[:, None])

@@ -116,7 +116,7 @@ def interpolated(values: FloatArray, s: FloatArray, *, with_ends: bool = False) 
 
     Args:
         values: Values at the nodes, or at s = 0, the nodes and s = 1, shape (lanes, rows, n).
-        s: Places, shape (lanes, k).
+        s: Places, shape (lanes, k) or (1, k).
         with_ends: Whether the values include those at both ends.
 
     Returns:

@@ -63,7 +63,7 @@ def impact_groups(
         [blow_of(scene, flat_punch, i) for i, scene in enumerate(scenes)],
         defaultdict[Hashable, list[int]](list),
     )
-    for blow in blows:
+    for blow in sorted(blows, key=lambda blow: blow.level):  # so that few tracks are looked up at once
         kinds[blow.power, blow.rates.size].append(blow.number)
 
     def solve(chunk: list[int]) -> FloatArray:

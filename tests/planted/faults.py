@@ -344,9 +344,9 @@ def forgets_slowly(fading):
 def released_late(end):
     """The punch lets go a hundredth of the contact time after the force is back at zero."""
 
-    def wrong(phase, end_speed_slope):
-        value, slope, rate = end(phase, end_speed_slope)
-        return value + 0.01 * phase.duration * rate, slope, rate
+    def wrong(phase, *step):
+        value, rate = end(phase, *step)
+        return value + 0.01 * phase.duration * rate, rate
 
     return wrong
 
