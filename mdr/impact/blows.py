@@ -21,8 +21,8 @@ from mdr.own_units import OwnUnits
 from mdr.profiles import tip_of
 from mdr.radius_search import SeveralContacts, refuse_too_wide
 
-# Share of the instantaneous modulus to which a layer is expected to relax on the way in. Softer ones may need to be
-# solved again with a longer track.
+# Least share of the instantaneous modulus to which a layer is expected to relax within twice the guessed duration.
+# Softer ones may need to be solved again with a longer track.
 _SOFTEST = 0.02
 # d^2 K over the stored energy and d K over the force, over 2 E*: upper bounds (cones on thin layers), and usual values.
 _MOST_WORK, _MOST_FORCE, _USUAL_WORK, _USUAL_FORCE = 30.0, 6.0, 4.0, 1.5
@@ -56,7 +56,7 @@ class Blow:
         weights: w_j, G_inf/G_0 first, shape (m,).
         rates: 1/tau_j [1/s], 0 first, shape (m,).
         viscosity: eta/G_0 [s].
-        level: Level up to which its track is tabulated.
+        level: Level, whole or half, up to which its track is tabulated.
         power: p of the first phase. With p a multiple of the tip's exponent the radius is a power of s, which 5 is
             smooth enough for. p = 1 does not resolve branches that relax at once.
         duration: Guess of the time to the turn [s].
@@ -73,7 +73,7 @@ class Blow:
     weights: FloatArray
     rates: FloatArray
     viscosity: float
-    level: int
+    level: float
     power: int
     duration: float
     damping: float
@@ -99,9 +99,10 @@ def blow_of(scene: Scene, flat_punch: FlatPunchSource, number: int = 0) -> Blow:
     weights, rates = np.append(law.long_term_modulus, law.moduli) / modulus, np.append(0.0, 1 / law.times)
     velocity, pull, eta = loading.velocity / units.depth, 2 * units.stiffness / loading.mass, law.viscosity / modulus
     energy = velocity**2 / (2 * pull)  # over 2 E*
-    level, _ = level_of(bed, 2, _MOST_WORK * energy / max(weights[0], _SOFTEST))
     _, depth = level_of(bed, 2, _USUAL_WORK * energy)
     duration, damping = 1.5 * depth / velocity, 0.0
+    softest = max(float(weights @ np.exp(-2 * rates * duration)), _SOFTEST)
+    level, _ = level_of(bed, 2, _MOST_WORK * energy / softest)
     if eta > 0:
         force = velocity / (pull * eta)  # over 2 E*, of an elastic layer where the impulse eta int K d(depth) is M v_0
         level = min(level, level_of(bed, 1, _MOST_FORCE * force)[0])

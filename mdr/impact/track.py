@@ -8,7 +8,8 @@ beyond other breaks where d - d_0 is a power series in sqrt(a - b). Chebyshev se
 images of Lobatto nodes in ln(1 + s/s_0), with a = s under a tip and a = b + s^2 elsewhere. They resolve all lengths of
 layer and profile.
 
-A track ends at one of the radii b + u, u = 2^level. So the track of an impact does not depend on other impacts.
+A track ends at one of the radii b + u, u = 2^level, with whole and half levels. So the track of an impact does not
+depend on other impacts.
 Under a power law f = C r^n lengths count in thicknesses L and depths in C L^n: one track serves all layers of one kind.
 Other profiles count in metres.
 """
@@ -64,9 +65,9 @@ class Bed:
     springs: Springs
     widest: float
 
-    def radius(self, level: int) -> float:
+    def radius(self, level: float) -> float:
         """Contact radius of a level less that of the flat end, that of the widest contact at most."""
-        return min(2.0**level, self.widest)
+        return min(math.exp2(level), self.widest)
 
 
 @lru_cache(maxsize=_CACHED)
@@ -217,21 +218,21 @@ def _interpolants(place: FloatArray, rows: FloatArray) -> tuple[FloatArray, Floa
 
 
 @lru_cache(maxsize=_CACHED)
-def track_of(bed: Bed, level: int, *, finer: bool) -> Track:
+def track_of(bed: Bed, level: float, *, finer: bool) -> Track:
     """K and a of a bed up to the radius of a level, or the same at the finer resolution whose change states errors."""
     return Track(bed.springs.finer if finer else bed.springs, bed.radius(level))
 
 
 @lru_cache(maxsize=_CACHED)
-def _rough(bed: Bed, level: int) -> tuple[float, float]:
+def _rough(bed: Bed, level: float) -> tuple[float, float]:
     """ln(depth) and ln(K) at the radius of a level, to 1e-4."""
     flat, excess = bed.springs.tip.flat, np.array([bed.radius(level)])
     values = bed.springs.coarse.at(flat + excess, excess if flat else None)
     return math.log(max(float(values.g[0]), _SMALLEST)), math.log(max(float(values.K[0]), _SMALLEST))
 
 
-def level_of(bed: Bed, order: int, value: float) -> tuple[int, float]:
-    """Least level whose depth d has d^order K(d) above a value, and about the depth where both are equal.
+def level_of(bed: Bed, order: int, value: float) -> tuple[float, float]:
+    """Least whole or half level whose depth d has d^order K(d) above a value, and about the depth where both are equal.
 
     The level of the widest contact stands for all values beyond it.
     """
@@ -239,7 +240,7 @@ def level_of(bed: Bed, order: int, value: float) -> tuple[int, float]:
     if isinstance(springs.tip.profile, FlatPunch):
         return 0, (value / float(springs.at([springs.tip.flat]).K[0])) ** (1 / order)
 
-    def product(level: int) -> float:
+    def product(level: float) -> float:
         depth, K = _rough(bed, level)
         return order * depth + K
 
@@ -250,4 +251,6 @@ def level_of(bed: Bed, order: int, value: float) -> tuple[int, float]:
         level -= 1
     (depth, K), (lower, lower_K) = _rough(bed, level), _rough(bed, level - 1)
     growth = order + (K - lower_K) / max(depth - lower, 1e-3)
-    return level, math.exp(depth + (target - product(level)) / growth)
+    # A track is a fifth cheaper up to the half level where that is enough.
+    is_half = 2 * target < product(level) + product(level - 1) and bed.radius(level - 0.5) < bed.widest
+    return level - 0.5 * is_half, math.exp(depth + (target - product(level)) / growth)
