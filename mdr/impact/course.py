@@ -114,8 +114,8 @@ def _growths(impacts: Impacts, nodes: int, guesses: list[Growth]) -> list[Growth
         growth.until = None if guess.until is None else np.array(until)
         growth.solve()
         # A body that never turns in a layer that relaxes completely is no reason for a longer track.
-        short = (growth.depth[:, -1] > deepest) & (growth.correction.sum(axis=0) < _TURNS)
         passes = growth.depth[:, -1] > until
+        short = (growth.depth[:, -1] > deepest) & (growth.correction.sum(axis=0) < _TURNS) & ~passes
         if guess.sweeps == 0 and (short.any() or passes.any() > passes.all()):
             raise Divided(short if short.any() else passes, is_short=bool(short.any()))
         if guess.sweeps == 0 and passes.any():

@@ -121,7 +121,7 @@ class Piece(NamedTuple):
     series: FloatArray
 
     def at(self, depth: FloatArray) -> FloatArray:
-        """K, dK/d(depth) and a at depths of any shape, shape (3, ..); beyond the end those of the end."""
+        """K, dK/d(depth) and a at depths of any shape, shape (3, ..); beyond the end K goes on as a straight line."""
         rise = np.minimum(np.maximum(depth - self.start, 1e-300), self.end - self.start)
         z = rise ** (1 / self.power)
         place = np.log1p(z / self.scale)
@@ -134,7 +134,9 @@ class Piece(NamedTuple):
         by_z = slope / (self.scale + z)
         if self.is_tip:
             K, by_z, a = z * K, K + z * by_z, np.where(depth > self.start, z * a, 0.0)
-        return np.stack([K, by_z * z / (self.power * rise), a])
+        slope = by_z * z / (self.power * rise)
+        # A body that relaxing springs of constant stiffness never turn would not show how far it passes the end.
+        return np.stack([K + slope * np.maximum(depth - self.end, 0.0), slope, a])
 
 
 class Track:

@@ -23,6 +23,7 @@ from contact import (
     Sphere,
     Spheroconical,
     StandardSolid,
+    Tabulated,
     TruncatedCone,
     TruncatedParaboloid,
 )
@@ -311,3 +312,17 @@ def test_a_punch_on_a_maxwell_layer_rebounds_as_a_damped_oscillator(time):
     )
     assert found.contact_time == pytest.approx(np.pi / frequency, rel=stated["contact_time"], abs=0.0)
     assert stated["coefficient_of_restitution"] < 1e-8
+
+
+@pytest.mark.parametrize(("velocity", "times"), [(0.2, [1e-4]), (0.15, np.geomspace(1e-9, 1e-2, 15))])
+def test_a_table_on_a_layer_that_relaxes_completely_rebounds_as_the_paraboloid_it_lists(velocity, times):
+    """Tables were refused, as coming to rest or pressed in beyond their rim, because their first pieces alone never turn a body."""
+    layer = Layer(thickness=5e-4, youngs_modulus=6e10, poissons_ratio=0.5, support="unbonded")
+    moduli = np.full(len(times), 2e10 / len(times))
+    model = PronySeries(long_term_shear_modulus=0.0, shear_moduli=moduli, relaxation_times=times)
+    radii = np.linspace(0.0, 2e-3, 15)
+    table, paraboloid = (
+        history(Scene(layer=layer, indenter=tip, loading=Impact(mass=3.0, velocity=velocity), effects=(model,)))
+        for tip in (Tabulated(radii=radii, heights=radii**2 / 0.046), Paraboloid(radius_of_curvature=0.023))
+    )
+    assert table.coefficient_of_restitution == pytest.approx(paraboloid.coefficient_of_restitution, rel=1e-5, abs=0.0)
