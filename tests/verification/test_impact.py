@@ -316,7 +316,7 @@ def test_a_punch_on_a_maxwell_layer_rebounds_as_a_damped_oscillator(time):
 
 @pytest.mark.parametrize(("velocity", "times"), [(0.2, [1e-4]), (0.15, np.geomspace(1e-9, 1e-2, 15))])
 def test_a_table_on_a_layer_that_relaxes_completely_rebounds_as_the_paraboloid_it_lists(velocity, times):
-    """Tables were refused as coming to rest, or as pressed in beyond their rim: their first piece alone turns no body."""
+    """Tables were refused as coming to rest, or as too narrow: their first piece alone does not turn the body."""
     layer = Layer(thickness=5e-4, youngs_modulus=6e10, poissons_ratio=0.5, support="unbonded")
     moduli = np.full(len(times), 2e10 / len(times))
     model = PronySeries(long_term_shear_modulus=0.0, shear_moduli=moduli, relaxation_times=times)
