@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -29,12 +29,30 @@ from mdr.equilibria import solve_elastic
 from mdr.many_layers import equilibria_on_layers, takes_part
 from mdr.own_units import OwnUnits, is_power_law, own_units
 
-if TYPE_CHECKING:
-    from mdr.impact.solver import ImpactResults
-
 Progress: TypeAlias = Callable[[int, int], None]
 
 _PRESCRIBED = (ContactRadii, IndentationDepths, NormalForces)
+
+
+@dataclass(frozen=True)
+class ImpactResults:
+    """Outcome of many impacts, each array of shape (n,).
+
+    Attributes:
+        coefficient_of_restitution: e [-].
+        contact_time: Duration of the contact [s].
+        peak_force: max F_N [N].
+        peak_depth: max delta [m].
+        peak_contact_radius: max a [m].
+        relative_error: Relative errors of these five, in this order, shape (5, n).
+    """
+
+    coefficient_of_restitution: FloatArray
+    contact_time: FloatArray
+    peak_force: FloatArray
+    peak_depth: FloatArray
+    peak_contact_radius: FloatArray
+    relative_error: FloatArray
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -63,9 +81,17 @@ def impacts(
     progress: Progress | None = None,
 ) -> ImpactResults:
     """Restitution, contact time and peaks of many impacts."""
-    from mdr.impact.solver import impact_batch  # noqa: PLC0415  # loaded only when asked for
+    from mdr.impact.solver import impact_groups  # noqa: PLC0415  # loaded only when asked for
 
-    return impact_batch(scenes, flat_punch, accuracy=accuracy, progress=progress)
+    found, done = np.full((10, len(scenes)), np.nan), 0
+    for members, solve in impact_groups(scenes, flat_punch, accuracy):
+        found[:, members] = solve(members)
+        done += len(members)
+        if progress is not None:
+            progress(done, len(scenes))
+    _refuse_unanswered(scenes, found, found[3])
+    time, force, depth, radius = found[1:5]
+    return ImpactResults(found[0], time, force, depth, radius, relative_error=found[5:])
 
 
 @one_thread
@@ -89,12 +115,12 @@ def equilibria(scenes: Sequence[Scene], flat_punch: FlatPunchSource, *, progress
         done += len(members)
         if progress is not None:
             progress(done, len(scenes))
-    _refuse_unanswered(scenes, states)
+    _refuse_unanswered(scenes, states, states[1])
     radius, depth, force, stiffness = states
     return Equilibria(contact_radius=radius, indentation_depth=depth, normal_force=force, contact_stiffness=stiffness)
 
 
-def _refuse_unanswered(scenes: Sequence[Scene], states: FloatArray) -> None:
+def _refuse_unanswered(scenes: Sequence[Scene], states: FloatArray, depths: FloatArray) -> None:
     """Refuse answers that are not finite, and depths too large for small strains.
 
     Raises:
@@ -104,7 +130,7 @@ def _refuse_unanswered(scenes: Sequence[Scene], states: FloatArray) -> None:
     unknown = np.flatnonzero(~np.isfinite(states).all(axis=0))
     if unknown.size:
         raise NotConvergedError(f"scenes[{unknown[0]}]: no finite answer, nor of {unknown.size - 1} others")
-    for number, (scene, depth) in enumerate(zip(scenes, states[1].tolist(), strict=True)):
+    for number, (scene, depth) in enumerate(zip(scenes, depths.tolist(), strict=True)):
         try:
             refuse_deep(scene, depth)
         except UnsupportedSceneError as error:

@@ -5,20 +5,17 @@ Quasi-static: waves in the layer are neglected.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
-from itertools import groupby
-from typing import TypeAlias
+from collections import defaultdict
+from collections.abc import Callable, Hashable, Mapping, Sequence
 
 import numpy as np
 
 from bem.flat_punch import FlatPunchSource
 from contact import FlatPunch, ImpactHistory, InvalidInput, Scene, StageLog
-from contact.answer.small_strains import refuse_deep
 from contact.answer.solution import Setting
 from contact.records.validation import FloatArray
 from mdr.equilibria import is_simple, refuse_inadmissible, springs_on
-from mdr.impact.blows import OUTCOMES, blow_of, solved
+from mdr.impact.blows import blow_of, solved
 from mdr.impact.history import history
 from mdr.method import DEFAULT_ACCURACY
 from mdr.radius_search import RadiusSearch
@@ -29,29 +26,6 @@ _LEAST_ACCURACY, _BEST_ACCURACY = 1e-4, 1e-13
 CHUNK = 64
 # Contacts of a motion at which pressures are looked at, up to its largest.
 _CONTACTS = 6
-
-Progress: TypeAlias = Callable[[int, int], None]
-
-
-@dataclass(frozen=True, kw_only=True)
-class ImpactResults:
-    """Outcome of many impacts, each array of shape (n,).
-
-    Attributes:
-        coefficient_of_restitution: [-].
-        contact_time: [s].
-        peak_force: [N].
-        peak_depth: [m].
-        peak_contact_radius: [m].
-        relative_error: Of these five, in this order, shape (5, n).
-    """
-
-    coefficient_of_restitution: FloatArray
-    contact_time: FloatArray
-    peak_force: FloatArray
-    peak_depth: FloatArray
-    peak_contact_radius: FloatArray
-    relative_error: FloatArray
 
 
 def solve_impact(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[str, Setting]) -> ImpactHistory:
@@ -67,51 +41,42 @@ def solve_impact(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[st
         InvalidInput: If the contact exceeds the radius of the indenter.
         UnsupportedSceneError: If it would touch outside its largest circle of contact, or pull inside.
     """
-    log, known = StageLog(), {"accuracy": DEFAULT_ACCURACY, **settings}
-    accuracy = _checked(float(known["accuracy"] or DEFAULT_ACCURACY))
+    log, settings = StageLog(), {"accuracy": DEFAULT_ACCURACY, **settings}
+    accuracy = _checked(float(settings["accuracy"] or DEFAULT_ACCURACY))
     with log.stage("equivalent_system"):
         blow = blow_of(scene, flat_punch)
     with log.stage("impact"):
-        outcome = solved([blow], accuracy)[0]
-    _refuse_inadmissible(scene, flat_punch, outcome.in_si(blow)[4])
-    return history(blow, outcome, log, known)
+        answer = solved([blow], accuracy)[0]
+    _refuse_inadmissible(scene, flat_punch, answer.in_si(blow)[4])
+    return history(blow, answer, log, settings)
 
 
-def impact_batch(
-    scenes: Sequence[Scene],
-    flat_punch: FlatPunchSource,
-    *,
-    accuracy: float = DEFAULT_ACCURACY,
-    progress: Progress | None = None,
-) -> ImpactResults:
-    """Many impacts, those with one kind of tip and the same number of relaxation times together.
+def impact_groups(
+    scenes: Sequence[Scene], flat_punch: FlatPunchSource, accuracy: float
+) -> list[tuple[list[int], Callable[[list[int]], FloatArray]]]:
+    """Numbers of impacts that are solved together, and the function that solves them.
 
-    Args:
-        scenes: Scenes whose loading is an impact, in any order.
-        flat_punch: Where the flat-punch data come from.
-        accuracy: Wanted relative accuracy of restitution and peaks.
-        progress: Told how many of how many impacts are done.
-
-    Returns:
-        Arrays in the order of the scenes. Each entry is what the scene alone would give, to the last digit.
+    It returns the five outcomes in SI units and their relative errors, shape (10, n). Each is what the scene alone
+    would give, to the last digit.
     """
-    accuracy = _checked(accuracy)
-    blows = [blow_of(scene, flat_punch) for scene in scenes]
-    values, errors, done = np.empty((5, len(blows))), np.empty((5, len(blows))), 0
-    kinds = [blow.kind for blow in blows]
-    for _, group in groupby(sorted(range(len(blows)), key=kinds.__getitem__), key=kinds.__getitem__):
-        members = list(group)
-        for start in range(0, len(members), CHUNK):
-            chunk = members[start : start + CHUNK]
-            found = solved([blows[i] for i in chunk], accuracy, chunk)
-            for i, one in zip(chunk, found, strict=True):
-                values[:, i], errors[:, i] = one.in_si(blows[i]), one.attempt.error[:, one.place]
-                refuse_deep(scenes[i], values[3, i])
-                _refuse_inadmissible(scenes[i], flat_punch, values[4, i])
-            done += len(chunk)
-            if progress is not None:
-                progress(done, len(blows))
-    return ImpactResults(**dict(zip(OUTCOMES, values, strict=True)), relative_error=errors)
+    blows, kinds = (
+        [blow_of(scene, flat_punch, i) for i, scene in enumerate(scenes)],
+        defaultdict[Hashable, list[int]](list),
+    )
+    for blow in sorted(blows, key=lambda blow: blow.level):  # so that few tracks are looked up at once
+        kinds[blow.power, blow.rates.size].append(blow.number)
+
+    def solve(chunk: list[int]) -> FloatArray:
+        members = [blows[i] for i in chunk]
+        answers = solved(members, _checked(accuracy))
+        values = np.stack(
+            [np.append(answer.in_si(blow), answer.errors) for blow, answer in zip(members, answers, strict=True)]
+        )
+        for blow, radius in zip(members, values[:, 4], strict=True):
+            _refuse_inadmissible(blow.scene, flat_punch, radius)
+        return values.T
+
+    return [(group[i : i + CHUNK], solve) for group in kinds.values() for i in range(0, len(group), CHUNK)]
 
 
 def _checked(accuracy: float) -> float:

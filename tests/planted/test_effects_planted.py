@@ -1,5 +1,7 @@
 """The checks of the effects are seen to fail: each plants one error and must see it refused."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 
@@ -9,10 +11,10 @@ from contact import Adhesion, Detachment, Layer, Paraboloid, Scene
 from docs.gallery import _flat_punch_restitution as flat_punch_restitution
 from mdr import Mdr
 from mdr.adhesive import Adhesive
+from mdr.batches import impacts
 from mdr.impact import history as impact_history
 from mdr.impact import solver as impact_solver
-from mdr.impact.motion import Phase, Shrinkage
-from mdr.impact.solver import impact_batch
+from mdr.impact.motion import Shrinkage
 from tests.mdr.viscoelastic_scenes import figure_12, kelvin_voigt_sphere
 from tests.planted.guards import Claims
 from tests.planted.planting import swap
@@ -54,20 +56,21 @@ def test_stability_turned_upside_down(monkeypatch):
 
 
 def test_a_factor_two_in_the_force(monkeypatch):
-    right = Phase.newton
-    monkeypatch.setattr(Phase, "newton", lambda phase, *terms: right(phase, *(2.0 * one for one in terms)))
+    def doubled(together):
+        def wrong(*arguments, **options):
+            impacts = together(*arguments, **options)
+            return dataclasses.replace(impacts, pull=2.0 * impacts.pull)
+
+        return wrong
+
+    swap("mdr.impact.blows:_together", doubled)(monkeypatch)
     assert refused("sphere_impact", "restitution on the half-space", "half-space")
 
 
 def test_springs_without_memory(monkeypatch):
     """Forget when each spring was touched."""
-    right = Shrinkage._at_edge
-
-    def forgetful(phase):
-        stiffness, forgotten, later = right(phase)
-        return stiffness, 0.0 * forgotten, 0.0 * later
-
-    monkeypatch.setattr(Shrinkage, "_at_edge", forgetful)
+    right = Shrinkage.fading_since
+    monkeypatch.setattr(Shrinkage, "fading_since", lambda phase, share: 0.0 * right(phase, share))
     assert refused("sphere_impact", "restitution on layers", "bonded h=2 mm")
 
 
@@ -88,5 +91,5 @@ def test_a_batch_that_mixes_up_its_lanes(monkeypatch):
     right = impact_solver.solved
     monkeypatch.setattr(impact_solver, "solved", lambda *groups: right(*groups)[::-1])
     scenes = [figure_12(1e-3), figure_12(2e-3), kelvin_voigt_sphere(0.1)]
-    found = impact_batch(scenes, impact.PUNCH).coefficient_of_restitution
+    found = impacts(scenes, impact.PUNCH).coefficient_of_restitution
     assert found[0] != pytest.approx(0.64341, abs=1e-3)

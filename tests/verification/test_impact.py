@@ -23,12 +23,14 @@ from contact import (
     Sphere,
     Spheroconical,
     StandardSolid,
+    Tabulated,
     TruncatedCone,
     TruncatedParaboloid,
 )
 from docs.gallery._flat_punch_restitution import kelvin_voigt_restitution
 from mdr import Mdr
-from mdr.impact.solver import impact_batch, solve_impact
+from mdr.batches import impacts
+from mdr.impact.solver import solve_impact
 from tests.bed import bed_of
 from tests.mdr.impact_explicit import explicit_impact
 from tests.mdr.viscoelastic_scenes import (
@@ -104,7 +106,7 @@ def test_a_layer_that_softens_a_thousandfold_on_the_way_in():
         assert abs(errors[1]) < 2e-2
         assert abs(2.0 * errors[1] - errors[0]) < 2e-3
     stiffer = scene.replace(effects=(solid.replace(viscosity=0.1),))
-    batch = impact_batch([stiffer, scene], PUNCH)
+    batch = impacts([stiffer, scene], PUNCH)
     alone = [history(stiffer).coefficient_of_restitution, fine.coefficient_of_restitution]
     assert batch.coefficient_of_restitution.tolist() == alone
 
@@ -180,9 +182,9 @@ def test_batches_are_what_single_impacts_are():
     ]
     scenes += [kelvin_voigt_sphere(0.1), kelvin_voigt_punch(0.2), kelvin_voigt_punch(2.0), figure_12(1e-3)]
     seen = []
-    together = impact_batch(scenes, PUNCH, progress=lambda done, total: seen.append((done, total)))
+    together = impacts(scenes, PUNCH, progress=lambda done, total: seen.append((done, total)))
     for i, scene in enumerate(scenes):
-        alone = impact_batch([scene], PUNCH)
+        alone = impacts([scene], PUNCH)
         full = history(scene)
         for name in ("coefficient_of_restitution", "contact_time", "peak_force", "peak_depth", "peak_contact_radius"):
             assert getattr(together, name)[i] == pytest.approx(getattr(alone, name)[0], rel=1e-12, abs=0.0)
@@ -279,7 +281,7 @@ BLUNT = TruncatedCone(flat_radius=2e-4, slope=0.1)
 
 
 @pytest.mark.first(2)
-@pytest.mark.parametrize("time", [1e-8, 1e-4])
+@pytest.mark.parametrize("time", [1e-8, 3e-5])
 @pytest.mark.parametrize("tip", [FlatPunch(radius=1e-3), Paraboloid(radius_of_curvature=5e-3), Cone(slope=0.1), BLUNT])
 def test_an_indenter_that_never_turns_is_refused_at_once_and_quietly(tip, time):
     """A layer that relaxes completely took 5 to 10 s, with hundreds of warnings from numpy."""
@@ -293,3 +295,34 @@ def test_an_indenter_that_never_turns_is_refused_at_once_and_quietly(tip, time):
         with pytest.raises(NotConvergedError, match="comes to rest"):
             history(scene)
     assert process_time() - start < 2.0
+
+
+@pytest.mark.parametrize("time", [1e-4, 1e-3])
+def test_a_punch_on_a_maxwell_layer_rebounds_as_a_damped_oscillator(time):
+    """Stress s'' + s'/tau + k/M s = 0 from s = 0 until s = 0 again; the punch was refused where e is 4e-4."""
+    layer, punch, mass = incompressible(1e-3, 1e6), FlatPunch(radius=1e-3), 1e-3
+    model = PronySeries(long_term_shear_modulus=0.0, shear_moduli=[1e6], relaxation_times=[time])
+    found = history(Scene(layer=layer, indenter=punch, loading=Impact(mass=mass, velocity=0.01), effects=(model,)))
+    damping = 0.5 / time
+    frequency = np.sqrt(float(bed_of(layer, punch, PUNCH).contact_stiffness(1e-3)) / mass - damping**2)
+    restitution = np.exp(-np.pi * damping / frequency)
+    stated = {name: float(np.max(error)) for name, error in found.error_estimate.items()}
+    assert found.coefficient_of_restitution == pytest.approx(
+        restitution, rel=stated["coefficient_of_restitution"], abs=0.0
+    )
+    assert found.contact_time == pytest.approx(np.pi / frequency, rel=stated["contact_time"], abs=0.0)
+    assert stated["coefficient_of_restitution"] < 1e-8
+
+
+@pytest.mark.parametrize(("velocity", "times"), [(0.2, [1e-4]), (0.15, np.geomspace(1e-9, 1e-2, 15))])
+def test_a_table_on_a_layer_that_relaxes_completely_rebounds_as_the_paraboloid_it_lists(velocity, times):
+    """Tables were refused as coming to rest, or as too narrow: their first piece alone does not turn the body."""
+    layer = Layer(thickness=5e-4, youngs_modulus=6e10, poissons_ratio=0.5, support="unbonded")
+    moduli = np.full(len(times), 2e10 / len(times))
+    model = PronySeries(long_term_shear_modulus=0.0, shear_moduli=moduli, relaxation_times=times)
+    radii = np.linspace(0.0, 2e-3, 15)
+    table, paraboloid = (
+        history(Scene(layer=layer, indenter=tip, loading=Impact(mass=3.0, velocity=velocity), effects=(model,)))
+        for tip in (Tabulated(radii=radii, heights=radii**2 / 0.046), Paraboloid(radius_of_curvature=0.023))
+    )
+    assert table.coefficient_of_restitution == pytest.approx(paraboloid.coefficient_of_restitution, rel=1e-5, abs=0.0)

@@ -10,14 +10,14 @@ import pytest
 from bem.flat_punch import IntegralEquation
 from cases.declare.quantities import IMPACT_NUMBERS
 from contact import Impact, Layer, PowerLaw, Scene
-from mdr.impact.solver import impact_batch
+from mdr.batches import impacts
 from tests.drawn_scenes import scene_of
 
 PUNCH = IntegralEquation()
 
 
 def outcome(scene, accuracy):
-    found = impact_batch([scene], PUNCH, accuracy=accuracy)
+    found = impacts([scene], PUNCH, accuracy=accuracy)
     return np.array([getattr(found, name)[0] for name in IMPACT_NUMBERS]), found.relative_error[:, 0]
 
 
@@ -42,7 +42,7 @@ def test_contact_times_of_tips_whose_power_is_no_integer(power, accuracy):
     half_space = Layer.half_space(youngs_modulus=1e6, poissons_ratio=0.5)
     tip = PowerLaw(exponent=power, reference_radius=1e-3, reference_height=1e-4)
     scene = Scene(layer=half_space, indenter=tip, loading=Impact(mass=1e-3, velocity=1.0))
-    found = impact_batch([scene], PUNCH, accuracy=accuracy)
+    found = impacts([scene], PUNCH, accuracy=accuracy)
     share = 1.0 / (2.0 + 1.0 / power)
     exact = 2.0 * math.sqrt(math.pi) * math.gamma(1.0 + share) / math.gamma(0.5 + share) * found.peak_depth[0]
     error = abs(found.contact_time[0] / exact - 1.0)
