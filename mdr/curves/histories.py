@@ -111,7 +111,7 @@ def depth_of_force(curve: ForceCurve, solid: Relaxation, time: FloatArray, force
     order = np.argsort(solid.times)
     modes = SpringLaw.of(replace(solid, moduli=solid.moduli[order], times=solid.times[order])).modes
     elastic_force = force * (solid.viscosity == 0.0)
-    for rate, growth in zip(modes.rates.tolist(), modes.of_force[:, 0].tolist(), strict=True):
+    for rate, growth in zip(modes.rates.tolist(), modes.of_force.tolist(), strict=True):
         elastic_force = elastic_force + growth / rate * (force - convolved(time, force, 1 / rate))
     return curve.depth_of(elastic_force / (3 * solid.instantaneous_modulus))
 
