@@ -1,6 +1,6 @@
-"""Scenes that are one problem in their own units: a power law f = C r^n on layers that differ in scale.
+"""Dimensionless problems of power laws f = C r^n, which layers of equal ratios share.
 
-With lengths in the thickness h, depths in C h^n and forces in E* C h^(n+1), every layer of the same ratios is the same.
+Lengths are in the thickness h, depths in C h^n, forces in E* C h^(n+1).
 """
 
 from __future__ import annotations
@@ -18,10 +18,10 @@ from mdr.profiles import PowerTip, tip_of
 
 @dataclass(frozen=True)
 class OwnUnits:
-    """A problem in its own units.
+    """A dimensionless problem and its units.
 
     Attributes:
-        layer: The layer, of thickness 1 and E* = 1.
+        layer: The layer with thickness 1 and E* = 1.
         indenter: f = r^n.
         length: Unit of length [m].
         depth: Unit of depth [m].
@@ -43,7 +43,7 @@ def is_power_law(indenter: Profile) -> bool:
 
 
 def own_units(layer: ElasticLayer, indenter: Profile) -> OwnUnits:
-    """A power law's problem in its own units.
+    """The dimensionless problem of a power law.
 
     Args:
         layer: Layer, stack or half-space.
