@@ -146,7 +146,7 @@ class Branch:
         return np.asarray(np.fmin.reduce(self.solutions(control, target), axis=0, initial=np.nan))
 
     def widest(self, control: int, target: float) -> float:
-        """Largest radius [m] of a stable equilibrium with this q, or of the whole branch where there is none."""
+        """Largest radius [m] of a stable equilibrium with q = target, or of the whole branch if there is none."""
         y = self.solutions(control, np.array([target]))
         widest = np.fmax.reduce(y, axis=0, initial=np.nan)
         return float(self.radius(np.where(np.isnan(widest), self.end, widest))[0])
@@ -233,13 +233,16 @@ class Branch:
 
     def _inverted(self, control: int, target: FloatArray, low: float, high: float) -> FloatArray:
         """y with q = target on a part [low, high] where q increases, by Newton's method within a bracket."""
-        left, right = np.full(target.shape, low), np.full(target.shape, high)
-        y = 0.5 * (left + right)
+        low_end, high_end = np.full(target.shape, low), np.full(target.shape, high)
+        y = 0.5 * (low_end + high_end)
         for _ in range(MOST_STEPS):
             excess, slope = self.functions(y)[control] - target, self.functions.slope(y)[control]
-            left, right = np.where(excess <= 0.0, y, left), np.where(excess >= 0.0, y, right)
+            low_end, high_end = np.where(excess <= 0.0, y, low_end), np.where(excess >= 0.0, y, high_end)
             step = y - excess / np.where(slope > 0.0, slope, np.inf)
-            before, y = y, np.where((step >= left) & (step <= right) & (slope > 0.0), step, 0.5 * (left + right))
+            before, y = (
+                y,
+                np.where((step >= low_end) & (step <= high_end) & (slope > 0.0), step, 0.5 * (low_end + high_end)),
+            )
             if np.all(np.abs(y - before) <= 1e-13 * high):
                 break
         return np.asarray(y)

@@ -274,8 +274,14 @@ def _errors(solver: DirectSolver, contacts: list[Contact], finer: DirectSolver) 
         a = np.array([contact.state[0] for contact in contacts])
         rounded = EPS * a / np.maximum(a - solver.scene.indenter.flat_radius, EPS * a)
     # Depth and force are stationary in the radius.
-    more = miss**2, miss**2, _STIFFENING * radius, radius + rounded + _FIELD_ROUNDING, rounded * 0 + _FIELD_ROUNDING
+    further_errors = (
+        miss**2,
+        miss**2,
+        _STIFFENING * radius,
+        radius + rounded + _FIELD_ROUNDING,
+        rounded * 0 + _FIELD_ROUNDING,
+    )
     errors = {"contact_radius": radius}
-    for name, change, extra in zip(_COMPARED, np.transpose(changes), more, strict=True):
+    for name, change, extra in zip(_COMPARED, np.transpose(changes), further_errors, strict=True):
         errors[name] = stated_error(change, 0.0, floor=floor + extra)
     return errors | {ContactPath.ARRAYS[solver.prescribed]: 0 * floor}

@@ -85,7 +85,7 @@ class FlatPunchTable:
     coarser: FlatPunchTable | None = None
 
     def __post_init__(self) -> None:
-        """Refuse what is not a table."""
+        """Refuse arrays whose shapes, order or values are not those of a table."""
         shape = self.ratios.size, self.radii.size
         steps = np.diff(self.ratios, prepend=0.0), np.diff(self.radii), 1.0 - self.radii, self.radii[:1] + 1e-300
         if shape[0] < BEYOND or not all(np.all(values > 0.0) for values in steps):
@@ -235,6 +235,7 @@ class FftTable(Record):
 
 @lru_cache(maxsize=64)
 def _table(settings: FftTable, layer: Layer, rung: float) -> FlatPunchTable:
+    """The table up to the ratio `rung`, with its coarser table, cached."""
     cells, count, radii = settings.cells, settings.ratios, settings.radii
     coarser = _made(layer, rung, cells // 2, (count + 1) // 2, radii // 2)
     return replace(_made(layer, rung, cells, count, radii), coarser=coarser)

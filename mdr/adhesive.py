@@ -140,6 +140,7 @@ class Adhesive:
         return branch
 
     def _first_radius(self) -> float:
+        """First trial radius [m], from `balance_radius`, or from the thickness of a thin layer."""
         flat, thickness = self.scene.indenter.flat_radius, self.scene.layer.surface.thickness
         first = flat + self.longer * FIRST_WAY * (balance_radius(self.scene) - flat)
         is_guided = first <= self.springs.largest_ratio / 6 * thickness
@@ -227,6 +228,7 @@ def _prescribed(contacts: Adhesive) -> Triple:
 
 
 def _refuse_missing(y: FloatArray, values: FloatArray, branch: Branch, quantity: int) -> None:
+    """Refuse prescribed depths [m] or forces [N] without a stable state, whose y is NaN."""
     missing = np.flatnonzero(np.isnan(y))
     if not missing.size:
         return

@@ -112,6 +112,7 @@ def _refuse_unanswered(scenes: Sequence[Scene], states: FloatArray) -> None:
 
 
 def _refuse(number: int, scene: Scene) -> None:
+    """Refuse scenes with effects, or without one prescribed radius, depth or force."""
     if scene.effects:
         raise InvalidInput(f"scenes[{number}].effects: a batch of equilibria is elastic; leave effects out")
     if not isinstance(scene.loading, _PRESCRIBED) or scene.loading.values.size != 1:

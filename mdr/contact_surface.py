@@ -97,8 +97,8 @@ class Surface:
         if self.kernel.tail and self.edge != 0:
             self.corner = -self.kernel.tail[0] / self.springs.unit * self.edge / np.pi
             m = 2.0 * np.arange(1, radius.count)
-            known = 4 * (2 * m + 1) / ((m - 1) * m * (m + 1) * (m + 2))
-            self._smooth = self._series - self.corner * self.a * np.concatenate([[2 * np.log(2) - 1], known])
+            coefficients = 4 * (2 * m + 1) / ((m - 1) * m * (m + 1) * (m + 2))
+            self._smooth = self._series - self.corner * self.a * np.concatenate([[2 * np.log(2) - 1], coefficients])
 
     def psi(self, t: FloatArray) -> FloatArray:
         """psi [m] at t <= a [m]."""
@@ -112,8 +112,10 @@ class Surface:
     @property
     def edge_of_series(self) -> float:
         """phi(a) [m] of the truncated series; `edge` minus this is the truncation error."""
-        known = self.depth - float(self.tip.transform(np.array([self.a]))[0]) + 2 * np.log(2) * self.a * self.corner
-        return float(known + self._smooth.sum())
+        without_series = (
+            self.depth - float(self.tip.transform(np.array([self.a]))[0]) + 2 * np.log(2) * self.a * self.corner
+        )
+        return float(without_series + self._smooth.sum())
 
     def smooth_slope(self, t: FloatArray) -> FloatArray:
         """psi' [-] at t [m] without the logarithm at the edge, see `corner`."""
@@ -179,6 +181,7 @@ class Surface:
         return np.asarray(self.springs.modulus / np.pi * p)
 
     def _refuse_infinite(self, radius: FloatArray, within: FloatArray) -> None:
+        """Refuse radii [m] at which the pressure is infinite, of those where `within` is true."""
         profile = self.tip.profile
         singular = [0.0] if float(profile.slope_at(0.0)) > 0 else []
         singular += [b for b in profile.kinks if b < self.a]
@@ -209,8 +212,8 @@ class Surface:
             # f' may be singular at the axis, the arctan has a root near the edge.
             is_smooth = low > 0 and a - high > high - low
             v, w = (gauss if is_smooth else graded)(20 + self.sizes.extra)
-            s, beside = low + (high - low) * v, a - high + (high - low) * v[::-1]  # v is symmetric: 1 - v
-            angle = np.arctan(np.sqrt(beside * (a + s) / ((far - a) * (far + a))))
+            s, to_edge = low + (high - low) * v, a - high + (high - low) * v[::-1]  # v is symmetric: 1 - v
+            angle = np.arctan(np.sqrt(to_edge * (a + s) / ((far - a) * (far + a))))
             height += angle @ (w * (high - low) * self.tip.slope(s))
         v, w = gauss(2 * self._phi.size + 16 + self.sizes.extra)
         total = self.depth * np.arcsin(a / r) - height

@@ -169,18 +169,19 @@ class Body:
                 here = some[places == place]
                 parts = 1 + here.size * k.size // _WAVES
                 for few in np.array_split(here[np.argsort(z[here], kind="stable")], parts):
-                    (depth, at), (radius, beside) = (np.unique(x[few], return_inverse=True) for x in (z, r))
+                    depth, depth_index = np.unique(z[few], return_inverse=True)
+                    radius, radius_index = np.unique(r[few], return_inverse=True)
                     scaled = depth[:, None] / self.unit
                     material = descent.material(place, scaled)
                     rows = load * self._rows(k, depth[:, None], material, descent.at(place, scaled))
                     shear[few], within_top[few] = (
-                        np.broadcast_to(material.shear_modulus, scaled.shape)[at, 0],
+                        np.broadcast_to(material.shear_modulus, scaled.shape)[depth_index, 0],
                         material.is_top,
                     )
                     if depth.size * radius.size <= 4 * few.size:  # a grid
-                        fields[:, few] = _waves(rows, k, radius)[:, at, beside]
+                        fields[:, few] = _waves(rows, k, radius)[:, depth_index, radius_index]
                     else:
-                        fields[:, few] = _waves(rows, k, r[few], at)
+                        fields[:, few] = _waves(rows, k, r[few], depth_index)
         return fields, shear, within_top
 
     def _rows(self, k: FloatArray, z: FloatArray, material: Material, transfer: Transfer) -> FloatArray:
@@ -209,8 +210,8 @@ class Body:
         n = np.arange(count)
         load = -self.tip.moments(np.array([a]), count, surface.sizes.extra)[0]
         load[0] += surface.depth
-        known = a * (load * np.sqrt(4 * n + 1) * (-1.0) ** n) @ even_bessel(k * a, count)
-        return np.asarray(known + surface.smooth_transform(k))
+        profile_part = a * (load * np.sqrt(4 * n + 1) * (-1.0) ** n) @ even_bessel(k * a, count)
+        return np.asarray(profile_part + surface.smooth_transform(k))
 
 
 def wave_rule(top: float, length: float, longest: float, nodes: int) -> tuple[FloatArray, FloatArray]:
@@ -319,10 +320,11 @@ class Interior:
             "hydrostatic_pressure": (slice(6, 7), stress),
             "pressure_gradient": (slice(7, 9), max(steepest, stress / length)),
         }
-        known = self.known.density_error
-        return {name: float(errors[rows].max()) / (scale or np.inf) + known for name, (rows, scale) in kinds.items()}
+        shared = self.known.density_error
+        return {name: float(errors[rows].max()) / (scale or np.inf) + shared for name, (rows, scale) in kinds.items()}
 
     def _refuse_distant(self, radius: FloatArray, depth: FloatArray) -> None:
+        """Refuse points [m] so far away that stresses are below rounding."""
         layer, a = self.layer, self.known.radius
         farthest = _FARTHEST * a if layer.is_half_space else _FARTHEST_OF_WAVES * (a + layer.thickness)
         distant = np.flatnonzero(np.maximum(radius, depth) > farthest)

@@ -92,5 +92,5 @@ def _on_half_space(springs: Springs, quantity: Quantity, y: FloatArray) -> Float
     search = RadiusSearch(replace(springs, kernel=ContactKernel(None), thickness=1.0), may_fall=False)
     with np.errstate(all="ignore"):
         table = search.logarithm(search.springs, quantity, _TABLE)
-    known = np.isfinite(table)
-    return search.place(np.interp(y, np.maximum.accumulate(table[known]), _TABLE[known]))
+    is_finite = np.isfinite(table)
+    return search.place(np.interp(y, np.maximum.accumulate(table[is_finite]), _TABLE[is_finite]))

@@ -283,7 +283,7 @@ class PiecewiseTip(Tip):
         return np.where(r >= self._knots[0], value + d * (first + d * second), 0.0)
 
     def _angle(self, x: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-        """x, the knots b, sqrt(x^2 - b^2) and arccos(b/x); zero where x < b."""
+        """x, knots b, sqrt(x^2 - b^2) and arccos(b/x), the last two zero where x < b; the last axis is b."""
         wide, b = np.asarray(x, dtype=np.float64)[..., None], self._knots
         far = np.sqrt(np.maximum((wide - b) * (wide + b), 0))
         return wide, b, far, np.arctan2(far, np.where(b == 0, 1e-300, b)) * (wide > b)

@@ -166,13 +166,13 @@ class RadiusSearch:
             logarithm: ln g at z by the coarse springs, shape (n,).
         """
         radius = self.place(z)
-        apart = radius > self.springs.tip.flat * (1 + 1e-12)
-        apart[1:] &= np.diff(radius) > 1e-9 * radius[1:]  # leaves out radii that differ by rounding, near the end
-        if (np.diff(logarithm[apart]) > 0).all():
+        distinct = radius > self.springs.tip.flat * (1 + 1e-12)
+        distinct[1:] &= np.diff(radius) > 1e-9 * radius[1:]  # leaves out radii that differ by rounding, near the end
+        if (np.diff(logarithm[distinct]) > 0).all():
             return None
-        exact = self.logarithm(self.springs, "depth", z[apart])
-        falls = np.flatnonzero(np.diff(exact) <= 0)
-        return float(radius[apart][falls[0]]) if falls.size else None
+        exact = self.logarithm(self.springs, "depth", z[distinct])
+        decreases = np.flatnonzero(np.diff(exact) <= 0)
+        return float(radius[distinct][decreases[0]]) if decreases.size else None
 
     def _table(self, quantity: Quantity, least: float, most: float) -> tuple[FloatArray, FloatArray]:
         """z and ln(depth or force), which covers least to most, by the coarse springs, each of shape (n,)."""
@@ -218,16 +218,16 @@ class RadiusSearch:
         reached = float(getattr(self.springs.states(radius), quantity)[0])
         if np.log(reached) >= most:
             return
-        wanted, profile = float(np.exp(most)), self.springs.tip.profile
+        target, profile = float(np.exp(most)), self.springs.tip.profile
         if radius[0] < profile.max_radius * (1 - 1e-9):
             raise InvalidInput(
-                f"loading.values = {wanted:g}: only {reached:g} is reached at a/h = {self.springs.largest_ratio:g}, "
+                f"loading.values = {target:g}: only {reached:g} is reached at a/h = {self.springs.largest_ratio:g}, "
                 "up to which contacts are answered; press less"
             )
         if profile.ends_upright:
-            raise InvalidInput(f"loading.values = {wanted:g}: {profile.UPRIGHT_END}; press less")
+            raise InvalidInput(f"loading.values = {target:g}: {profile.UPRIGHT_END}; press less")
         raise InvalidInput(
-            f"loading.values = {wanted:g}: the indenter ends at a radius of {profile.max_radius:g} m, where "
+            f"loading.values = {target:g}: the indenter ends at a radius of {profile.max_radius:g} m, where "
             f"{reached:g} is reached; ask for less or describe the indenter further out"
         )
 
@@ -272,8 +272,8 @@ class RadiusSearch:
 
     def _between(self, quantity: Quantity, y: FloatArray, z: FloatArray, slope: FloatArray) -> FloatArray:
         """Radii [m] with y = ln(depth or force) by one Newton step from z, where it suffices, else by `refined`."""
-        missed = self.logarithm(self.springs, quantity, z) - y
-        radius, far = self._radius(z - missed / slope), np.abs(missed) > _NEAR
+        residual = self.logarithm(self.springs, quantity, z) - y
+        radius, far = self._radius(z - residual / slope), np.abs(residual) > _NEAR
         radius[far] = self.refined(quantity, y[far], z[far], slope[far]) if far.any() else 0.0
         return radius
 
@@ -334,25 +334,25 @@ class RadiusSearch:
             NotConvergedError: If the search does not converge.
         """
 
-        def missed(z: FloatArray, at: BoolArray) -> FloatArray:
+        def residual(z: FloatArray, at: BoolArray) -> FloatArray:
             search = self.among(at)
             return search.logarithm(search.springs, quantity, z) - y[at]
 
-        first = missed(z, np.ones(z.shape, dtype=np.bool_))
+        first = residual(z, np.ones(z.shape, dtype=np.bool_))
         step = -_WIDER * first / np.maximum(slope, 1e-3)
         step = np.where(first < 0, 1, -1) * np.maximum(np.abs(step), EPS * (1 + np.abs(z)))
-        return self._radius(roots(missed, z, first, step))
+        return self._radius(roots(residual, z, first, step))
 
 
 def roots(
-    missed: Callable[[FloatArray, BoolArray], FloatArray], start: FloatArray, first: FloatArray, step: FloatArray
+    function: Callable[[FloatArray, BoolArray], FloatArray], start: FloatArray, first: FloatArray, step: FloatArray
 ) -> FloatArray:
     """Roots x of functions, shape (n,), by secants in brackets (Anderson and Bjorck 1973, BIT 13, 253).
 
     The value at the end of the bracket that stays is reduced, so that the next secant ends beyond the root.
 
     Args:
-        missed: missed(x, mask) returns values at x of the functions that a mask of shape (n,) selects.
+        function: function(x, mask) returns values at x of the functions that a mask of shape (n,) selects.
         start: First ends of the brackets, shape (n,).
         first: Values of the functions at `start`.
         step: Steps towards the roots, which double until the functions change sign.
@@ -361,14 +361,14 @@ def roots(
         NotConvergedError: If a root is not found.
     """
     x1, f1, x2, at = start.copy(), first.copy(), start + step, np.ones(start.shape, dtype=np.bool_)
-    f2, step = missed(x2, at), step.copy()
+    f2, step = function(x2, at), step.copy()
     for _ in range(_MOST_STEPS):
         at = (f1 * f2 > 0) & (np.abs(f2) > _SMALLEST)
         if not at.any():
             break
         x1[at], f1[at], step[at] = x2[at], f2[at], 2 * step[at]
         x2[at] += step[at]
-        f2[at] = missed(x2[at], at)
+        f2[at] = function(x2[at], at)
     else:
         raise NotConvergedError("no contact radius has the load", {"ln(load) missed by": float(np.abs(f2[at]).max())})
     for _ in range(_MOST_STEPS):
@@ -376,7 +376,7 @@ def roots(
         if not at.any():
             return x2
         x = x2[at] - f2[at] * (x2[at] - x1[at]) / (f2[at] - f1[at])
-        f = missed(x, at)
+        f = function(x, at)
         share = 1 - f / f2[at]
         crosses = f * f2[at] <= 0
         x1[at] = np.where(crosses, x2[at], x1[at])

@@ -114,6 +114,7 @@ def solve_shape(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[str
 
 
 def _refuse_far(shape: Shape, expansion: Expansion) -> None:
+    """Refuse shapes whose third order may exceed `LARGEST_THIRD`."""
     worst = SAFETY * float(expansion.third[:2].max())
     if worst > LARGEST_THIRD:
         size = float(np.sqrt((expansion.outline**2).sum(axis=1)).max() / abs(expansion.radius).max())
@@ -197,14 +198,14 @@ class Expanded:
         rise = (g[:, 2:] - g[:, :-2]) / width  # g' at the three inner radii
         phi, growth = self._edges(shape, around[:, 1:-1])
         S = 0.5 * modulus * (phi**2).sum(axis=2) / rise
-        more = ((S[:, 2:] - S[:, :1]) / width / rise[:, 1:2])[:, 0]  # dS/ddelta
+        stiffness_change = ((S[:, 2:] - S[:, :1]) / width / rise[:, 1:2])[:, 0]  # dS/ddelta
         outline = -phi[:, 1] / (rise * y1[:, 1:-1])[:, 1:2]
-        curve = (y1[:, 3:4] ** 2 - y1[:, 1:2] ** 2) / width / 2  # of the average of k_0(a(phi)), over E*
-        known = modulus * (outline**2 * (curve + y1[:, 2:3] ** 2 * growth[:, 1] / a[:, None])).sum(axis=1)
-        radius = a + (more - known) / (2 * modulus * y1[:, 2] ** 2)
+        curvature = (y1[:, 3:4] ** 2 - y1[:, 1:2] ** 2) / width / 2  # second order of <k_0(a(phi))> over E*
+        by_outline = modulus * (outline**2 * (curvature + y1[:, 2:3] ** 2 * growth[:, 1] / a[:, None])).sum(axis=1)
+        radius = a + (stiffness_change - by_outline) / (2 * modulus * y1[:, 2] ** 2)
         size = np.sqrt((outline**2).sum(axis=1)) / a
-        force, stiffness = path.normal_force + S[:, 1], path.contact_stiffness + more
-        third = np.array([S[:, 1] * size / force, np.abs(more) * size / stiffness, size**3])
+        force, stiffness = path.normal_force + S[:, 1], path.contact_stiffness + stiffness_change
+        third = np.array([S[:, 1] * size / force, np.abs(stiffness_change) * size / stiffness, size**3])
         return Expansion(radius, force, stiffness, outline, third)
 
     def _edges(self, shape: Raised, radii: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -159,8 +159,8 @@ def largest_radius(scene: Scene, pressing: Pressing) -> float:
     coarse = replace(pressing, cells=min(FIRST_CELLS, pressing.cells))
     while radius < indenter.max_radius:
         trial = AdheringIndenter.up_to(scene, coarse, radius, NODES // 2).branch
-        wanted = trial.strength if values is None else BEYOND * max(float(values.max()), 0.0)
-        if trial.at(quantity, trial.end) > wanted:
+        target = trial.strength if values is None else BEYOND * max(float(values.max()), 0.0)
+        if trial.at(quantity, trial.end) > target:
             return radius
         radius *= GROWTH
     return indenter.max_radius

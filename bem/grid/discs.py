@@ -104,9 +104,9 @@ class Disc:
         inverse = np.linalg.inv(triangle[:n, :n])
         fitted = inverse @ (orthogonal[:, :n].T @ self.quotient(pressure))
         # int_0^1 T_j(2 rho^2 - 1) rho/sqrt(1 - rho^2) drho, and T_j(1).
-        known = [((-1.0) ** j / (1.0 - 4.0 * j**2), 2.0 * float(pressure.sum()) / self.radius)]
-        known += [] if edge is None else [(np.ones(n), edge)]
-        rows, values = np.array([row for row, _ in known]), np.array([value for _, value in known])
+        constraints = [((-1.0) ** j / (1.0 - 4.0 * j**2), 2.0 * float(pressure.sum()) / self.radius)]
+        constraints += [] if edge is None else [(np.ones(n), edge)]
+        rows, values = np.array([row for row, _ in constraints]), np.array([value for _, value in constraints])
         change = inverse @ inverse.T @ rows.T
         return np.asarray(fitted + change @ np.linalg.solve(rows @ change, values - rows @ fitted))
 

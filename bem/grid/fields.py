@@ -135,9 +135,9 @@ class ContactFields:
         disc = self.punch.disc
         share = disc.centres[disc.contact]
         ring = (share * disc.radius).astype(np.intp)
-        kept = np.arange(max(1, int(disc.radius - EDGE_CELLS)))
-        count = np.bincount(ring)[kept]
-        means = [np.bincount(ring, of)[kept] / count for of in (share**2, disc.quotient(self.cells))]
+        inner = np.arange(max(1, int(disc.radius - EDGE_CELLS)))
+        count = np.bincount(ring)[inner]
+        means = [np.bincount(ring, of)[inner] / count for of in (share**2, disc.quotient(self.cells))]
         unit = self.radius / disc.radius * self._scale
         return np.sqrt(means[0]), unit * means[1]
 
@@ -178,6 +178,6 @@ def field_changes(fine: ContactFields, coarse: ContactFields) -> tuple[float, fl
         return (0.0, 0.0) if fine.radius == coarse.radius else (1.0, 1.0)
     p, q = (np.sqrt(1.0 - INSIDE**2) * of.pressure(INSIDE * of.radius) for of in (fine, coarse))
     r = OUTSIDE * max(fine.radius, coarse.radius)
-    apart = fine.surface_displacement(r) - coarse.surface_displacement(r)
+    change = fine.surface_displacement(r) - coarse.surface_displacement(r)
     scale = max(abs(fine.state.depth), float(fine.pressing.indenter.height(fine.radius)))
-    return float(np.linalg.norm(p - q) / np.linalg.norm(p)), float(np.abs(apart).max() / scale)
+    return float(np.linalg.norm(p - q) / np.linalg.norm(p)), float(np.abs(change).max() / scale)

@@ -66,8 +66,8 @@ class PointResponse:
     def __call__(self, rho: FloatArray) -> FloatArray:
         """V at rho > 0: the smooth part and closed forms of exp(-q) and (1 - exp(-q))/q."""
         near = np.log(np.clip(rho, NEAR, 1e5))
-        known = self.logarithm * np.arcsinh(1.0 / rho) if self.logarithm else 0.0
-        return np.asarray(self.smooth(near) - (self.limit + self.logarithm) / np.hypot(1.0, rho) + known)
+        logarithmic = self.logarithm * np.arcsinh(1.0 / rho) if self.logarithm else 0.0
+        return np.asarray(self.smooth(near) - (self.limit + self.logarithm) / np.hypot(1.0, rho) + logarithmic)
 
 
 @lru_cache(maxsize=32)

@@ -90,7 +90,7 @@ class Punches(NamedTuple):
 
 
 def _angles(indenter: Profile, radius: float) -> tuple[FloatArray, FloatArray]:
-    """psi and weights of dpsi from the flat radius to the contact radius [m], between breakpoints, shape (n,) each."""
+    """Quadrature over r = a cos(psi) from the flat radius to the contact radius a [m]: psi and weights, shape (n,)."""
     flat, a = indenter.flat_radius, radius
     ends = [flat, *(b for b in sorted(indenter.breakpoints) if flat < b < a)] if a > flat else []
     # 2 sin^2(psi/2) = (a - r)/a is accurate where r is close to a.

@@ -204,6 +204,7 @@ class ShapeSolver:
         return shaped, round_
 
     def _cells(self, indenter: Profile, depth: float, cell_size: float, radius: float) -> CellContact:
+        """Contact of an indenter on cells at a depth [m]; `radius` [m] is a first guess."""
         shape = self.scene.indenter
         assert isinstance(shape, Shape)
         whole, flat = shape.symmetry % 2 == 1, isinstance(shape, Flat)

@@ -93,7 +93,7 @@ def cosine_filter(cells: int, period: int, threads: int = 1) -> CosineFilter:
 
 
 @lru_cache(maxsize=16)
-def _cached(cells: int, period: int, threads: int, _: int) -> CosineFilter:
+def _cached(cells: int, period: int, threads: int, thread: int) -> CosineFilter:
     return CosineFilter(cells, period, threads)
 
 

@@ -173,9 +173,9 @@ class GradedKernel:
     def transfers(self) -> Octaves:
         """Interpolation over octaves of k of U, W, Q, P times exp(kz), shape (n, fields x stretches x nodes of z)."""
         lowest = -2 - int(np.ceil(np.log2(self.longest)))
-        return Octaves(lambda k, _: self._followed(k), lowest, WAVES)
+        return Octaves(lambda k, _: self._transferred(k), lowest, WAVES)
 
-    def _followed(self, k: FloatArray) -> FloatArray:
+    def _transferred(self, k: FloatArray) -> FloatArray:
         """Values of `transfers` at wave numbers k, shape (n,); zero on stretches that the waves do not reach."""
         reflected = self.reflection(k, _FADED + DEEP)
         stretches = self.stretches(np.minimum(1.0, (_FADED + DEEP) / k))
@@ -266,4 +266,4 @@ def _integrated(rate: _Rate, start: NDArray[Any], begin: FloatArray, end: FloatA
     values = solution.sol
     if not solution.success or values is None:
         raise NotConvergedError(f"the graded layer was not integrated over its depth: {solution.message}")
-    return lambda way: np.asarray(values(way).reshape(start.shape))
+    return lambda s: np.asarray(values(s).reshape(start.shape))

@@ -98,26 +98,28 @@ def fit_adhesive(scene: Scene, data: Data) -> Fitted:
     """
     ends: list[Fitted] = []
     for attached in _hypotheses(data):
-        way = max(float(np.ptp(data.depth[attached])), 1e-3 * float(np.ptp(data.depth)))
-        reach = 4 * way if data.has_free_point else max(4 * way, 2 * data.deepest)
+        span = max(float(np.ptp(data.depth[attached])), 1e-3 * float(np.ptp(data.depth)))
+        reach = 4 * span if data.has_free_point else max(4 * span, 2 * data.deepest)
         curve = longest_curve(scene, _DEEPER * reach)
-        family = _family(scene, data, table_of(curve.scene), way, attached=attached, elastic_error=curve.error)
+        family = _family(scene, data, table_of(curve.scene), span, attached=attached, elastic_error=curve.error)
         trials = {u: np.array([data.deepest]) for u in family.starts}
         if data.has_free_point:
-            depths = {u: family.pull_off(u)[0] + way * np.array(_DEPTHS) for u in family.starts if family.pull_off}
+            depths = {u: family.pull_off(u)[0] + span * np.array(_DEPTHS) for u in family.starts if family.pull_off}
             trials = {u: trial[trial < 0.9 * curve.largest_depth / _DEEPER] for u, trial in depths.items()}
         ends += least_squares(data, family, {u: trial for u, trial in trials.items() if trial.size})
     return _best(data, ends)
 
 
-def _family(scene: Scene, data: Data, table: Table, way: float, *, attached: BoolArray, elastic_error: float) -> Family:
+def _family(
+    scene: Scene, data: Data, table: Table, span: float, *, attached: BoolArray, elastic_error: float
+) -> Family:
     """Curves over sqrt(w/E) with a free work of adhesion, over ln E with a known one.
 
     Args:
         scene: Scene with the known work of adhesion.
         data: The curve.
         table: The elastic contact.
-        way: Range of depths in contact [m].
+        span: Range of depths in contact [m].
         attached: Points in contact, shape (n,). The force is zero at all others, and constant beyond pull-off.
         elastic_error: Relative error of the force without adhesion.
     """
@@ -144,12 +146,12 @@ def _family(scene: Scene, data: Data, table: Table, way: float, *, attached: Boo
         return float(depths[0]), float(forces[0])
 
     family = Family(shape, error, attached=attached, pull_off=pull_off)
-    stretch, elastic = (float(np.interp(way, table.depth, values)) for values in (table.stretch, table.force))
+    stretch, elastic = (float(np.interp(span, table.depth, values)) for values in (table.stretch, table.force))
     if not has_free_work:
         starts = [math.log(float(np.ptp(data.force)) / elastic) + step for step in _LOG_MODULI]
         by_u = replace(family, parameter=lambda u, modulus: modulus_at(u), has_free_modulus=False)
         return replace(by_u, varied="youngs_modulus", starts=starts)
-    roots = [0.0, *(way * ratio / stretch for ratio in _STRETCHES)]
+    roots = [0.0, *(span * ratio / stretch for ratio in _STRETCHES)]
     by_root = replace(family, parameter=lambda u, modulus: max(u, 0.0) ** 2 * modulus, unit=roots[len(roots) // 2])
     return replace(by_root, varied="work_of_adhesion", starts=roots)
 

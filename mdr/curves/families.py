@@ -142,6 +142,7 @@ def check_parameters(scene: Scene, parameters: Sequence[str]) -> None:
 
 
 def _check_moduli(scene: Scene, names: Sequence[str]) -> None:
+    """Refuse names of moduli that the layer of the scene does not have."""
     layer = scene.layer
     several = isinstance(layer, LayerStack | CoatedPair) or layer.has_elastic_base
     known = ["youngs_modulus"] if not several else []

@@ -146,6 +146,7 @@ def fit_map(
 def _checked(
     depth: Sequence[float] | FloatArray, force: Sequence[float] | FloatArray, parameters: Sequence[str]
 ) -> Data:
+    """Data of a curve, after checks of shapes, number of points, finite values and depths."""
     d, f = (np.asarray(values, dtype=np.float64) for values in (depth, force))
     if d.ndim != 1 or d.shape != f.shape or d.size <= len(parameters):
         raise InvalidInput(
@@ -188,6 +189,7 @@ def _fit_elastic(scene: Scene, data: Data) -> Fitted:
 
 
 def _search(data: Data, family: Family, rough: float, reach: float) -> Fitted:
+    """Best result of least squares, from trial indentations about `rough` [m] and all first values of u."""
     points = trial_indentations(data, rough, reach)
     return least_squares(data, family, dict.fromkeys(family.starts, points))[0]
 
@@ -298,8 +300,8 @@ def _limited(fit: CurveFit, limit: Limit, data: Data) -> CurveFit:
             largest = contact[-1] if math.isnan(largest) else largest
             share = limit.value if limit.kind == "force" else limit.value * largest
             deepest = float(np.interp(share, contact, fit.depth[order]))
-        kept = data.depth <= deepest
-        fit = _fitted(fit.scene, _checked(data.depth[kept], data.force[kept], data.names), fit.confidence)
+        within = data.depth <= deepest
+        fit = _fitted(fit.scene, _checked(data.depth[within], data.force[within], data.names), fit.confidence)
     return fit
 
 

@@ -118,6 +118,7 @@ def depth_of_force(curve: ForceCurve, solid: Relaxation, time: FloatArray, force
 
 
 def _refined(time: FloatArray) -> FloatArray:
+    """Instants [s] with each interval divided into `_STEPS` equal ones."""
     return np.interp(np.arange((time.size - 1) * _STEPS + 1) / _STEPS, np.arange(time.size), time)
 
 
@@ -149,7 +150,7 @@ class Parameter(NamedTuple):
 
 @dataclass(frozen=True)
 class History:
-    """Measured data and what is fitted.
+    """Measured data and fitted parameters.
 
     Attributes:
         scene: Scene with the relaxation function, from which parameters that are not fitted are taken.
@@ -330,6 +331,7 @@ def _of_solid(effect: Viscoelasticity, names: Sequence[str], modulus: float, t: 
 
 
 def _check_course(prescribed: FloatArray, *, may_fall: bool) -> None:
+    """Refuse depths or forces that increase after a withdrawal, and withdrawals unless `may_fall`."""
     turn = _turn(prescribed)
     if turn < prescribed.size - 1 and not may_fall:
         raise InvalidInput(

@@ -134,16 +134,16 @@ def load_curves(
     Raises:
         InvalidInput: If the file cannot be read, has no such columns, no units, or more than two directions.
     """
-    path, known = Path(file), cantilever or Cantilever()
-    if _is_of_microscope(path) or (known.sensitivity and known.spring_constant and _is_of_nova(path)):
-        return _read_measured(path, known, direction)
+    path, calibration = Path(file), cantilever or Cantilever()
+    if _is_of_microscope(path) or (calibration.sensitivity and calibration.spring_constant and _is_of_nova(path)):
+        return _read_measured(path, calibration, direction)
     table = _with_units(path, units)
     numbers = _named(table.columns, "curve")
     if numbers is not None:
         rows = [np.flatnonzero(numbers.values == number) for number in np.unique(numbers.values)]
-        return [_one_curve(table.at_rows(index), known, direction, str(file)) for index in rows]
+        return [_one_curve(table.at_rows(index), calibration, direction, str(file)) for index in rows]
     if not is_map:
-        return [_one_curve(table, known, direction, str(file))]
+        return [_one_curve(table, calibration, direction, str(file))]
     if len(table.columns) < 2:
         raise InvalidInput(f"{file}: a map has depths in its first column, and forces of a curve in each other one")
     depth, forces = _si(table.columns[0], "m", file), table.columns[1:]
@@ -177,9 +177,9 @@ def _with_units(file: Path, given: str) -> Table:
 def _one_curve(table: Table, cantilever: Cantilever, direction: Direction, place: str) -> Measured:
     """The curve of a table that contains one curve only."""
     notes = [f"{len(table.gaps)} rows with gaps are left out (first: line {table.gaps[0]})"] if table.gaps else []
-    beside = _columns_of("withdrawal" if direction == "withdrawal" else "loading", table)
-    if beside:
-        table, notes = replace(table, columns=beside), [*notes, f"columns of {direction} are used"]
+    columns = _columns_of("withdrawal" if direction == "withdrawal" else "loading", table)
+    if columns:
+        table, notes = replace(table, columns=columns), [*notes, f"columns of {direction} are used"]
     cantilever = replace(cantilever, spring_constant=cantilever.spring_constant or table.spring_constant)
     depth, force, conversions = _converted(table, cantilever, place)
     further = [_named(table.columns, name) for name in ("time", "x", "y")]
@@ -263,6 +263,7 @@ def _named(columns: Sequence[Column], kind: str) -> Column | None:
 
 
 def _si(column: Column, unit: str, file: str | Path) -> FloatArray:
+    """Values of a column in an SI unit; errors name file and column."""
     if not column.unit:
         raise InvalidInput(f"{file}, column {column.name!r}: has no unit; write it in the head, as in depth [nm]")
     try:
@@ -347,7 +348,7 @@ def _read_measured(file: Path, cantilever: Cantilever, direction: Direction) -> 
             f'{file}: holds no calibration; give --spring-constant "0.05 N/m" and --sensitivity "50 nm/V"'
         ) from None
     except (Exception, afmformats.errors.AFMFileFormatError, afmformats.meta.MetaDataMissingError) as error:
-        # Each format fails in its own way, and some by what is no Exception.
+        # Each format raises other errors, and some raise errors that are not derived from Exception.
         raise InvalidInput(f"{file}: afmformats cannot read it ({type(error).__name__}: {error!s:.120})") from None
     if not curves:
         raise InvalidInput(f"{file}: has no force-distance curve")

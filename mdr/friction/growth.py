@@ -120,15 +120,15 @@ class Growth:
 
     def __init__(self, kernel: StackKernel, tip: Tip, unit: float, end: float, extra: int) -> None:
         self.kernel, self.tip, self.unit, self.end = kernel, tip, unit, end
-        # The radius is rounded up to a power of 1.2, so that scenes share tables.
-        above = end if kernel.is_half_space else float(1.2 ** np.ceil(np.log(end) / np.log(1.2) - 1e-9))
-        self.punches = punches_of(kernel, above, extra)
+        # The largest radius of the table is a power of 1.2, so that scenes share tables.
+        table_end = end if kernel.is_half_space else float(1.2 ** np.ceil(np.log(end) / np.log(1.2) - 1e-9))
+        self.punches = punches_of(kernel, table_end, extra)
         self.rule = towards_one(16 + extra, 0 if tip.exponent % 1 == 0 else 6)
         usual = _UNKNOWNS[0] + _UNKNOWNS[1] * self.punches.size
         count = int(max(usual, min(usual + _UNKNOWNS_PER_ROOT * self.punches.root, _MOST)))
-        self._follow(tip.exponent, count + extra)
+        self._solve(tip.exponent, count + extra)
 
-    def _follow(self, lead: float, count: int) -> None:
+    def _solve(self, lead: float, count: int) -> None:
         """Solve g_hs(x) = int_0^x M d delta for d delta on each stretch in turn, by least squares.
 
         The number of equations is 1.25 times that of the unknowns; `lead` is the exponent of delta at the tip.

@@ -105,6 +105,7 @@ class Problem(NamedTuple):
 
     @property
     def _search(self) -> RadiusSearch:
+        """Search of elastic contact radii."""
         return RadiusSearch(self.springs, may_fall=not is_simple(self.scene))
 
     def radii(self, gamma: FloatArray) -> FloatArray:
@@ -153,13 +154,14 @@ def fronts(law: SpringLaw, path: Path, instants: NDArray[np.intp], deepest: floa
     some = np.flatnonzero(first_free)
     high, low = g[first_free[some]], g[first_free[some] - 1]
 
-    def sunk(share: FloatArray, at: BoolArray) -> FloatArray:
+    def negative(share: FloatArray, at: BoolArray) -> FloatArray:
+        """-`Passage.edge` over the largest depth, of springs g = share times that depth."""
         edge_of_springs = _edges(law, deepest * share, path)
         return np.asarray(-edge_of_springs[instants[some[at]], np.arange(share.size)] / deepest)
 
     if some.size:
         first = -edge[some, first_free[some] - 1] / deepest
-        gamma[some] = deepest * roots(sunk, low / deepest, first, (high - low) / deepest)
+        gamma[some] = deepest * roots(negative, low / deepest, first, (high - low) / deepest)
     return gamma
 
 

@@ -42,7 +42,7 @@ _NODES_OF_DEPTHS, _NODES = 14, 5
 # doubles them, at most twice; one digit less changes nothing.
 _SUBSTEPS = 10
 _FEWEST, _MOST = 0, 2
-# Degrees of the depth in a substep, of the answer and of its companion.
+# Degrees of the depth in a substep, of the answer and of the coarser solution for error estimates.
 _DEGREES = (6, 5)
 # Panels of the first march, marches at most, and the share of the largest depth by which the last one may differ.
 _FIRST_PANELS, _MOST_MARCHES, _CHANGE = 32, 4, 1e-9
@@ -110,6 +110,7 @@ def _substeps(settings: Mapping[str, Setting]) -> int:
 
 
 def _refuse_idle(loading: DepthHistory | ForceHistory) -> None:
+    """Refuse negative forces, and histories without a positive depth or force."""
     prescribed = loading.depth if isinstance(loading, DepthHistory) else loading.force
     if isinstance(loading, ForceHistory) and prescribed.min() < 0:
         worst = int(prescribed.argmin())
