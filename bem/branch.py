@@ -90,7 +90,7 @@ class Branch:
 
     @property
     def end(self) -> float:
-        """Largest y."""
+        """y at the largest radius."""
         return float(self.section_ends[-1])
 
     @property

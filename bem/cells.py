@@ -79,12 +79,12 @@ class CellGrid:
 
     @property
     def size(self) -> float:
-        """s [m]."""
+        """Side s of a cell [m]."""
         return self.radius / disc_of(self.cells).radius
 
     @property
     def strength(self) -> float:
-        """tau_c/E*."""
+        """Strength of a cell over E*, tau_c/E*."""
         return sqrt(adhesive_length(self.scene) / (CELL_ENERGY * self.size))
 
     @cached_property

@@ -126,9 +126,9 @@ class Panels(NamedTuple):
     """Panels on which t = start + s^2, low < s < high.
 
     Attributes:
-        start: b [m], shape (p,).
-        low: Shape (p,).
-        high: Shape (p,).
+        start: Breaks b [m], shape (p,).
+        low: Smallest s of each panel, shape (p,).
+        high: Largest s of each panel, shape (p,).
         nodes: Gauss nodes per panel.
     """
 
@@ -230,7 +230,7 @@ class Density:
     """Solution at one contact radius; columns of arrays belong to the right-hand sides 1 and g_hs.
 
     Args:
-        kernel: 1 - chi of the layer.
+        kernel: Kernel 1 - chi of the layer.
         profile: The indenter.
         a: Contact radius [m].
     """

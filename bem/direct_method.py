@@ -68,7 +68,7 @@ class Contact(NamedTuple):
 
     @property
     def mean_pressure(self) -> float:
-        """F/(pi a^2) [Pa]."""
+        """Mean pressure F/(pi a^2) [Pa]."""
         return float(self.state[2] / (pi * self.state[0] ** 2))
 
 

@@ -143,9 +143,9 @@ class Radius:
     """The equation A phi = W at one contact radius, A = 1 - B, in orthonormal even polynomials of t/a.
 
     Args:
-        kernel: 1 - chi.
+        kernel: Kernel 1 - chi of the layer.
         a: Contact radius in units of the kernel.
-        sizes: Resolution.
+        sizes: Sizes of the discretisation.
         octave: Binary logarithm of the largest radius for which the sizes are chosen; by default that of a, rounded up.
         kinked: Whether the profiles have kinks, for which graded layers need more polynomials.
     """
@@ -179,12 +179,11 @@ class Radius:
 
         Args:
             farthest: Largest r/a at which a field is computed; a power of two, so that tables are shared.
-            reach: Largest wave number over that at which 1 - chi is below rounding; above 1 where it decays like a
-                power.
+            reach: Factor on the largest wave number `Sizes.reach`, above 1 if 1 - chi decays like a power.
         """
         waves = self._waves._replace(farthest=farthest, top=reach * self._waves.top)
-        is_kept = farthest <= FAR and waves.orders * waves.top < _LARGEST_TABLE
-        kappa, w, table = (_transforms if is_kept else _transforms.__wrapped__)(waves)
+        is_cached = farthest <= FAR and waves.orders * waves.top < _LARGEST_TABLE
+        kappa, w, table = (_transforms if is_cached else _transforms.__wrapped__)(waves)
         use = int(np.searchsorted(kappa, reach * self.sizes.reach * self.a)) + self.sizes.nodes
         return kappa[:use], w[:use], table[:, :use]
 
@@ -273,8 +272,8 @@ class FlatPunches:
     """Flat punches of all radii on one layer, interpolated over octaves of a/h.
 
     Args:
-        kernel: 1 - chi.
-        sizes: Resolution.
+        kernel: Kernel 1 - chi of the layer.
+        sizes: Sizes of the discretisation.
         kinked: Whether the profiles have kinks, for which graded layers need more polynomials.
     """
 

@@ -43,7 +43,7 @@ class FlatPunchSource(Protocol):
 
     @property
     def sizes(self) -> Sizes:
-        """Sizes of the discretisation of springs."""
+        """Sizes of the discretisation of the integral equation that springs use."""
 
     def refined(self) -> Self:
         """Settings with half the discretisation length."""

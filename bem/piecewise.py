@@ -96,5 +96,5 @@ class Piecewise:
 
     @cached_property
     def slope(self) -> Piecewise:
-        """Derivatives by y."""
+        """Derivatives of the functions by y."""
         return Piecewise(self.edges, chebyshev.chebder(self.series, axis=0) * (2.0 / np.diff(self.edges)))

@@ -66,8 +66,8 @@ class FlatPunchTable:
         poissons_ratio: nu; zero on an unbonded layer, where it has no influence.
         ratios: a/h, increasing, shape (n,).
         radii: rho = r/a in [0, 1), increasing, shape (m,).
-        stiffness: k_bar, shape (n,).
-        pressure: p_bar, shape (n, m).
+        stiffness: Dimensionless stiffness k_bar = k_N/(2 E* a), shape (n,).
+        pressure: Dimensionless pressure p_bar, shape (n, m).
         cells: Cells across the grid of the computation.
         coarser: The coarser table for error estimates; None in the coarser table.
 
@@ -139,7 +139,7 @@ class FlatPunchTable:
 
     @classmethod
     def of_tree(cls, tree: dict[str, Any]) -> Self:
-        """The inverse of `tree`."""
+        """The table from arrays and settings as `tree` returns them."""
         fields = {name: tree[name] for name in ("support", "poissons_ratio", "ratios", "radii", "cells")}
         coarser = cls.of_tree(tree["coarser"]) if "coarser" in tree else None
         return cls(**fields, stiffness=tree["k_bar"], pressure=tree["p_bar"], coarser=coarser)

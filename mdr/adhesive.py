@@ -75,7 +75,7 @@ class Adhesive:
     """Equilibria of one scene at one resolution.
 
     Attributes:
-        scene: The problem.
+        scene: The scene.
         springs: Springs of the scene.
         longer: Factor by which branches exceed their first trial radius.
     """
@@ -94,7 +94,7 @@ class Adhesive:
         return work_of_adhesion(self.scene)
 
     def elongation(self, radius: FloatArray, y1: FloatArray) -> FloatArray:
-        """dl [m], Eq. (40)."""
+        """Critical elongation dl [m] at contact radii [m], Eq. (40)."""
         return np.asarray(np.sqrt(2 * np.pi * self._work * radius / self.springs.modulus) / y1)
 
     def states(self, radius: FloatArray, excess: FloatArray | None = None) -> FloatArray:

@@ -35,7 +35,7 @@ class PullingContact(UnsupportedSceneError):
     """The contact would need tension inside, without adhesion to carry it.
 
     Args:
-        contact_radius: a [m].
+        contact_radius: Contact radius a [m].
         radius: Radius of the largest tension [m].
         tension: Largest tension [Pa].
         mean: Mean pressure of the contact [Pa].

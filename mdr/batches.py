@@ -42,10 +42,10 @@ class Equilibria:
     """Elastic contacts, each array of shape (n,).
 
     Attributes:
-        contact_radius: a [m].
+        contact_radius: Contact radius a [m].
         indentation_depth: delta [m].
-        normal_force: F_N [N].
-        contact_stiffness: k_N [N/m].
+        normal_force: Normal force F_N [N].
+        contact_stiffness: Contact stiffness k_N [N/m].
     """
 
     contact_radius: FloatArray

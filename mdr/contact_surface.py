@@ -101,7 +101,7 @@ class Surface:
             self._smooth = self._series - self.corner * self.a * np.concatenate([[2 * np.log(2) - 1], coefficients])
 
     def psi(self, t: FloatArray) -> FloatArray:
-        """psi [m] at t <= a [m]."""
+        """Smooth part psi of the density [m] at t <= a [m]."""
         return np.asarray(even_legendre(t / self.a, self._series.size) @ self._series)
 
     @property
@@ -129,7 +129,7 @@ class Surface:
         return np.asarray(self.a * alternating @ even_bessel(k * self.a, self._series.size))
 
     def density(self, t: FloatArray) -> FloatArray:
-        """phi [m] at t <= a [m]."""
+        """Abel density phi [m] at t <= a [m]."""
         return np.asarray(self.depth - self.tip.quick(t) + self.psi(t))
 
     def _image(self, u: FloatArray) -> FloatArray:

@@ -296,10 +296,10 @@ class PathFields:
     """Surface fields of every step of a path; each contact is solved at first use and cached.
 
     Attributes:
-        scene: The problem.
+        scene: The scene.
         springs: Springs of the scene.
-        radius: a [m], shape (n,).
-        depth: delta [m], shape (n,).
+        radius: Contact radius a [m], shape (n,).
+        depth: Indentation depth delta [m], shape (n,).
         flat_punch: Source of flat-punch data.
         settings: Settings that the answer reports.
         adheres: Whether the contact has adhesion, so that the pressure is infinite at the edge.
@@ -323,11 +323,11 @@ class PathFields:
         return self._surfaces[step]
 
     def pressure(self, radius: FloatArray, step: int) -> FloatArray:
-        """p(r) [Pa], zero outside the contact."""
+        """Pressure p(r) at one step [Pa], zero outside the contact."""
         return self.surface(step).pressure(radius)
 
     def surface_displacement(self, radius: FloatArray, step: int) -> FloatArray:
-        """w(r) [m]."""
+        """Surface displacement w(r) at one step [m]."""
         return self.surface(step).displacement(radius)
 
     def inside(self, step: int, known: KnownContact) -> InteriorFields:

@@ -283,7 +283,7 @@ class Interior:
         layer: The layer.
         pair: The contact at two resolutions, the finer one first.
         known: Radius and errors of the contact.
-        depth: delta [m], to which errors of displacements are relative.
+        depth: Indentation depth delta [m], to which errors of displacements are relative.
     """
 
     layer: ElasticLayer

@@ -41,7 +41,7 @@ def equilibria_on_layers(scenes: Sequence[Scene], sizes: Sizes) -> FloatArray:
 
     Args:
         scenes: Scenes that take part, of one indenter, one kind of loading, one support and Poisson's ratio.
-        sizes: Resolution.
+        sizes: Sizes of the discretisation.
     """
     layer, indenter = scenes[0].layer, scenes[0].indenter
     values = np.array([getattr(scene.loading, "values", np.zeros(1))[0] for scene in scenes])

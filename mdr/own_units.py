@@ -22,7 +22,7 @@ class OwnUnits:
 
     Attributes:
         layer: The layer with thickness 1 and E* = 1.
-        indenter: f = r^n.
+        indenter: The power law f = r^n.
         length: Unit of length [m].
         depth: Unit of depth [m].
         stiffness: Unit of stiffness [N/m].
@@ -38,7 +38,7 @@ class OwnUnits:
 
 
 def is_power_law(indenter: Profile) -> bool:
-    """Whether f = C r^n."""
+    """Whether the profile is a power law f = C r^n."""
     return isinstance(tip_of(indenter), PowerTip)
 
 
@@ -61,5 +61,5 @@ def own_units(layer: ElasticLayer, indenter: Profile) -> OwnUnits:
 
 @lru_cache(maxsize=64)
 def _unit_power(exponent: float) -> PowerLaw:
-    """f = r^n."""
+    """The power law f = r^n, cached."""
     return PowerLaw(exponent=exponent, reference_radius=1.0, reference_height=1.0)

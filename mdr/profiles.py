@@ -85,11 +85,11 @@ class Tip:
         return self.profile.is_convex
 
     def height(self, r: FloatArray) -> FloatArray:
-        """f(r) [m]."""
+        """Height f(r) of the profile [m]."""
         return self.profile.height(r)
 
     def slope(self, r: FloatArray) -> FloatArray:
-        """f'(r) at r > 0 [m]."""
+        """Slope f'(r) of the profile at r > 0 [m]."""
         return self.profile.slope_at(r)
 
     def transform(self, x: FloatArray) -> FloatArray:
@@ -160,13 +160,13 @@ class FlatTip(Tip):
     """A flat punch: f = 0 within its radius."""
 
     def transform(self, x: FloatArray) -> FloatArray:
-        """g_hs = 0."""
+        """Transform g_hs = 0."""
         return np.zeros_like(x)
 
     transform_slope = transform
 
     def moments(self, x: FloatArray, count: int, extra: int = 0) -> FloatArray:
-        """m_n = 0."""
+        """Moments m_n = 0, shape (x.size, count)."""
         return np.zeros((x.size, count))
 
 
@@ -183,7 +183,7 @@ class PowerTip(Tip):
         return np.asarray(self._gain * (x / self._radius) ** self.exponent)
 
     def transform_slope(self, x: FloatArray) -> FloatArray:
-        """g_hs'."""
+        """Derivative g_hs' at x > 0 [m]."""
         return np.asarray(self._gain * self.exponent / self._radius * (x / self._radius) ** (self.exponent - 1))
 
     def moments(self, x: FloatArray, count: int, extra: int = 0) -> FloatArray:
@@ -238,7 +238,7 @@ class BallTip(Tip):
         return np.where(x < self._tangent, cap, x * (logarithm + self._flank * np.arctan2(far, self._tangent)))
 
     def transform_slope(self, x: FloatArray) -> FloatArray:
-        """g_hs'."""
+        """Derivative g_hs' at x > 0 [m]."""
         R, b, near = self._radius, self._tangent, self._near
         s = np.minimum(x, b)
         cap = self._artanh(s) + s * R / ((R - s) * (R + s))
@@ -276,7 +276,7 @@ class PiecewiseTip(Tip):
         )
 
     def slope(self, r: FloatArray) -> FloatArray:
-        """f'."""
+        """Slope f'(r) of the profile, zero on the flat end."""
         i = np.clip(np.searchsorted(self._knots, r, "right") - 1, 0, None)
         d = np.maximum(r - self._knots[i], 0)
         value, first, second = np.moveaxis(self._pieces[i], -1, 0)
@@ -325,7 +325,7 @@ class PiecewiseTip(Tip):
         return np.asarray(x * rise)
 
     def transform_slope(self, x: FloatArray) -> FloatArray:
-        """g_hs' without `kinks`."""
+        """Derivative g_hs' without the singular terms of `kinks`."""
         if not self._is_even:
             return self._integrated_slope(x)
         wide, b, far, angle = self._angle(x)

@@ -121,7 +121,7 @@ class RadiusSearch:
         return np.asarray(np.log(grown / np.maximum(1 - grown / (tip.end - tip.flat), EPS) / self._unit))
 
     def logarithm(self, springs: Springs, quantity: Quantity, z: FloatArray) -> FloatArray:
-        """ln(depth or force) at z."""
+        """ln(depth or force) of equilibria at z, shape (n,), by these springs."""
         state = springs.states(self.place(np.atleast_1d(z)))
         return np.asarray(np.log(np.maximum(getattr(state, quantity), 1e-300)))
 

@@ -50,9 +50,9 @@ class Expansion(NamedTuple):
     """Contacts of a shape to second order, n of them with p harmonics.
 
     Attributes:
-        radius: abar [m], shape (n,).
-        force: F [N], shape (n,).
-        stiffness: k_N [N/m], shape (n,).
+        radius: Mean radius abar of the outline [m], shape (n,).
+        force: Normal force F [N], shape (n,).
+        stiffness: Contact stiffness k_N [N/m], shape (n,).
         outline: alpha_n [m], shape (n, p).
         third: Third order of force, stiffness and radius, over these, shape (3, n).
     """

@@ -65,11 +65,11 @@ class Springs:
     """Springs and MDR profile of one layer under one indenter, as functions of the radius.
 
     Attributes:
-        kernel: 1 - chi of the layer.
+        kernel: Kernel 1 - chi of the layer.
         unit: Unit of length of the kernel [m].
-        modulus: E* [Pa].
+        modulus: Contact modulus E* [Pa].
         tip: Profile of the indenter.
-        sizes: Resolution.
+        sizes: Sizes of the discretisation.
         thickness: Thickness of the layer for each radius, in units of `unit`, shape (n,); one where all radii are on
             the same layer.
     """

@@ -41,7 +41,7 @@ class SampledPunches:
     Attributes:
         thickness: h [m].
         end: u at the largest radius.
-        power: m.
+        power: Root m in u^(1/m).
         growth: Chebyshev coefficients of ln(kappa), shape (n,).
         series: Chebyshev coefficients of the coefficients of Q, shape (n, m).
     """
@@ -88,7 +88,7 @@ class AdheringIndenter:
 
     Attributes:
         scene: Layer, indenter and adhesion.
-        pressing: Discs.
+        pressing: The indenter on discs of cells.
         punches: Flat punches of all radii.
         end: Largest radius [m].
     """
@@ -129,7 +129,7 @@ class AdheringIndenter:
 
 
 def adhesive_length(scene: Scene) -> float:
-    """dgamma/E* [m]."""
+    """Work of adhesion over E*, dgamma/E* [m]."""
     adhesion = scene.effect(Adhesion)
     return 0.0 if adhesion is None else adhesion.work_of_adhesion / contact_modulus(scene.layer)
 

@@ -60,11 +60,11 @@ class FieldSequence:
     steps: Sequence[ContactFields]
 
     def pressure(self, radius: FloatArray, step: int) -> FloatArray:
-        """p(r) [Pa] of one step."""
+        """Pressure p(r) of one step [Pa]."""
         return self.steps[step].pressure(radius)
 
     def surface_displacement(self, radius: FloatArray, step: int) -> FloatArray:
-        """w(r) [m] of one step."""
+        """Surface displacement w(r) of one step [m]."""
         return self.steps[step].surface_displacement(radius)
 
 

@@ -134,10 +134,10 @@ class Punch:
     """A flat punch on one disc of cells.
 
     Attributes:
-        disc: The cells.
+        disc: Disc of cells.
         layer: The layer.
         threads: Number of threads of the transforms.
-        radius: a [m].
+        radius: Contact radius a [m].
         pressure: p_1/E* under a unit depth, shape (m, m).
         growth: kappa = k_N/(2 E* a), k_bar of Eq. (10).
         degree: Degree of Q, the quotient of p_1 and the half-space's pressure; zero on the half-space.
@@ -153,7 +153,7 @@ class Punch:
 
     @property
     def cell_size(self) -> float:
-        """s [m]."""
+        """Side s of a cell [m]."""
         return self.radius / self.disc.radius
 
     def series(self, degree: int, edge: float | None = None) -> FloatArray:

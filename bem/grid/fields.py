@@ -50,7 +50,7 @@ class ContactFields:
 
     @property
     def radius(self) -> float:
-        """a [m]."""
+        """Contact radius a [m]."""
         return self.state.radius
 
     @property

@@ -72,7 +72,7 @@ class PointResponse:
 
 @lru_cache(maxsize=32)
 def point_response(kernel: SurfaceKernel) -> PointResponse:
-    """V of a kernel."""
+    """The function V of a kernel, cached."""
     q = np.geomspace(LEAST_Q, LARGEST_Q, SAMPLES)
     step, less = log(q[1] / q[0]), kernel.one_minus_chi(q)
     limit = float(less[0])

@@ -103,7 +103,7 @@ def pressed(
     """p with K p = displacement on `contact` and p = 0 elsewhere, by preconditioned conjugate gradients.
 
     Args:
-        operator: K.
+        operator: The operator K from pressure to displacement.
         contact: Cells in contact, shape (m, m).
         displacement: Prescribed displacement on `contact`, in cell sizes.
         tolerance: Largest error of the displacement on the contact, relative to its largest value.

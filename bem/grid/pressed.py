@@ -62,8 +62,8 @@ class Punches(NamedTuple):
     """Flat punch of one radius, and derivatives by the radius.
 
     Attributes:
-        growth: kappa.
-        growth_slope: dkappa/d(ln a).
+        growth: Dimensionless stiffness kappa = k_N/(2 E* a).
+        growth_slope: Derivative dkappa/d(ln a).
         series: Chebyshev coefficients of Q in 2 r^2/a^2 - 1, shape (n,).
         series_slope: Derivatives of these coefficients by ln(a).
     """
@@ -169,11 +169,11 @@ class PressedState(NamedTuple):
     """An equilibrium at one radius.
 
     Attributes:
-        radius: a [m].
+        radius: Contact radius a [m].
         stiffness: k = k_N/E* [m].
         moment: M [m^2], F/E* = k delta - M.
         edge_flat: phi_1(a) of the flat punch of unit depth.
-        depth: delta [m].
+        depth: Indentation depth delta [m].
     """
 
     radius: float
@@ -184,7 +184,7 @@ class PressedState(NamedTuple):
 
     @property
     def load(self) -> float:
-        """F/E* [m^2]."""
+        """Force over E*, F/E* = k delta - M [m^2]."""
         return self.stiffness * self.depth - self.moment
 
 

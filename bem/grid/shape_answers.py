@@ -38,10 +38,10 @@ class ShapeState:
 
     Attributes:
         cells: Contact on the grid, at this depth, or at unit depth of a flat punch.
-        cell_size: s [m].
-        depth: delta [m].
-        load: F/E* [m^2].
-        stiffness: k_N/E* [m].
+        cell_size: Side s of a cell [m].
+        depth: Indentation depth delta [m].
+        load: Force over E*, F/E* [m^2].
+        stiffness: Contact stiffness over E*, k_N/E* [m].
         square: Fourier coefficients of a(phi)^2 [m^2], of the orders 0, N, 2 N, ..
         shape: The indenter.
     """
@@ -63,7 +63,7 @@ class ShapeState:
 
     @property
     def radius(self) -> float:
-        """Mean of the outline [m]."""
+        """Mean radius of the outline [m]."""
         angle, weight = self.shape.sector()
         return float(weight @ self.outline(angle))
 
@@ -85,18 +85,18 @@ class OutlinedFields:
 
     Attributes:
         states: Contact of each step.
-        modulus: E* [Pa].
+        modulus: Contact modulus E* [Pa].
     """
 
     states: Sequence[ShapeState]
     modulus: float
 
     def outline(self, angle: FloatArray, step: int) -> FloatArray:
-        """a(phi) [m]."""
+        """Outline a(phi) of the contact at one step [m]."""
         return self.states[step].outline(angle)
 
     def pressure(self, radius: FloatArray, step: int, angle: FloatArray) -> FloatArray:
-        """p(r, phi) [Pa]."""
+        """Pressure p(r, phi) at one step [Pa]."""
         return self.modulus * self.states[step].pressure(radius, angle)
 
 

@@ -53,7 +53,7 @@ class CellContact:
 
     @property
     def load(self) -> float:
-        """F/(E* s^2)."""
+        """Force over E* s^2, s the side of a cell."""
         return self.copies * float(self.pressure.sum())
 
     def moment(self, order: int) -> float:
@@ -88,7 +88,7 @@ def pressed_cells(
         indenter: A shape, or a body of revolution on the same cells.
         depth: Depth [m].
         radius: First guess of the contact radius [m].
-        cell_size: s [m].
+        cell_size: Side s of a cell [m].
         whole: Whether the whole grid is needed, for shapes without mirror symmetry in x.
         threads: Number of threads of the transforms.
         flat: Whether all cells within the outline are in contact.

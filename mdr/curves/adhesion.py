@@ -118,7 +118,7 @@ def _family(
     Args:
         scene: Scene with the known work of adhesion.
         data: The curve.
-        table: The elastic contact.
+        table: Table of the elastic contact.
         span: Range of depths in contact [m].
         attached: Points in contact, shape (n,). The force is zero at all others, and constant beyond pull-off.
         elastic_error: Relative error of the force without adhesion.
@@ -138,6 +138,7 @@ def _family(
         return lambda depth: np.where(attached, np.interp(np.asarray(depth), *nodes), 0.0)
 
     def error(u: float, depth: FloatArray) -> float:
+        """Relative error of the force: of the elastic contact, and of linear interpolation in the table."""
         fine, coarse = shape(u)(depth), shape(u, Table(*(values[::2] for values in table)))(depth)
         return elastic_error + float(np.abs(coarse - fine).max()) / (3 * float(np.abs(fine).max(initial=1e-300)))
 

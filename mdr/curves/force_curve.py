@@ -74,7 +74,7 @@ class ForceCurve:
 
     @property
     def largest_depth(self) -> float:
-        """Reach of the curve [m]."""
+        """Largest depth of the curve [m]."""
         return float(np.exp(self.nodes[0][-1]))
 
     def __call__(self, depth: ArrayLike, youngs_modulus: float | None = None) -> FloatArray:

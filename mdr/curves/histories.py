@@ -68,8 +68,8 @@ def force_of_depth(curve: ForceCurve, solid: Relaxation, time: FloatArray, depth
     """F [N] at the instants, shape (n,), for depths [m] that increase, are held, and decrease once.
 
     Args:
-        curve: phi of the layer.
-        solid: G(t).
+        curve: Elastic force curve phi of the layer.
+        solid: Shear relaxation function G(t).
         time: Instants [s], shape (n,), increasing.
         depth: Depths [m], shape (n,).
     """
@@ -183,7 +183,7 @@ class History:
         return any(parameter.scale is None for parameter in self.parameters)
 
     def values(self, x: FloatArray) -> dict[str, float]:
-        """Each parameter in SI."""
+        """Value of each parameter in SI units, by name, from the variables x of least squares."""
         pairs = zip(self.parameters, x.tolist(), strict=True)
         return {p.name: math.exp(number) if p.scale is None else p.scale * number for p, number in pairs}
 

@@ -142,7 +142,7 @@ class Adhered:
 
     @property
     def stiffness(self) -> float:
-        """k_stick/(2 E*)."""
+        """Stiffness over 2 E*, k_stick/(2 E*), a length in units of the kernel."""
         return float(self.a * self.beta * self.first * self.c[0])
 
     @property

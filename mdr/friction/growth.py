@@ -81,7 +81,7 @@ class Stretch:
     Attributes:
         start: First radius.
         end: Last radius.
-        power: Power of u.
+        power: Exponent of u.
         lead: Exponent of the depth at the first radius.
         count: Number of coefficients of the polynomial.
     """

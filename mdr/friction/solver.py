@@ -103,7 +103,7 @@ class Stuck:
 
     Attributes:
         state: Radius, depth, force and stiffness at every step.
-        modulus: E* [Pa].
+        modulus: Contact modulus E* [Pa].
         unit: Unit of length of the kernel [m].
         contact: Flat punch at unit depth, or a growing contact, lengths in units of the kernel.
         tip: Profile of the indenter.
@@ -120,11 +120,11 @@ class Stuck:
     unknowns: int
 
     def pressure(self, radius: FloatArray, step: int) -> FloatArray:
-        """p(r) [Pa], zero outside."""
+        """Pressure p(r) at one step [Pa], zero outside the contact."""
         return np.asarray(self._tractions(radius, step)[0])
 
     def tangential_traction(self, radius: FloatArray, step: int) -> FloatArray:
-        """q(r) [Pa], positive where the layer is pushed outward, zero outside."""
+        """Shear traction q(r) at one step [Pa], positive if it pushes the layer outwards, zero outside the contact."""
         return np.asarray(self._tractions(radius, step)[1])
 
     def _tractions(self, radius: FloatArray, step: int) -> FloatArray:
@@ -152,7 +152,7 @@ class Stuck:
 
 
 def _pressed(scene: Scene, extra: int) -> Stuck:
-    """States of a flat punch."""
+    """States and fields of a flat punch at the prescribed values."""
     layer, tip, values = scene.layer, tip_of(scene.indenter), _values(scene)
     modulus, unit = contact_modulus(layer), tip.flat if layer.is_half_space else layer.surface.thickness
     punch = Adhered(stack_kernel(layer), tip.flat / unit, extra)

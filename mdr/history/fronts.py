@@ -48,9 +48,9 @@ class Response(NamedTuple):
     Attributes:
         path: Depth as a polynomial of time in each interval.
         given: Indices in the path of the instants of the history, shape (n,).
-        depth: delta [m] at the instants of the history, shape (n,).
+        depth: Indentation depth delta [m] at the instants of the history, shape (n,).
         force: F_N [N], shape (n,).
-        radius: a [m], zero without contact, shape (n,).
+        radius: Contact radius a [m], zero without contact, shape (n,).
         known: Whether the depth has a closed form at each instant, shape (n,).
         springs: Number of springs.
         depth_error: Last correction of the depth [m].

@@ -88,11 +88,11 @@ class Course(NamedTuple):
     """Forces or gaps c + C(s) + sum_k c_k exp(-r_k (s - theta)) of n springs at shares s of an interval.
 
     Attributes:
-        constant: c, shape (n,).
-        amplitudes: c_k, shape (k, n).
+        constant: Constants c, shape (n,).
+        amplitudes: Amplitudes c_k, shape (k, n).
         rates: r_k times the interval, shape (k,).
         start: theta of each spring, or of all, shape (n,) or (1,).
-        shared: Coefficients of C.
+        shared: Coefficients of the polynomial C, by rising powers.
         rounding: Rounding errors of the values, shape (n,).
     """
 

@@ -61,7 +61,7 @@ class SpringLaw:
     """A relaxation function in units of its instantaneous modulus.
 
     Attributes:
-        long_term: g_inf.
+        long_term: Long-term modulus g_inf.
         viscosity: eta over the modulus [s].
         weights: g_j, shape (m,).
         times: tau_j [s], decreasing and no two of them equal, shape (m,).
