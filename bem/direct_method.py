@@ -86,7 +86,7 @@ class IntegralEquationMethod(Record):
     panel_width: Annotated[float, *positive("panels about as wide as the layer is thick")] = 0.75
 
     def supports(self, scene: Scene) -> Supported | Unsupported:
-        """Elastic contact of any profile with layers and half-spaces."""
+        """`Supported`, or the reason why not: elastic contact of any profile is modelled."""
         reason = ""
         if (other := not_round("the direct integral equation", scene)) is not None:
             return other

@@ -83,7 +83,7 @@ class Bem(Record):
             raise InvalidInput(f"accuracy must lie in [{FINEST_ACCURACY:g}, 0.1], {finest}")
 
     def supports(self, scene: Scene) -> Supported | Unsupported:
-        """Elastic and adhesive contact under prescribed radii, depths or forces, and detachment with adhesion."""
+        """`Supported`, or the reason why not: elastic and adhesive equilibria, and detachment, are modelled."""
         periodic, cells = self.boundary == "periodic", self.adhesion == "cells"
         others = [type(effect).__name__ for effect in scene.effects if not isinstance(effect, Adhesion)]
         machine = isinstance(scene.loading, Detachment) and scene.loading.controlled == "machine"

@@ -203,19 +203,19 @@ def _spread(radius: FloatArray, count: int) -> NDArray[np.intp]:
 
 
 def _elastic_errors(scene: Scene, springs: Springs, state: State, values: SpringValues) -> dict[str, StatedError]:
-    """Relative error estimates, each of shape (n,), zero of the prescribed quantity; for fields functions."""
+    """Relative error estimates by name, shape (n,), zero of the prescribed quantity; fields have functions instead."""
     some = _spread(state.radius, _COMPARED)
     states = State(*(row[some] for row in state))
     finer, flat, a = springs.finer.at(states.radius), springs.tip.flat, state.radius
     is_punch = isinstance(scene.indenter, FlatPunch)
     by_radius, by_depth = (isinstance(scene.loading, kind) for kind in (ContactRadii, IndentationDepths))
-    companion = springs.finer.state(states.radius, finer, None if by_radius else states.depth)
+    finer_states = springs.finer.state(states.radius, finer, None if by_radius else states.depth)
     floor, whole = springs.floor(a)
     if scene.indenter.ends_upright:  # a rounding error of a changes g
         floor = floor + EPS * a * springs.tip.transform_slope(a) / springs.tip.transform(a)
     depth = _largest(values.g[some], finer.g, states.depth) + floor
-    force = _largest(states.force, companion.force, states.force) + whole + floor
-    stiffness = _largest(states.stiffness, companion.stiffness, states.stiffness) + whole
+    force = _largest(states.force, finer_states.force, states.force) + whole + floor
+    stiffness = _largest(states.stiffness, finer_states.stiffness, states.stiffness) + whole
     zero = np.zeros(a.size)
     a_error = zero if by_radius or is_punch else depth * _sensitivity(scene, springs, states)
     # At a prescribed force the depth, and at a prescribed depth the force, is stationary in the radius.

@@ -159,8 +159,8 @@ class Mdr(Record):
 
     Attributes:
         flat_punch: Source of the flat punch's stiffness and pressure.
-        accuracy: Wanted relative accuracy of what is integrated in time (impacts, histories). Coarser ones than
-            `COARSEST` are answered by it; what does not move is more accurate whatever is asked.
+        accuracy: Relative accuracy of integration in time (impacts, histories). Values above `COARSEST` have the effect
+            of `COARSEST`. Equilibria are always more accurate.
     """
 
     name: ClassVar[str] = "mdr"
@@ -169,7 +169,7 @@ class Mdr(Record):
     accuracy: Annotated[float, *in_range(1e-13, 0.1, "1e-9 costs twice as much as 1e-6")] = DEFAULT_ACCURACY
 
     def supports(self, scene: Scene) -> Supported | Unsupported:
-        """Contact of any profile with layers and half-spaces: elastic, adhesive, or incompressible and viscoelastic."""
+        """`Supported`, or the reason why not: elastic, adhesive, or incompressible viscoelastic contact is modelled."""
         solver = solver_of(scene)
         return solver if isinstance(solver, Unsupported) else Supported()
 

@@ -311,7 +311,7 @@ class PiecewiseTip(Tip):
         return x * total
 
     def transform(self, x: FloatArray) -> FloatArray:
-        """g_hs: closed form where nothing cancels."""
+        """Transform g_hs [m]: closed form for a single knot, where it does not cancel, else by quadrature."""
         return self._closed(x) if self._knots.size == 1 else super().transform(x)
 
     def transform_beyond(self, excess: FloatArray) -> FloatArray:

@@ -21,7 +21,7 @@ from mdr.spring_bed import Springs
 
 Quantity = Literal["depth", "force"]
 
-# Trial radii double up to this radius over that of an upright end. Further ones have these distances from it, over it.
+# Trial radii double up to this share of the radius of an upright end. Then their distances from it have these shares.
 _NEAR_END, _CLOSER = 0.7, (0.2, 0.05, 0.01, 1e-3, 1e-6)
 # Radii per unit of z in the rough table. Half as many cost one more step.
 _DENSITY = 6

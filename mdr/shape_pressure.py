@@ -74,7 +74,7 @@ class ShapeFields:
         return p
 
     def truncation(self, step: int) -> float:
-        """Truncation error of the pressure [Pa]: the largest sum of the upper half of the orders, up to `_INSIDE`."""
+        """Truncation error [Pa]: the largest sum of pressures of the upper half of the orders n, up to `_INSIDE`."""
         orders = np.array(self.shape.orders)
         upper = orders > LARGEST_ORDER / 2
         u = np.linspace(np.sqrt(1.0 - _INSIDE**2), 1.0, _NODES)

@@ -24,12 +24,12 @@ from mdr.friction.adhered_punch import REACH, Adhered, ComplexArray, Density, Ru
 from mdr.inside import wave_rule
 from mdr.profiles import Tip
 
-# Numbers of radii a and of x in the table: at a/h = 0, and per a/h. With a fifth less three digits are lost.
+# Numbers of nodes in a and in x of the table of G: at a/h = 0, and per a/h. With a fifth less three digits are lost.
 _PUNCHES, _PLACES = (26, 4.5), (28, 5.5)
 # Least number of both per `Punches.root`. With 6 the error over a base a hundred times as soft is 1e-7.
 _PER_ROOT = 9.0
-# Unknowns of a stretch: at a/h = 0 and per a/h, per `Punches.root`, and their largest number. With 70 rounding errors
-# are 5e-8.
+# Number of coefficients on a stretch: at a/h = 0 and per a/h, per `Punches.root`, and the largest number by the latter.
+# With 70 rounding errors are 5e-8.
 _UNKNOWNS, _UNKNOWNS_PER_ROOT, _MOST = (20, 5.0), 2.5, 46.0
 
 

@@ -35,8 +35,8 @@ _SPREAD, _BEYOND = 33, 1.001
 _GROWTH, _MOST_PANELS = 4.0, 12
 # Distance over that between two kinks below which two ends of panels coincide.
 _APART = 1e-9
-# Power of the distance from a kink, or from the axis, in which springs are smooth: g goes with roots of the former, and
-# tips like r^1.7 are not analytic at the latter.
+# Exponents of the substitution x - b = v^p at a kink b, near which g varies like a root, and at the axis, where tips
+# like r^1.7 are not analytic.
 KINK_POWER, _AXIS_POWER = 2.0, 4.0
 # Name of the input in messages where the indenter ends before a depth or force.
 _PRESCRIBED = {"depth": "loading.depth", "force": "loading.force, as an elastic layer must bear it to be as deep"}
@@ -49,7 +49,7 @@ class Response(NamedTuple):
         path: Depth as a polynomial of time in each interval.
         given: Indices in the path of the instants of the history, shape (n,).
         depth: Indentation depth delta [m] at the instants of the history, shape (n,).
-        force: F_N [N], shape (n,).
+        force: Normal force F_N [N], shape (n,).
         radius: Contact radius a [m], zero without contact, shape (n,).
         known: Whether the depth has a closed form at each instant, shape (n,).
         springs: Number of springs.
