@@ -1,6 +1,6 @@
 """Boundary elements: layer kernels, flat-punch data, direct contact.
 
-Each name is imported when it is first asked for, so that the integral equation does not load the FFT library.
+Each name is imported at first use, so that the integral equation does not load the FFT library.
 """
 
 from importlib import import_module

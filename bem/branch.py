@@ -1,12 +1,12 @@
 """Equilibria over the contact radius: folds, stability, path of a withdrawal, loss of contact, Eqs. (40)-(46).
 
-Depth and force are functions of the contact radius a, from springs or from discs of cells. Under a control q - the
-depth, the force or the displacement depth + force/K of a machine of stiffness K - an equilibrium is stable where q
-grows with a. Along a = b + (y - y_b)^2, b the last breakpoint, they are smooth functions of y: the elongation starts
-like sqrt(a), and g starts like sqrt(a - b) behind a kink. Folds are roots of polynomials, all of which are found.
+Depth and force are functions of the contact radius a, from springs or from discs of cells. The controlled quantity q is
+the depth, the force, or the displacement depth + force/K of a machine of stiffness K. An equilibrium is stable where q
+increases with a. With a = b + (y - y_b)^2, b the last breakpoint, depth and force are smooth functions of y, although
+the elongation starts like sqrt(a), and g starts like sqrt(a - b) at a kink. Folds are all roots of polynomials in y.
 
-In a slow withdrawal contact persists while some state of smaller or equal radius has the prescribed q: from an unstable
-state the front runs inwards to the next stable one. So contact is lost at the smallest q at radii up to the first.
+In a slow withdrawal contact persists while some state of smaller or equal radius has the prescribed q, since the front
+of an unstable state moves inwards to the next stable one. So contact is lost at the smallest q of all smaller radii.
 """
 
 from __future__ import annotations
@@ -30,10 +30,10 @@ CONTROLS: Final[tuple[Controlled, ...]] = ("displacement", "force", "machine")
 DEPTH, FORCE, MACHINE = range(3)
 # y over its largest value below which folds are ignored: closer to the tip rounding errors dominate.
 TIP: Final = 1e-5
-# Distance over half a panel by which a root may lie outside of it, and below which two roots are one. A hundredth of it
-# counts rounding errors as folds where a section begins with zero slope.
+# Distance over half a panel by which a root may lie outside of it, and below which two roots coincide. A hundredth of
+# it treats rounding errors as folds where a section begins with zero slope.
 EDGE: Final = 1e-6
-# Steps of a bracketed inversion; bisection alone needs 53.
+# Largest number of steps of a bracketed inversion; bisection alone needs 53.
 MOST_STEPS: Final = 60
 
 # Depth [m] and force [N], shape (2, n), at radii b + d: b [m] at the start of a section, d [m] beyond it, shape (n,).
@@ -48,7 +48,7 @@ class Branch:
         functions: Depth [m], force [N] and displacement of the machine [m] over y.
         section_ends: y at zero, at the breakpoints and at the largest radius, shape (sections + 1,).
         radii: a [m] at `section_ends`.
-        compliance: 1/K [m/N] of a machine; zero without a machine, whose displacement is no control then.
+        compliance: 1/K [m/N] of a machine; zero without a machine.
     """
 
     functions: Piecewise
@@ -63,7 +63,7 @@ class Branch:
         """All equilibria up to a contact radius.
 
         Args:
-            sample: Depth and force of the equilibria.
+            sample: Returns depth [m] and force [N] of the equilibria.
             breakpoints: Radii [m] where the profile is not analytic, its flat end included.
             radius: Largest contact radius [m].
             error: Relative error of the samples.
@@ -90,22 +90,22 @@ class Branch:
 
     @property
     def end(self) -> float:
-        """Largest y."""
+        """y at the largest radius."""
         return float(self.section_ends[-1])
 
     @property
     def controls(self) -> tuple[int, ...]:
-        """Indices of the quantities that may be controlled."""
+        """Indices in `functions` of the quantities that may be controlled."""
         return (DEPTH, FORCE, MACHINE) if self.compliance else (DEPTH, FORCE)
 
     def radius(self, y: FloatArray, flat_radius: float = 0.0) -> FloatArray:
-        """a [m] at y; over a flat end of radius b exact a - b [m]."""
+        """a [m] at y, or a - flat_radius [m] without cancellation, shape (n,)."""
         section = np.clip(self.section_ends.searchsorted(y, side="right") - 1, 0, self.radii.size - 2)
         excess = (self.radii[section] - flat_radius) + (y - self.section_ends[section]) ** 2
         return np.asarray(np.minimum(excess, self.radii[-1] - flat_radius))
 
     def position(self, radius: FloatArray) -> FloatArray:
-        """y of contact radii [m]."""
+        """y at contact radii [m], shape (n,)."""
         section = np.clip(self.radii.searchsorted(radius, side="right") - 1, 0, self.radii.size - 2)
         return np.asarray(self.section_ends[section] + np.sqrt(np.maximum(radius - self.radii[section], 0.0)))
 
@@ -114,7 +114,7 @@ class Branch:
         return self.functions(y)[:MACHINE]
 
     def at(self, control: int, y: float) -> float:
-        """q [m, N or m] at y: zero at y = 0, at a kink the limit from smaller radii."""
+        """q [m, N or m] at y: zero at y = 0; at a breakpoint the limit from smaller radii."""
         return float(self.functions(np.array([y]))[control, 0]) if y > 0.0 else 0.0
 
     def state(self, y: float) -> tuple[float, float, float]:
@@ -122,7 +122,7 @@ class Branch:
         return float(self.radius(np.array([y]))[0]), self.at(DEPTH, y), self.at(FORCE, y)
 
     def stable(self, control: int, y: FloatArray) -> BoolArray:
-        """Whether q grows with the radius at y."""
+        """Whether q increases with the radius at y, so that the equilibrium is stable, shape (n,)."""
         return np.asarray(self.functions.slope(y)[control] > 0.0)
 
     def folds(self, control: int) -> list[float]:
@@ -130,11 +130,11 @@ class Branch:
         return self._folds[control]
 
     def solutions(self, control: int, target: FloatArray) -> FloatArray:
-        """y of each target on each stable part of the branch, from the tip outwards, shape (parts, n); or NaN."""
+        """y with q = target on each stable part of the branch, from the tip outwards, or NaN, shape (parts, n)."""
         places = []
         for low, high in pairwise([0.0, *self.folds(control), self.end]):
             if self.stable(control, np.array([0.5 * (low + high)]))[0]:
-                # Rounded values may jump at a kink; targets within the jump have their solution there.
+                # Values may jump by rounding at a breakpoint; for targets within the jump it is the solution.
                 ends = self.functions(np.array([low, np.nextafter(low, high), high]))[control]
                 inside = (target >= ends[:2].min()) & (target <= ends[2])
                 places.append(np.full(target.shape, np.nan))
@@ -146,7 +146,7 @@ class Branch:
         return np.asarray(np.fmin.reduce(self.solutions(control, target), axis=0, initial=np.nan))
 
     def widest(self, control: int, target: float) -> float:
-        """Largest radius [m] of a stable equilibrium with this q, or of the whole branch where there is none."""
+        """Largest radius [m] of a stable equilibrium with q = target, or of the whole branch if there is none."""
         y = self.solutions(control, np.array([target]))
         widest = np.fmax.reduce(y, axis=0, initial=np.nan)
         return float(self.radius(np.where(np.isnan(widest), self.end, widest))[0])
@@ -161,9 +161,9 @@ class Branch:
         return min([0.0, *self._within(control, start), start], key=lambda y: self.at(control, y))
 
     def largest_tension(self, control: int, start: float) -> float:
-        """y of the smallest force on the way to the loss of contact.
+        """y of the largest tension (smallest force) in a withdrawal from y = start, up to the loss of contact.
 
-        A jump of the front ends at a smaller tension than it began with.
+        States that jumps of the front skip do not count.
         """
         lost = self.loss(control, start)
         if control == FORCE:
@@ -172,7 +172,7 @@ class Branch:
         return min((y for y in points if self._is_met(control, y, start)), key=lambda y: self.at(FORCE, y))
 
     def pull_off(self, control: int, start: float) -> dict[str, float]:
-        """State where contact is lost, and the largest tension on the way, under the names of a `DetachmentPath`."""
+        """State at the loss of contact, and largest tension before it, with the names of a `DetachmentPath`."""
         radius, depth, force = self.state(self.loss(control, start))
         return {
             "pull_off_force": self.at(FORCE, self.largest_tension(control, start)),
@@ -182,11 +182,11 @@ class Branch:
         }
 
     def critical_points(self, start: float, *, pinned: bool) -> tuple[CriticalPoint, ...]:
-        """The start of the moving front, all folds at smaller radii, and the state after first touch.
+        """All folds at radii below the start, and the start of a flat punch, or of others the state after snap-in.
 
         Args:
             start: y from which the indenter is withdrawn.
-            pinned: Whether the front rests at a sharp edge, of a flat punch, until the branch's depth is reached.
+            pinned: Whether the edge of the contact is first fixed at that of a flat punch.
         """
         points = [(c, "start", start) for c in self.controls if pinned]
         points += [(c, self._kind(c, y), y) for c in self.controls for y in self._within(c, start)[::-1]]
@@ -203,7 +203,7 @@ class Branch:
         return [y for y in self.folds(control) if y < start]
 
     def _is_met(self, control: int, y: float, start: float) -> bool:
-        """Whether a withdrawal passes the state at y: every state of larger radius has a larger q."""
+        """Whether a withdrawal reaches the state at y: all states of larger radius up to the start have a larger q."""
         outside = [fold for fold in (*self._within(control, start), start) if fold > y]
         return all(self.at(control, fold) >= self.at(control, y) for fold in outside)
 
@@ -216,7 +216,7 @@ class Branch:
         return tuple(self._turns(control) for control in self.controls)
 
     def _turns(self, control: int) -> list[float]:
-        """Kinks and roots of the slope, wherever its sign differs on both sides."""
+        """y of breakpoints and roots of dq/dy at which dq/dy changes its sign, increasing."""
         points = np.concatenate([self.section_ends[1:-1], *self._roots(control)])
         inside = points[(points > TIP * self.end) & (points < self.end)]
         points = np.sort(np.concatenate([[0.0], inside, [self.end]]))
@@ -225,34 +225,37 @@ class Branch:
         return list(points[1:-1][grows[1:] != grows[:-1]].tolist())
 
     def _roots(self, control: int) -> list[FloatArray]:
-        """Roots of the slope in panels whose coefficients do not exclude one, and its sign changes between panels."""
+        """y of sign changes of dq/dy between panels, and of its roots in panels whose coefficients allow a root."""
         slope, edges = self.functions.slope.series[:, control], self.functions.edges
         before, after = slope.sum(axis=0)[:-1], np.asarray(chebyshev.chebval(-1.0, slope))[1:]
-        doubtful: NDArray[np.intp] = np.flatnonzero(np.abs(slope[0]) <= np.abs(slope[1:]).sum(axis=0))
-        return [edges[1:-1][before * after < 0.0], *(_roots(slope[:, i], *edges[i : i + 2]) for i in doubtful)]
+        possible: NDArray[np.intp] = np.flatnonzero(np.abs(slope[0]) <= np.abs(slope[1:]).sum(axis=0))
+        return [edges[1:-1][before * after < 0.0], *(_roots(slope[:, i], *edges[i : i + 2]) for i in possible)]
 
     def _inverted(self, control: int, target: FloatArray, low: float, high: float) -> FloatArray:
-        """y of each target on a part where q grows; a Newton step out of its bracket is halved."""
-        left, right = np.full(target.shape, low), np.full(target.shape, high)
-        y = 0.5 * (left + right)
+        """y with q = target on a part [low, high] where q increases, by Newton's method within a bracket."""
+        low_end, high_end = np.full(target.shape, low), np.full(target.shape, high)
+        y = 0.5 * (low_end + high_end)
         for _ in range(MOST_STEPS):
             excess, slope = self.functions(y)[control] - target, self.functions.slope(y)[control]
-            left, right = np.where(excess <= 0.0, y, left), np.where(excess >= 0.0, y, right)
+            low_end, high_end = np.where(excess <= 0.0, y, low_end), np.where(excess >= 0.0, y, high_end)
             step = y - excess / np.where(slope > 0.0, slope, np.inf)
-            before, y = y, np.where((step >= left) & (step <= right) & (slope > 0.0), step, 0.5 * (left + right))
+            before, y = (
+                y,
+                np.where((step >= low_end) & (step <= high_end) & (slope > 0.0), step, 0.5 * (low_end + high_end)),
+            )
             if np.all(np.abs(y - before) <= 1e-13 * high):
                 break
         return np.asarray(y)
 
 
 def _roots(series: FloatArray, low: float, high: float) -> FloatArray:
-    """Real roots of a Chebyshev series on a panel, each with one more step of Newton's method."""
+    """Real roots of a Chebyshev series on the panel [low, high], improved by one Newton step."""
     size = np.abs(series).max()
     if size == 0.0:
         return np.empty(0)
     roots = chebyshev.chebroots(chebyshev.chebtrim(series, 1e-15 * size))
     z = roots.real[(np.abs(roots.imag) < EDGE) & (np.abs(roots.real) < 1.0 + EDGE)]
-    # A double root, which has no slope, is no change of sign and stays where it is.
+    # At a double root the slope is zero. It is no change of sign, and is not improved.
     with np.errstate(divide="ignore", invalid="ignore"):
         step = chebyshev.chebval(z, series) / chebyshev.chebval(z, chebyshev.chebder(series))
     return np.asarray(0.5 * (low + high) + 0.5 * (high - low) * (z - np.where(np.abs(step) < EDGE, step, 0.0)))

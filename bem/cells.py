@@ -1,18 +1,18 @@
-"""Adhesion on a grid whose cells let go at a stress that depends on their size (Pohrt and Popov 2015).
+"""Adhesion on a grid whose cells detach at a stress that depends on their size (Pohrt and Popov 2015).
 
 At the edge of an adhering contact the stress is singular, so no fixed strength can be a criterion. Let a square cell of
-size s carry the uniform stress tau. Relaxing it releases the elastic energy that this stress holds in a half-space,
+size s carry the uniform stress tau. Its relaxation releases the elastic energy of this stress in a half-space,
 
     U = (1/2) int tau u dA = kappa tau^2 s^3/E*,
     kappa = (1/2 pi) int int dA dA'/|r - r'| = (2/3 pi) [1 - sqrt 2 + (3/2) ln((sqrt 2 + 1)/(sqrt 2 - 1))] = 0.473201,
 
-over a unit square. The cell lets go when this pays for the new surface, U = dgamma s^2, at the tension
+over a unit square. The cell detaches when U reaches the energy dgamma s^2 of the new surface, at the tension
 
     tau_c = sqrt(E* dgamma/(kappa s)).
 
-Close to its edge a layer responds like the half-space, so the constant serves layers whose cells are small against the
-thickness. At each depth all edge cells whose tension exceeds tau_c are removed and the pressure is solved again, until
-none does.
+Close to the edge a layer responds like the half-space, so the constant is valid for layers with cells much smaller than
+the thickness. At each depth all edge cells whose tension exceeds tau_c are removed and the pressure is solved again,
+until no tension exceeds it.
 """
 
 from __future__ import annotations
@@ -36,25 +36,25 @@ from contact.stated import stated_error
 
 # kappa, derived above.
 CELL_ENERGY: Final = 2.0 / (3.0 * pi) * (1.0 - sqrt(2.0) + 1.5 * log((sqrt(2.0) + 1.0) / (sqrt(2.0) - 1.0)))
-# Radius at the start of a detachment over that of the least force; half the excess misses the fold on 48 cells.
+# Radius at the start of a detachment over that at the least force; with 1.1 the fold is missed on 48 cells.
 AHEAD: Final = 1.2
-# Radius of the grid's disc over that of the largest contact, which may be a little wider on the cells.
-ROOM: Final = 1.05
-# Depth steps per critical elongation, and the part of it to which the depth of pull-off is found. Half as many steps
-# move pull-off forces by 0.1 %.
+# Radius of the grid's disc over that of the largest contact, which may be slightly larger on cells.
+MARGIN: Final = 1.05
+# Depth steps per critical elongation, and tolerance of the depth at pull-off over it. Half as many steps change
+# pull-off forces by 0.1 %.
 STEPS: Final = 40
 FOLD: Final = 2e-3
-# A contact that shrinks below this part of its radius at one depth step is past the fold; 0.5 finds the same ones.
+# Ratio of the radii after and before a depth step below which the contact is lost; with 0.5 pull-offs are the same.
 COLLAPSE: Final = 0.7
-# Largest error of the displacement under the contact; ten times it moves pull-off forces by 0.3 %.
+# Largest relative error of the displacement under the contact; ten times of it changes pull-off forces by 0.3 %.
 TOLERANCE: Final = 1e-3
-# Error of the edge in cells; over the contact radius it is the floor of stated errors.
+# Error of the position of the edge in cells; over the contact radius it is the least error estimate.
 LAG: Final = 2.0
 NAMES: Final = ("contact_radius", "indentation_depth", "normal_force", "contact_stiffness")
 
 
 class CellState(NamedTuple):
-    """Cells in contact, p/E* on them, and the depth in cell sizes."""
+    """State of the grid: cells in contact and p/E*, shape (m, m), and depth in cell sizes."""
 
     contact: BoolArray
     pressure: FloatArray
@@ -63,7 +63,7 @@ class CellState(NamedTuple):
 
 @dataclass(frozen=True)
 class CellGrid:
-    """An adhering indenter above one grid, whose disc has the largest contact radius.
+    """An adhering indenter on one grid, whose disc is at least as large as the largest contact.
 
     Attributes:
         scene: Layer, indenter and adhesion.
@@ -79,12 +79,12 @@ class CellGrid:
 
     @property
     def size(self) -> float:
-        """s [m]."""
+        """Side s of a cell [m]."""
         return self.radius / disc_of(self.cells).radius
 
     @property
     def strength(self) -> float:
-        """tau_c/E*."""
+        """Strength of a cell over E*, tau_c/E*."""
         return sqrt(adhesive_length(self.scene) / (CELL_ENERGY * self.size))
 
     @cached_property
@@ -96,7 +96,7 @@ class CellGrid:
 
     @cached_property
     def height(self) -> FloatArray:
-        """f in cell sizes."""
+        """f at the cell centres in cell sizes, shape (m, m)."""
         within = np.minimum(self.radius * disc_of(self.cells).centres, self.scene.indenter.max_radius)
         return np.asarray(self.scene.indenter.height(within) / self.size)
 
@@ -106,14 +106,14 @@ class CellGrid:
 
     @cached_property
     def first(self) -> CellState:
-        """The whole disc, at the depth at which its first cell lets go: p is linear in the depth, cell by cell."""
+        """The whole disc at the depth at which its first cell detaches; on each cell p is linear in the depth."""
         contact = disc_of(self.cells).contact
         rim, risen = _rim(contact), self._solve(contact, self.height)
         depth = float(np.max((risen[rim] - self.strength) / self._flat[rim]))
         return CellState(contact, depth * self._flat - risen, depth)
 
     def settled(self, state: CellState, depth: float, least: float = COLLAPSE) -> CellState | None:
-        """Equilibrium at a depth, by letting go; None if the contact shrinks below `least` times its radius."""
+        """Equilibrium at a depth after cells detach; None if the contact shrinks below `least` times its radius."""
         contact, pressure = state.contact, state.pressure
         while np.count_nonzero(contact) > least**2 * np.count_nonzero(state.contact):
             pressure = self._solve(contact, depth - self.height, pressure)
@@ -147,18 +147,18 @@ class CellGrid:
         return rows.T
 
     def row(self, state: CellState) -> tuple[float, float, float]:
-        """Radius of a circle with the area of the contact [m], depth [m] and force [N]."""
+        """Radius of the circle with the area of the contact [m], depth [m] and force [N]."""
         share = np.count_nonzero(state.contact) / np.count_nonzero(disc_of(self.cells).contact)
         force = 4.0 * contact_modulus(self.scene.layer) * self.size**2 * float(state.pressure.sum())
         return self.radius * sqrt(share), state.depth * self.size, force
 
     def stiffness(self, state: CellState) -> float:
-        """k_N [N/m] of the cells in contact."""
+        """Contact stiffness k_N [N/m] of the cells in contact."""
         return 4.0 * contact_modulus(self.scene.layer) * self.size * float(self._solve(state.contact, 1.0).sum())
 
 
 def solve_cells(scene: Scene, points: int, threads: int, settings: dict[str, Any]) -> ContactPath | DetachmentPath:
-    """Contacts at given depths, or a detachment from a contact radius to pull-off, with half as many cells as well."""
+    """Contacts at given depths, or a detachment up to pull-off, with error estimates from half as many cells."""
     log, is_detachment = StageLog(), isinstance(scene.loading, Detachment)
     radius = _largest(scene, Pressing(scene.layer, scene.indenter, FIRST_CELLS, threads=threads))
     refuse_unresolved(scene.layer, scene.indenter, radius, points)
@@ -179,7 +179,7 @@ def _path(fine: CellGrid, coarse: CellGrid) -> dict[str, Any]:
 
 
 def _detachment(fine: CellGrid, coarse: CellGrid) -> dict[str, Any]:
-    """Numbers of a detachment."""
+    """Arguments of `DetachmentPath`, with errors from the coarse grid."""
     columns, other = fine.unloaded(), coarse.unloaded()
     radius, lag, least = columns[0], fine.size / columns[0], int(columns[2].argmin())
     near = [np.interp(radius, other[0][::-1], row[::-1]) for row in other]
@@ -187,7 +187,7 @@ def _detachment(fine: CellGrid, coarse: CellGrid) -> dict[str, Any]:
     by_force = fine.scene.loading.controlled == "force"  # type: ignore[attr-defined]
     scalars, others = (_pull_off(rows, by_force=by_force) for rows in (columns, other))
     for name, value in scalars.items():
-        # At a fold depth and force are stationary: the radius is known to the root of their error.
+        # At a fold depth and force are stationary, so the error of the radius is the root of their error.
         flat = 0.0 if name == "pull_off_force" else 2.0 * sqrt(FOLD)
         errors[name] = _errors(np.array([value]), np.array([others[name]]), lag[:1] + flat / LAG)
     states = [dict(zip(NAMES, column, strict=False)) for column in columns.T.tolist()]
@@ -203,7 +203,7 @@ def _detachment(fine: CellGrid, coarse: CellGrid) -> dict[str, Any]:
 
 
 def _errors(value: FloatArray, coarse: FloatArray, lag: FloatArray | float) -> FloatArray:
-    """Stated errors relative to the largest magnitude; `lag` is a cell over the contact radius."""
+    """Error estimates over the largest magnitude of the values; `lag` is the cell size over the contact radius."""
     return stated_error(value, coarse, scale=np.abs(value).max(), floor=LAG * np.asarray(lag))
 
 
@@ -217,11 +217,11 @@ def _largest(scene: Scene, pressing: Pressing) -> float:
     if isinstance(loading, Detachment):
         lost, _, _ = branch.state(branch.loss(FORCE, branch.end))
         return min(AHEAD * lost + 0.1 * indenter.flat_radius, indenter.max_radius)
-    return min(ROOM * branch.widest(DEPTH, max(float(loading.values.max()), 0.0)), end)  # type: ignore[attr-defined]
+    return min(MARGIN * branch.widest(DEPTH, max(float(loading.values.max()), 0.0)), end)  # type: ignore[attr-defined]
 
 
 def _pull_off(columns: FloatArray, *, by_force: bool) -> dict[str, float]:
-    """Numbers of the pull-off from radius, depth and force, shape (3, n)."""
+    """Radius [m], depth [m] and force [N] at pull-off by name, from those of a path, shape (3, n)."""
     names = ("pull_off_contact_radius", "pull_off_depth", "force_at_loss")
     lost = columns[:, int(columns[2].argmin()) if by_force else -1]
     return dict(zip(names, lost.tolist(), strict=True)) | {"pull_off_force": float(columns[2].min())}

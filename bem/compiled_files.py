@@ -1,7 +1,6 @@
-"""Compiled files without the packages around them: a first answer need not wait for what it never asks.
+"""Import of compiled files without their packages, for LAPACK, FFTW and special functions.
 
-LAPACK and FFTW are loaded so.  `import scipy.linalg` takes 0.15 s of processor time, the compiled file behind
-`scipy.linalg.lapack` alone 0.003 s.
+`import scipy.linalg` takes 0.15 s of processor time, the compiled file behind `scipy.linalg.lapack` alone 0.003 s.
 """
 
 from __future__ import annotations
@@ -20,13 +19,13 @@ _NAME = "scipy.linalg._flapack"
 
 @cache
 def lapack() -> Any:
-    """The functions of `scipy.linalg.lapack`, as dpotrf and dtrtrs; the same code as SciPy's own, digit for digit."""
+    """The functions of `scipy.linalg.lapack`, as dpotrf and dpotrs, with results identical to SciPy's."""
     return compiled(_NAME, "scipy.linalg.lapack")
 
 
 @cache
 def compiled(name: str, otherwise: str) -> Any:
-    """A compiled file alone; where it is loaded already, or arranged in another way, what its package offers.
+    """The module of a compiled file alone, or the public module if that fails or is imported already.
 
     Args:
         name: Name of the compiled file, as "scipy.linalg._flapack".
@@ -36,7 +35,7 @@ def compiled(name: str, otherwise: str) -> Any:
 
 
 def _alone(name: str) -> ModuleType | None:
-    """The compiled file; None where it is loaded already, or where the package is arranged in another way."""
+    """The module of the compiled file; None if it is imported already or the package has another layout."""
     first, *folders, _ = name.split(".")
     package = importlib.util.find_spec(first)
     if name in sys.modules or package is None or not package.submodule_search_locations:
@@ -49,6 +48,6 @@ def _alone(name: str) -> ModuleType | None:
         module = importlib.util.module_from_spec(spec)
         spec.loader.exec_module(module)
     except ImportError:
-        # Some systems find the libraries behind it only after the package's own set-up.
+        # On some systems its libraries are found only after the set-up of the whole package.
         return None
     return sys.modules.setdefault(name, module)

@@ -1,4 +1,4 @@
-"""The equation of one contact solved for its profile, point by point: an alternative to `bem.equation`.
+"""The integral equation of one contact solved by Nystroem's method: an alternative to `bem.equation`.
 
 The pressure's Abel density phi on [0, a] obeys
 
@@ -6,11 +6,11 @@ The pressure's Abel density phi on [0, a] obeys
     g_hs(x) = x int_0^(pi/2) f'(x cos u) du                  transform of the profile for the half-space, Eq. (8)
     phi(a) = 0: depth of the contact,   F = 2 E* int phi dt,   k_N = 2 E* int phi_1 dt, phi_1 for the right side 1
 
-Nystroem's method: phi at Gauss nodes of panels between the breaks b of the profile. On them t = b + s^2, which makes
-the root of g_hs at a break smooth. Only 1 - chi is shared with the method of dimensionality reduction.
+The unknowns are phi at Gauss nodes of panels between the breaks b of the profile. There t = b + s^2, in which g_hs is
+smooth, although it starts like a root at a break. Only 1 - chi is shared with the method of dimensionality reduction.
 
-On graded layers 1 - chi = sum_j d_j y^j + rest, y = B/sqrt(k^2 + B^2): the sum is a kernel in closed form with a
-logarithm at x = t, and the rest falls so fast that it needs few wave numbers, like 1 - chi of uniform layers.
+On graded layers 1 - chi = sum_j d_j y^j + rest, y = B/sqrt(k^2 + B^2). The kernel of the sum has a closed form with a
+logarithm at x = t. The rest decays so fast that few wave numbers suffice, as for 1 - chi of uniform layers.
 """
 
 from __future__ import annotations
@@ -28,15 +28,15 @@ from bem.numerics import EPS, gauss, graded, panels
 from contact import ElasticLayer, PowerLaw, Profile, Sphere, Spheroconical
 from contact.records.validation import FloatArray
 
-# Largest phase of a cosine on a panel of wave numbers: 40 Gauss nodes integrate it to the last digit.
+# Largest phase of a cosine on a panel of wave numbers, which 40 Gauss nodes integrate to rounding.
 _PHASE = 48.0
-# Wave numbers that are summed at a time: memory only.
+# Wave numbers that are summed at a time, which bounds the memory.
 _CHUNK = 4000
-# Share of the contact radius below which the pressure is that of this radius. Half of it doubles roundings there.
+# Least r/a at which the pressure is computed, in place of smaller radii. Half of it doubles rounding errors there.
 _AXIS = 1e-6
-# Share of the contact radius on which the first panel under a power law r^n ends: 0.02 leaves 1e-13 for n = 1.07.
+# t/a at the end of the first panel under a power law r^n: the error for n = 1.07 is 1e-13.
 _TIP = 0.02
-# B times the thickness. Half or twice of it leave a hundred times more.
+# B times the thickness. Half or twice of it make the rest a hundred times larger.
 _DECAY = 10.0
 # Largest wave number of a graded layer over that of a uniform one: at least, over the depth of the first break of its
 # constants, and at most. With half of them the rest is ten times larger.
@@ -46,7 +46,7 @@ _LONGEST = 4.0
 
 
 class Sizes(NamedTuple):
-    """All sizes of the discretisation; the stated error is the change from one set of sizes to a finer one.
+    """All sizes of the discretisation; the error estimate is the change of an answer to finer sizes.
 
     Attributes:
         nodes: Gauss nodes per panel.
@@ -54,8 +54,9 @@ class Sizes(NamedTuple):
         waves: Gauss nodes per panel of wave numbers.
         reach: Largest wave number times the thickness.
         slopes: Gauss nodes per panel of the profile's transform and of the Abel integrals.
-        terms: Number of d_j of a graded layer.
-        corner: Last panel towards kinks and edge of a graded layer, over the stretch or the largest panel.
+        terms: Number of coefficients d_j of a graded layer.
+        corner: Length of the last panel towards kinks and edge of a graded layer, over the distance between breaks or
+            the largest panel.
         search: Tolerance of ln(a - b) in searches of the radius.
     """
 
@@ -70,13 +71,13 @@ class Sizes(NamedTuple):
 
     @property
     def finer(self) -> Sizes:
-        """The companion that states errors."""
+        """Finer sizes, for error estimates."""
         sizes = self._replace(nodes=self.nodes + 4, width=0.8 * self.width, waves=self.waves + 6, reach=self.reach + 3)
         return sizes._replace(slopes=self.slopes + 4, terms=self.terms + 1, corner=self.corner / 4)
 
 
 class Kernel:
-    """1 - chi of a layer at wave numbers k [1/m], split into a rest that falls fast and, on graded layers, a tail."""
+    """1 - chi of a layer at wave numbers k [1/m]: a rest that decays fast and, on graded layers, sum_j d_j y^j."""
 
     def __init__(self, layer: ElasticLayer, sizes: Sizes) -> None:
         self.layer, self.sizes, self.thickness = layer, sizes, layer.surface.thickness
@@ -92,12 +93,12 @@ class Kernel:
             self.d = np.linalg.lstsq(y[:, None] ** np.arange(sizes.terms), values / y, rcond=None)[0]
 
     def one_minus_chi(self, k: FloatArray) -> FloatArray:
-        """1 - chi: all that is used of the other method."""
+        """1 - chi at wave numbers k [1/m], shape (n,)."""
         kernel = contact_kernel(self.layer)
         return kernel.one_minus_chi(k * self.thickness / kernel.units)
 
     def waves(self, distance: float) -> tuple[FloatArray, FloatArray]:
-        """Nodes k and weights times (2/pi) (1 - chi) without the tail, for phases up to k times a distance [m]."""
+        """Nodes k and weights times (2/pi) rest, shape (n,) each, for phases up to k times a distance [m]."""
         if self.is_uniform:
             return np.zeros(0), np.zeros(0)
         count = int(np.ceil(self.reach * max(distance / _PHASE, self.thickness / 2)))
@@ -125,9 +126,9 @@ class Panels(NamedTuple):
     """Panels on which t = start + s^2, low < s < high.
 
     Attributes:
-        start: b [m], shape (p,).
-        low: Shape (p,).
-        high: Shape (p,).
+        start: Breaks b [m], shape (p,).
+        low: Smallest s of each panel, shape (p,).
+        high: Largest s of each panel, shape (p,).
         nodes: Gauss nodes per panel.
     """
 
@@ -156,17 +157,17 @@ class Panels(NamedTuple):
         return np.asarray(self.to_series @ values.reshape(-1, self.nodes).T)
 
     def place(self, t: FloatArray, p: int) -> tuple[FloatArray, FloatArray]:
-        """s of the point of one panel closest to t, and the distance of t from the panel."""
+        """s of the point of panel p closest to t, and the distance of t from the panel [m], shape of t."""
         low, high = self.low[p], self.high[p]
         first, last = self.start[p] + low**2, self.start[p] + high**2
         s = np.clip(np.sqrt(np.maximum(t - self.start[p], 0)), low, high)
-        # Slivers count by the root of their length: what is a rounding from an end is the end.
+        # Points within rounding of an end are set to it, since s varies like the root of the distance.
         s = np.where(np.abs(t - first) <= 4 * EPS * t, low, np.where(np.abs(t - last) <= 4 * EPS * t, high, s))
         gap = np.maximum(first - t, t - last)
         return s, np.where(gap > 4 * EPS * t, gap, 0.0)
 
     def abel(self, series: FloatArray, r: FloatArray, count: int, *, beyond: bool) -> FloatArray:
-        """int g(s)/sqrt(|t^2 - r^2|) ds over t > r, or over t < r, of a series g; panels shrink towards r."""
+        """int g(s)/sqrt(|t^2 - r^2|) ds over t > r (`beyond`) or t < r, shape of r, for a Legendre series g."""
         total, (v, w) = np.zeros_like(r), _one_sided(count, 8)
         for p, (low, high) in enumerate(zip(self.low, self.high, strict=True)):
             here, gap = self.place(r, p)
@@ -181,7 +182,7 @@ class Panels(NamedTuple):
 
 
 def _one_sided(count: int, levels: int) -> tuple[FloatArray, FloatArray]:
-    """Composite rule on [0, 1], v = u^2 on panels that shrink towards 0."""
+    """Composite Gauss rule on [0, 1] with nodes v = u^2, on panels in u that shrink towards 0."""
     u, w = panels(np.concatenate([[0.0], 0.15 ** np.arange(float(levels))[::-1]]), count)
     return u * u, 2 * u * w
 
@@ -189,7 +190,7 @@ def _one_sided(count: int, levels: int) -> tuple[FloatArray, FloatArray]:
 def transform(profile: Profile, excess: FloatArray, count: int) -> FloatArray:
     """g_hs [m] at x = b + excess > 0 [m], b the flat radius, shape (n,).
 
-    Stretches between breaks have panels that shrink towards their ends, but for those that begin smoothly.
+    Between two breaks panels shrink towards both ends, unless f' is continuous at the inner break.
     """
     total, flat, end = np.zeros_like(excess), profile.flat_radius, float(excess.max())
     inner = (b - flat for b in profile.breakpoints if 0 < b - flat < end)
@@ -205,7 +206,7 @@ def transform(profile: Profile, excess: FloatArray, count: int) -> FloatArray:
 
 
 def panels_of(profile: Profile, a: float, kernel: Kernel) -> Panels:
-    """Panels of the contact of radius a [m], short against the distance of s from singularities of phi."""
+    """Panels of the contact of radius a [m], shorter than the distance of s from singularities of phi."""
     width = kernel.sizes.width * a if kernel.is_uniform else kernel.width
     pole = profile.radius if isinstance(profile, Sphere | Spheroconical) else inf
     ends = np.unique([0.0, *(b for b in (profile.flat_radius, *profile.breakpoints) if b < a), a]).tolist()
@@ -226,10 +227,10 @@ def panels_of(profile: Profile, a: float, kernel: Kernel) -> Panels:
 
 
 class Density:
-    """Solution for one contact radius; columns of arrays belong to the right-hand sides 1 and g_hs.
+    """Solution at one contact radius; columns of arrays belong to the right-hand sides 1 and g_hs.
 
     Args:
-        kernel: 1 - chi of the layer.
+        kernel: Kernel 1 - chi of the layer.
         profile: The indenter.
         a: Contact radius [m].
     """
@@ -247,10 +248,11 @@ class Density:
         self.depth = float(self.edge[1] / self.edge[0])
 
     def _load(self, excess: FloatArray) -> FloatArray:
+        """Right-hand sides 1 and g_hs at x = b + excess [m], b the flat radius, shape (n, 2)."""
         return np.column_stack([np.ones(excess.size), transform(self.profile, excess, self.kernel.sizes.slopes)])
 
     def _solved(self) -> FloatArray:
-        """phi at the nodes."""
+        """phi at the nodes, shape (nodes, 2)."""
         k, weight = self.kernel.waves(2 * self.a)
         waves = np.cos(np.multiply.outer(k, self.t))
         matrix = (waves.T * weight) @ (waves * self.w) + self._tail(self.t)
@@ -267,9 +269,9 @@ class Density:
         return total
 
     def _tail(self, x: FloatArray) -> FloatArray:
-        """The tail's part of int L(x, t) phi(t) dt as weights of phi at the nodes, shape (x.size, nodes).
+        """Weights of phi at the nodes in the part of int L(x, t) phi(t) dt from `Kernel.tail`, shape (x.size, nodes).
 
-        Where x or -x is closer to a panel than it is long, the kernel is integrated by panels that shrink towards it.
+        If x or -x is closer to a panel than its length, quadrature panels shrink towards the point.
         """
         rows, grid, (v, u) = np.zeros((x.size, self.t.size)), self.panels, _one_sided(self.kernel.sizes.slopes, 6)
         if not self.kernel.is_graded:

@@ -1,7 +1,7 @@
-"""The layer's integral equation solved directly for the profile, one contact radius at a time: a method of its own.
+"""The integral equation of the layer solved directly for the profile, at each contact radius separately.
 
-A prescribed depth or force is met by a root search over contact radii and then inserted as it is, since F(depth, a) is
-stationary in a. Errors: the same contacts by a finer discretisation (`contact.stated`).
+For a prescribed depth or force the contact radius is found by a root search. Then the prescribed value is inserted
+unchanged, since F(depth, a) is stationary in a. Errors are estimated from a finer discretisation (`contact.stated`).
 """
 
 from __future__ import annotations
@@ -33,21 +33,21 @@ from contact.scene.profiles import FlatPunch
 from contact.scene.scene import Scene
 from contact.stated import stated_error
 
-# What a loading prescribes, as an index of `ContactPath.ARRAYS`.
+# Index of the prescribed quantity in `ContactPath.ARRAYS`.
 _PRESCRIBED = {ContactRadii: 0, IndentationDepths: 1, NormalForces: 2}
 # Largest a/h of uniform layers and stacks (two seconds per radius there) and of graded layers.
 LARGEST_RATIO, LARGEST_GRADED_RATIO = 100.0, 16.0
-# Quantities whose changes are errors.
+# Quantities that are compared between two discretisations.
 _COMPARED = (*ContactPath.ARRAYS[1:], "pressure", "surface_displacement")
-# Step of ln(a - b) for the derivative of the load. Its third digit enters an error only.
+# Step of ln(a - b) for the derivative of the load, which is used in error estimates only.
 _STEP = 1e-3
 # Rounding error over the condition k_bar, and of pressure and displacement by quadrature.
 _ROUNDING, _FIELD_ROUNDING = 32 * EPS, 1e-12
 # Largest d ln k_N/d ln a, that of thin incompressible layers.
 _STIFFENING = 4.0
-# Radii inside, and outside over the contact radius, at which fields are compared.
+# Number of radii inside, and r/a outside, at which fields are compared.
 _INSIDE, _OUTSIDE = 16, np.array([1.02, 1.5])
-# A contact pulls where its pressure is below minus this share of the mean.
+# Least tension over the mean pressure that is refused.
 _LEAST_TENSION = 1e-6
 
 
@@ -55,9 +55,9 @@ class Contact(NamedTuple):
     """One contact.
 
     Attributes:
-        density: Solution of its radius.
-        state: a [m], depth [m], F_N [N], k_N [N/m], the prescribed one inserted.
-        reached: Value of the prescribed quantity with which phi(a) = 0.
+        density: Solution of the integral equation at its radius.
+        state: a [m], depth [m], F_N [N], k_N [N/m], with the prescribed value inserted.
+        reached: Value of the prescribed quantity [m or N] at which phi(a) = 0.
         slope: d ln(reached)/d ln a.
     """
 
@@ -68,7 +68,7 @@ class Contact(NamedTuple):
 
     @property
     def mean_pressure(self) -> float:
-        """F/(pi a^2) [Pa]."""
+        """Mean pressure F/(pi a^2) [Pa]."""
         return float(self.state[2] / (pi * self.state[0] ** 2))
 
 
@@ -76,8 +76,8 @@ class IntegralEquationMethod(Record):
     """Direct solution of the layer's integral equation.
 
     Attributes:
-        nodes: Gauss nodes on each panel.
-        panel_width: Largest panel, in units of the layer thickness (of the contact radius on the half-space).
+        nodes: Number of Gauss nodes per panel.
+        panel_width: Largest panel over the thickness of the layer (over the contact radius on the half-space).
     """
 
     name: ClassVar[str] = "integral_equation"
@@ -86,7 +86,7 @@ class IntegralEquationMethod(Record):
     panel_width: Annotated[float, *positive("panels about as wide as the layer is thick")] = 0.75
 
     def supports(self, scene: Scene) -> Supported | Unsupported:
-        """Elastic contact of any profile with layers and half-spaces."""
+        """`Supported`, or the reason why not: elastic contact of any profile is modelled."""
         reason = ""
         if (other := not_round("the direct integral equation", scene)) is not None:
             return other
@@ -100,7 +100,7 @@ class IntegralEquationMethod(Record):
         return Unsupported(reason) if reason else Supported()
 
     def refined(self) -> Self:
-        """Panels half as wide."""
+        """Settings with panels half as wide."""
         return self.replace(panel_width=self.panel_width / 2)
 
     @one_thread
@@ -111,7 +111,7 @@ class IntegralEquationMethod(Record):
 
         Raises:
             UnsupportedSceneError: If the scene has effects or a history, the contact is too wide, or no single circle.
-            InvalidInput: If the indenter ends too early.
+            InvalidInput: If the contact would exceed the indenter.
         """
         support = self.supports(scene)
         if isinstance(support, Unsupported):
@@ -140,14 +140,14 @@ class IntegralEquationMethod(Record):
 
 
 def _too_wide(scene: Scene, a: float) -> str:
-    """Why a contact radius [m] is refused, or nothing."""
+    """Reason why a contact radius [m] is refused, empty if it is not."""
     largest = LARGEST_RATIO if scene.layer.is_piecewise_uniform else LARGEST_GRADED_RATIO
     ratio = a / scene.layer.surface.thickness
     return f"a/h = {ratio:g}: the direct integral equation covers ratios up to {largest:g}" if ratio > largest else ""
 
 
 class DirectSolver:
-    """Finds the contacts of a scene."""
+    """Solver for the contacts of one scene."""
 
     def __init__(self, scene: Scene, sizes: Sizes, log: StageLog) -> None:
         self.scene, self.sizes, self.log = scene, sizes, log
@@ -156,10 +156,10 @@ class DirectSolver:
         self.is_punch = isinstance(scene.indenter, FlatPunch)
 
     def contact(self, value: float) -> Contact:
-        """The contact with this radius [m], depth [m] or force [N]."""
+        """The contact with the prescribed radius [m], depth [m] or force [N]."""
         if self.is_punch or self.prescribed == 0:
             return self.at(self.scene.indenter.flat_radius if self.is_punch else value, value)
-        return self._found(value)
+        return self._searched(value)
 
     def at(self, a: float, value: float) -> Contact:
         """The contact of radius a [m] with the prescribed value inserted."""
@@ -173,7 +173,7 @@ class DirectSolver:
         state[self.prescribed] = value
         return Contact(density, state, (a, density.depth, density.depth * stiffness - lacking)[self.prescribed])
 
-    def _found(self, value: float) -> Contact:
+    def _searched(self, value: float) -> Contact:
         """The contact under a depth or force: TOMS 748 in z, a = b + e^z/(1 + e^z/(end - b))."""
         indenter, flat, end = self.scene.indenter, self.scene.indenter.flat_radius, self.scene.indenter.max_radius
         last = float(np.nextafter(end, 0.0))
@@ -183,7 +183,7 @@ class DirectSolver:
             return self.at(min(flat + exp(z) / (1 + exp(z) / (end - flat)), last), value)
 
         def missed(z: float) -> float:
-            """ln of the load that is reached over the prescribed one."""
+            """ln(reached over prescribed depth or force)."""
             reached, a = contact(z).reached / value, contact(z).state[0]
             if reached < 1 and a == last:
                 raise InvalidInput(f"loading.values = {value:g}: the indenter ends at {end:g} m before it is reached")
@@ -208,10 +208,10 @@ class DirectSolver:
         return self.modulus / pi * contact.density.pressure(radius, contact.state[1], is_singular=self.is_punch)
 
     def refuse_tension(self, contact: Contact) -> None:
-        """Refuse a contact that does not press everywhere.
+        """Refuse a contact with tension inside.
 
         Raises:
-            UnsupportedSceneError: With the radius at which it would be pulled.
+            UnsupportedSceneError: With the radius of the largest tension.
         """
         if not never_touches_beside(self.scene):
             radius = contact.density.t[::3]
@@ -261,7 +261,7 @@ class DirectFields(NamedTuple):
 
 
 def _errors(solver: DirectSolver, contacts: list[Contact], finer: DirectSolver) -> dict[str, FloatArray]:
-    """Relative errors: the changes by a finer discretisation at the same radii, the search's last miss, roundings."""
+    """Relative errors: changes by a finer discretisation at the same radii, residual of the search, and rounding."""
     values = np.array([contact.state[solver.prescribed] for contact in contacts])
     others = [finer.at(contact.state[0], value) for contact, value in zip(contacts, values, strict=True)]
     changes = [solver.changes(*pair) for pair in zip(contacts, others, strict=True)]
@@ -274,8 +274,14 @@ def _errors(solver: DirectSolver, contacts: list[Contact], finer: DirectSolver) 
         a = np.array([contact.state[0] for contact in contacts])
         rounded = EPS * a / np.maximum(a - solver.scene.indenter.flat_radius, EPS * a)
     # Depth and force are stationary in the radius.
-    more = miss**2, miss**2, _STIFFENING * radius, radius + rounded + _FIELD_ROUNDING, rounded * 0 + _FIELD_ROUNDING
+    further_errors = (
+        miss**2,
+        miss**2,
+        _STIFFENING * radius,
+        radius + rounded + _FIELD_ROUNDING,
+        rounded * 0 + _FIELD_ROUNDING,
+    )
     errors = {"contact_radius": radius}
-    for name, change, extra in zip(_COMPARED, np.transpose(changes), more, strict=True):
+    for name, change, extra in zip(_COMPARED, np.transpose(changes), further_errors, strict=True):
         errors[name] = stated_error(change, 0.0, floor=floor + extra)
     return errors | {ContactPath.ARRAYS[solver.prescribed]: 0 * floor}

@@ -42,25 +42,25 @@ from contact.records.validation import FloatArray
 # a/h beyond which A is factored by QR of its square root. Below 4 Cholesky is as good and faster; beyond 16 Cholesky
 # loses a digit of k_N at nu = 1/2.
 _ROOT_FROM = 8.0
-# Wave numbers over which c c^T turns into its mean: 24 periods. With half of them 1e-12 of k_N is lost.
+# Range of k a over which c c^T is replaced by its mean, 24 periods. At half of it the error of k_N is 1e-12.
 _TURNING = 24 * np.pi
-# Radius over a up to which tables of displacements outside are kept, and orders times largest wave number from which
-# on they are made anew: at 2e5 (a/h = 100) they take 10 MB.
+# Largest r/a at which tables for displacements outside the contact are cached, and number of polynomials times largest
+# k a from which on they are not cached: at 2e5 (a/h = 100) a table takes 10 MB.
 FAR, _LARGEST_TABLE = 4.0, 2e5
-# Radii that are remembered per layer: a search asks for the same ones again. Half as many make searches slower.
-_REMEMBERED = 400
+# Radii cached per layer, since searches return to the same radii. Half as many make searches slower.
+_CACHED_RADII = 400
 
 
 class Sizes(NamedTuple):
-    """All sizes of the discretisation; a stated error is the change from one set of sizes to another.
+    """All sizes of the discretisation; an error estimate is the change of an answer from one set of sizes to another.
 
     Attributes:
-        least: Polynomials of the smallest contacts.
-        rate: This times sqrt(a/h) more polynomials, since they cluster at the edge.
-        nodes: Wave numbers per panel.
-        reach: Largest wave number.
-        radii: Contact radii per octave.
-        extra: Added to the nodes of every other quadrature.
+        least: Number of polynomials at the smallest contact radii.
+        rate: Number of further polynomials per sqrt(a/h); a root suffices since their zeros cluster at the edge.
+        nodes: Gauss nodes per panel of wave numbers.
+        reach: Largest wave number, in units of the kernel.
+        radii: Contact radii per octave, between which punches and resolvents are interpolated.
+        extra: Number of further nodes of every other quadrature.
     """
 
     least: int = 12
@@ -73,8 +73,8 @@ class Sizes(NamedTuple):
     def polynomials(self, octave: int, *, is_graded: bool, kinked: bool) -> int:
         """Number of polynomials for contacts of a/h up to 2^octave.
 
-        On graded layers B has (a - t) ln(a - t) at the edge, and series of kinked profiles converge slowly near it: to
-        1e-7 of the depth.
+        On graded layers B is singular like (a - t) ln(a - t) at the edge. There series of kinked profiles converge
+        slowly, and the error is 1e-7 of the depth.
         """
         count = self.least + int(self.rate * np.sqrt(2.0**octave))
         return count + int((300 if kinked else 60) * (1 + self.extra / 12)) if is_graded else count
@@ -95,12 +95,12 @@ class Sizes(NamedTuple):
 
     @property
     def finer(self) -> Sizes:
-        """The companion that states errors: half as many polynomials again."""
+        """Finer sizes, for error estimates: 6 further polynomials and nodes, a larger reach, 3 further radii."""
         return Sizes(self.least + 6, self.rate, self.nodes + 6, self.reach + 3.0, self.radii + 3, self.extra + 6)
 
 
 USUAL = Sizes()
-# Sizes for searching radii: 1e-4, at a tenth of the cost.
+# Sizes for radius searches: their relative error is 1e-4, their cost a tenth.
 COARSE = Sizes(5, 3.0, 10, 8.0, 6, -6)
 
 
@@ -118,7 +118,7 @@ class _Waves(NamedTuple):
 
     @property
     def ends(self) -> FloatArray:
-        """Octaves as long as they are narrow enough, then panels of equal width."""
+        """Ends of the panels: octaves up to the largest permitted width, then panels of that width."""
         last = int(5 - np.log2(1 + self.farthest))
         octaves = 2.0 ** np.arange(min(self.lowest, last), min(last, np.ceil(np.log2(self.top))) + 1)
         octaves = np.append(0.0, octaves)
@@ -140,14 +140,14 @@ def _scale(count: int) -> FloatArray:
 
 
 class Radius:
-    """The layer under a contact of one radius: A in orthonormal even polynomials of t/a.
+    """The equation A phi = W at one contact radius, A = 1 - B, in orthonormal even polynomials of t/a.
 
     Args:
-        kernel: 1 - chi.
+        kernel: Kernel 1 - chi of the layer.
         a: Contact radius in units of the kernel.
-        sizes: Resolution.
-        octave: Binary logarithm of the radius up to which the sizes have to serve; by default a's own.
-        kinked: Whether the profiles have kinks; matters on graded layers only.
+        sizes: Sizes of the discretisation.
+        octave: Binary logarithm of the largest radius for which the sizes are chosen; by default that of a, rounded up.
+        kinked: Whether the profiles have kinks, for which graded layers need more polynomials.
     """
 
     def __init__(
@@ -170,20 +170,20 @@ class Radius:
             self.column = self.column + size * _tails(self._waves, power)[1]
 
     def _lowest(self, octave: int) -> int:
-        """Binary logarithm of kappa below which chi is a power series; few values, so that tables are shared."""
+        """Binary logarithm of kappa below which chi is a power series; takes few values, so that tables are shared."""
         deepest = octave - 4 - int(np.ceil(np.log2(self.kernel.longest)))
         return min(deepest if self.a > 2.0 ** (octave - 2) else deepest - 20, 3)
 
     def waves(self, farthest: float = 1.0, reach: float = 1.0) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Wave numbers k a, weights and c_n, up to `reach` times where 1 - chi is rounding.
+        """Wave numbers k a and weights, shape (m,), and c_n, shape (n, m).
 
         Args:
-            farthest: Farthest radius over a at which a field is computed; a power of two, so that tables are shared.
-            reach: Larger than one where 1 - chi falls like a power.
+            farthest: Largest r/a at which a field is computed; a power of two, so that tables are shared.
+            reach: Factor on the largest wave number `Sizes.reach`, above 1 if 1 - chi decays like a power.
         """
         waves = self._waves._replace(farthest=farthest, top=reach * self._waves.top)
-        is_kept = farthest <= FAR and waves.orders * waves.top < _LARGEST_TABLE
-        kappa, w, table = (_transforms if is_kept else _transforms.__wrapped__)(waves)
+        is_cached = farthest <= FAR and waves.orders * waves.top < _LARGEST_TABLE
+        kappa, w, table = (_transforms if is_cached else _transforms.__wrapped__)(waves)
         use = int(np.searchsorted(kappa, reach * self.sizes.reach * self.a)) + self.sizes.nodes
         return kappa[:use], w[:use], table[:, :use]
 
@@ -243,7 +243,7 @@ class Radius:
 
     @cached_property
     def noise(self) -> tuple[float, float]:
-        """Condition of depth and of force: what a relative error 1 of A changes, to first order."""
+        """Condition numbers of depth and of force: their relative change per relative change of A."""
         punch, resolvent = np.linalg.norm(self.punch), np.linalg.norm(self.resolvent)
         whole = self.largest_chi * punch**2 / self.punch[0]
         if self.is_rooted:
@@ -253,13 +253,13 @@ class Radius:
 
 
 class Rows(NamedTuple):
-    """What flat punches tell at some contact radii.
+    """Densities of flat punches, and resolvents, at n contact radii of one octave.
 
     Attributes:
-        which: Which of the radii, shape (n,).
-        punch: Densities, shape (n, count).
-        resolvent: Resolvents, shape (n, count).
-        noise: Conditions of depth and of force, shape (n, 2).
+        which: Indices of these radii among all requested ones, shape (n,).
+        punch: Density of the flat punch of unit depth, `Radius.punch`, shape (n, count).
+        resolvent: `Radius.resolvent`, shape (n, count).
+        noise: Condition numbers of depth and of force, `Radius.noise`, shape (n, 2).
     """
 
     which: NDArray[np.intp]
@@ -272,19 +272,19 @@ class FlatPunches:
     """Flat punches of all radii on one layer, interpolated over octaves of a/h.
 
     Args:
-        kernel: 1 - chi.
-        sizes: Resolution.
-        kinked: Whether profiles with kinks are asked for; matters on graded layers only.
+        kernel: Kernel 1 - chi of the layer.
+        sizes: Sizes of the discretisation.
+        kinked: Whether the profiles have kinks, for which graded layers need more polynomials.
     """
 
     def __init__(self, kernel: ContactKernel, sizes: Sizes = USUAL, *, kinked: bool = False) -> None:
         self.kernel, self.sizes, self.kinked = kernel, sizes, kinked
-        self._one = lru_cache(maxsize=_REMEMBERED)(self._solved)
+        self._cached_row = lru_cache(maxsize=_CACHED_RADII)(self._row)
         self._rows = Octaves(self._solve, self._lowest(), sizes.radii)
         self._factored = lru_cache(maxsize=8)(lambda a, octave: Radius(kernel, a, sizes, octave, kinked=kinked))
 
     def _lowest(self) -> int:
-        """Octave below which the layer changes a half-space only a little, so that one polynomial serves."""
+        """Lowest octave, which includes all smaller radii: |B_00| < 0.45 there, so that one interpolant suffices."""
         lowest = -1
         if self.kernel.is_uniform:
             return lowest
@@ -299,30 +299,30 @@ class FlatPunches:
             yield Rows(np.arange(radii.size), unit, 0 * unit, np.ones((radii.size, 2)))
             return
         for octave, index in self._rows.groups(radii):
-            # Not what was asked before, only this call decides, so that answers repeat to the last digit.
-            # On graded layers rows start like a ln(a), which polynomials miss.
+            # The choice depends on the radii of this call only, not on the cache, so that answers repeat exactly.
+            # On graded layers rows start like a ln(a), which polynomials cannot interpolate.
             few = index.size < self.sizes.radii or (octave == self._rows.lowest and bool(self.kernel.tail))
             rows = (self._solve if few else self._rows)(radii[index], octave)
             half = rows.shape[1] // 2 - 1
             yield Rows(index, rows[:, :half], rows[:, half:-2], rows[:, -2:])
 
     def unknowns(self, a: float) -> int:
-        """Size of the system of a contact radius; none on the half-space."""
+        """Number of unknowns of the equation at a contact radius, zero on the half-space."""
         if self.kernel.is_uniform:
             return 0
         octave = next(self._rows.groups(np.array([a])))[0]
         return self.sizes.polynomials(octave, is_graded=bool(self.kernel.tail), kinked=self.kinked)
 
     def radius(self, a: float) -> Radius:
-        """The equation of one contact radius; the last few are remembered."""
+        """The equation at one contact radius; the last 8 are cached."""
         octave = next(self._rows.groups(np.array([a])))[0]
         return self._factored(a, octave)
 
     def _solve(self, radii: FloatArray, octave: int) -> FloatArray:
-        return np.array([self._one(a, octave) for a in radii.tolist()])
+        return np.array([self._cached_row(a, octave) for a in radii.tolist()])
 
-    def _solved(self, a: float, octave: int) -> FloatArray:
-        """Punch, resolvent and noise of one radius."""
+    def _row(self, a: float, octave: int) -> FloatArray:
+        """Punch, resolvent and noise at one radius, shape (2 count + 2,)."""
         equation = self._factored(a, octave)
         return np.concatenate([equation.punch, equation.resolvent, equation.noise])
 
@@ -345,7 +345,8 @@ def _critical(mu: NDArray[np.floating], nu: NDArray[np.floating] | float, power:
 def _tails(waves: _Waves, power: int) -> tuple[FloatArray, FloatArray]:
     """Integrals of x^-power c_m c_n and of x^-power cos(x) c_n from the end of the table to infinity.
 
-    They are those from 0 less the table's part; for the lowest orders, where these diverge, a rule runs outwards.
+    They are the integrals from 0 less the part that the table integrates. For the lowest orders the integrals from 0
+    diverge, and a quadrature over 2000 periods replaces them.
     """
     kappa, w, table = _transforms(waves)
     n, scale = np.arange(waves.orders), _scale(waves.orders)

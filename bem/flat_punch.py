@@ -1,4 +1,4 @@
-"""Where the flat punches of a layer come from: settings of the integral equation, and what tables have to offer."""
+"""Sources of flat-punch data of a layer: settings of the integral equation, and the interface of tables."""
 
 from __future__ import annotations
 
@@ -10,18 +10,18 @@ from bem.equation import USUAL, Sizes
 from contact.records.record import Record
 from contact.records.validation import positive
 
-# Nodes by default, and the most; a refined setting has so many more.
+# Default and largest number of nodes, and its increase in refined settings.
 USUAL_NODES: Final = 24
 MOST_NODES: Final = 64
 MORE_NODES: Final = 4
 
 
 class IntegralEquation(Record):
-    """Resolution of the layer's equation.
+    """Resolution of the integral equation of the layer.
 
     Attributes:
-        nodes: Resolution per panel.
-        panel_width: Width of a panel over the layer's thickness; with nodes it scales all sizes of the discretisation.
+        nodes: Number of nodes per panel.
+        panel_width: Width of a panel over the thickness of the layer. nodes/panel_width scales `bem.equation.Sizes`.
     """
 
     nodes: int = Field(default=USUAL_NODES, ge=4, le=MOST_NODES)
@@ -39,11 +39,11 @@ class IntegralEquation(Record):
 
 @runtime_checkable
 class FlatPunchSource(Protocol):
-    """Settings of where the flat punches of MDR come from: `IntegralEquation`, or a table (`bem.tables`)."""
+    """Source of the flat-punch data of MDR: `IntegralEquation`, or a table (`bem.tables`)."""
 
     @property
     def sizes(self) -> Sizes:
-        """Sizes of the discretisation of springs."""
+        """Sizes of the discretisation of the integral equation that springs use."""
 
     def refined(self) -> Self:
-        """A copy with half the discretisation length."""
+        """Settings with half the discretisation length."""

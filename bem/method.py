@@ -1,4 +1,4 @@
-"""Boundary elements: discs of cells pressed into any layer by linear solves, complementarity checked on the result."""
+"""Boundary elements: linear solves on discs of square cells, with a check that the contact is one circle."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ from contact.answer.small_strains import within_small_strains
 from contact.answer.solution import Setting
 from contact.records.record import Record
 
-# Numbers of points that are tried in turn for an accuracy, and the finest one that may be asked for.
+# Numbers of points that are tried in turn for an accuracy, and the finest accuracy that can be prescribed.
 ACCURACY_POINTS: Final = (128, 256, 512, 1024, 2048)
 FINEST_ACCURACY: Final = 1e-6
 # Twice as many points divide errors by four at best: the method is of second order.
@@ -49,17 +49,17 @@ class Bem(Record):
 
     Attributes:
         points: Cells across the disc of contact, a multiple of 4.
-        accuracy: Relative accuracy wanted in all quantities but the fields; then the points are chosen: those of
-            `ACCURACY_POINTS` are tried in turn until the stated errors hold.
+        accuracy: Relative accuracy of all quantities but the fields. If it is given, `ACCURACY_POINTS` are tried in
+            turn until the error estimates are smaller.
         boundary: "free" space, or "periodic" with 16 thicknesses between images (thin uniform layers).
         threads: Number of threads of the transforms.
-        adhesion: What lets go of an adhering indenter: the edge of "discs" of cells, by the energy it releases, or
-            single "cells" beyond a stress that depends on their size (`bem.cells`).
+        adhesion: Criterion of detachment: energy release at the edge of "discs" of cells, or a largest stress of single
+            "cells" that depends on their size (`bem.cells`).
 
-    Every quantity is computed on `points` and on half as many cells. Its stated relative error is the difference, and a
-    floor for what both grids share. Numbers converge with second order in the cell size; adhesion by cells with about
-    first order. On the half-space, which measures the discs, depth, force and stiffness are exact by construction.
-    Adhesive depths and forces are followed in their order, from out of contact.
+    Every quantity is computed on `points` and on half as many cells. Its error estimate is the difference, plus a floor
+    for errors that both grids share. Errors are of second order in the cell size, for adhesion by cells of about first
+    order. On the half-space, on which the discs are calibrated, depth, force and stiffness are exact by construction.
+    Adhesive depths and forces are reached in the order in which they are listed, from out of contact.
 
     Raises:
         InvalidInput: If a setting is of the wrong kind, `points` is too small or no multiple of 4, or the accuracy not
@@ -83,7 +83,7 @@ class Bem(Record):
             raise InvalidInput(f"accuracy must lie in [{FINEST_ACCURACY:g}, 0.1], {finest}")
 
     def supports(self, scene: Scene) -> Supported | Unsupported:
-        """Elastic and adhesive contact under prescribed radii, depths or forces, and detachment with adhesion."""
+        """`Supported`, or the reason why not: elastic and adhesive equilibria, and detachment, are modelled."""
         periodic, cells = self.boundary == "periodic", self.adhesion == "cells"
         others = [type(effect).__name__ for effect in scene.effects if not isinstance(effect, Adhesion)]
         machine = isinstance(scene.loading, Detachment) and scene.loading.controlled == "machine"
@@ -126,10 +126,10 @@ class Bem(Record):
         """The equilibria of the scene.
 
         Raises:
-            UnsupportedSceneError: If `supports` says no, a cell would pull or the indenter would touch outside the
-                circle of contact, or the layer is thinner than the cells resolve.
-            InvalidInput: If nothing adheres, a force pulls too much, or the contact outgrows the indenter.
-            NotConvergedError: If the accuracy was missed with as many points as there may be.
+            UnsupportedSceneError: If the scene is not supported, the contact is no circle without tension, or the layer
+                is too thin for the cells.
+            InvalidInput: If nothing adheres, a tension exceeds the pull-off force, or the contact exceeds the indenter.
+            NotConvergedError: If the accuracy is not reached with the largest number of points.
         """
         answer = self.supports(scene)
         if isinstance(answer, Unsupported):
@@ -163,11 +163,15 @@ class Bem(Record):
         return solve_cells(scene, self.points, self.threads, self.settings())
 
     def settings(self) -> dict[str, Setting]:
-        """Settings that an answer reports; an accuracy only where one was asked for."""
+        """Settings that an answer reports, without those that are None."""
         return {name: value for name, value in dataclasses.asdict(self).items() if value is not None}
 
     def _solve_to_accuracy(self, scene: Scene, accuracy: float) -> ContactPath | DetachmentPath:
-        """More and more points, until the stated errors hold or even the finest grid would not do."""
+        """The answer with the fewest points whose error estimates are within the accuracy.
+
+        Raises:
+            NotConvergedError: If the largest number of points would not reach it.
+        """
         for points in ACCURACY_POINTS:
             try:
                 path = dataclasses.replace(self, points=points, accuracy=None).solve(scene)

@@ -1,4 +1,4 @@
-"""Numerical tools of the layer's equation: exact Gauss rules, Legendre and spherical Bessel tables, interpolation."""
+"""Numerical tools of the integral equation: exact Gauss rules, Legendre and Bessel functions, interpolation."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from contact.records.validation import FloatArray
 EPS = float(np.finfo(np.float64).eps)
 # Smallest argument of the Bessel tables; x below it is rounded up to it, which changes no value.
 _LEAST = 1e-290
-# Nodes per octave of wave numbers of tables of graded layers: 18 leave 1e-13, 9 leave 1e-7.
+# Interpolation nodes per octave of wave numbers for graded layers: the error is 1e-13 with 18, 1e-7 with 9.
 WAVES = 18
 
 
 def special() -> Any:
-    """Functions of `scipy.special`, as j0, from its compiled file alone: the package loads slowly."""
+    """Functions of `scipy.special`, as j0, from its compiled file alone, since the package loads slowly."""
     return compiled("scipy.special._special_ufuncs", "scipy.special")
 
 
@@ -38,7 +38,7 @@ def cholesky(matrix: FloatArray) -> FloatArray:
 
 
 def solve_factored(factor: FloatArray, right: FloatArray) -> FloatArray:
-    """x of R^T R x = right."""
+    """Solution x of R^T R x = right with the upper triangular R = `factor`."""
     return np.asarray(lapack().dpotrs(factor, right, lower=False)[0])
 
 
@@ -70,7 +70,7 @@ def panels(ends: ArrayLike, count: int) -> tuple[FloatArray, FloatArray]:
 
 @lru_cache(maxsize=64)
 def graded(count: int, levels: int = 16, ratio: float = 0.15) -> tuple[FloatArray, FloatArray]:
-    """Composite rule on [0, 1] with panels that shrink geometrically towards both ends."""
+    """Composite Gauss rule on [0, 1] with `count` nodes per panel, on panels that shrink towards both ends."""
     steps = 0.5 * ratio ** np.arange(levels)[::-1]
     v, w = panels(np.concatenate([[0.0], steps]), count)
     return np.concatenate([v, 1 - v[::-1]]), np.concatenate([w, w[::-1]])
@@ -92,7 +92,7 @@ def even_legendre(s: ArrayLike, count: int) -> FloatArray:
 def spherical_bessel(x: FloatArray, count: int, step: int = 1) -> FloatArray:
     """Spherical Bessel functions j_0, j_step, j_(2 step), .. at x >= 0, shape (count, n), to 1e-16 absolute.
 
-    The recurrence runs upwards while the order is below x; beyond, the ratios j_n/j_(n-1) come from a downward one.
+    The recurrence runs upwards up to the order x. Beyond, the ratios j_n/j_(n-1) follow from a downward recurrence.
     """
     x = np.maximum(x, _LEAST)
     top = step * (count - 1)
@@ -134,7 +134,7 @@ def even_bessel_second(x: FloatArray, count: int) -> FloatArray:
 def abel_legendre(u: ArrayLike, count: int) -> FloatArray:
     """sqrt(4n + 1) Q_n(u), Q_n(u) = int_0^u P_2n / P_2n(0) = [P_(2n+1) - P_(2n-1)]/((4n + 1) P_2n(0)).
 
-    It is what s P_2n(s) becomes under int_r^1 . / sqrt(s^2 - r^2) ds with u^2 = 1 - r^2. The last axis is n.
+    Q_n(u) = int_r^1 s P_2n(s)/sqrt(s^2 - r^2) ds with u^2 = 1 - r^2. The last axis is n.
     """
     u = np.asarray(u, dtype=np.float64)
     table = np.empty((count, *u.shape))
@@ -157,9 +157,9 @@ def barycentric(nodes: FloatArray) -> FloatArray:
 
 
 class Octaves:
-    """Interpolates a smooth vector-valued function of x > 0 on [0, 2^lowest], [2^lowest, 2^(lowest+1)], ..
+    """Interpolation of a smooth vector-valued function of x > 0 on [0, 2^lowest], [2^lowest, 2^(lowest+1)], ..
 
-    Each octave is sampled at Gauss nodes when it is first needed.
+    The function is sampled at the Gauss nodes of an octave at first use.
 
     Args:
         function: Maps positions, shape (n,), and the number of their octave to values, shape (n, m).
@@ -174,7 +174,7 @@ class Octaves:
         self._weights = barycentric(self._nodes)
 
     def groups(self, x: FloatArray) -> Iterator[tuple[int, NDArray[np.intp]]]:
-        """The octaves that contain some of the positions, each with their indices."""
+        """Yields each octave that contains positions x, and the indices of these positions."""
         octaves = np.maximum(np.ceil(np.log2(np.maximum(x, _LEAST))), self.lowest).astype(int)
         for octave in sorted(set(octaves.tolist())):
             yield octave, np.flatnonzero(octaves == octave)

@@ -1,4 +1,4 @@
-"""Smooth functions as Chebyshev series on panels, which are halved until all functions are resolved."""
+"""Piecewise Chebyshev series of several functions, on panels that are halved until all functions are resolved."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from numpy.polynomial import chebyshev
 from contact.records.errors import NotConvergedError
 from contact.records.validation import FloatArray
 
-# Coefficients per panel: half as many need four times the panels, twice as many are beyond rounding.
+# Coefficients per panel: with half as many there are four times the panels; of twice as many the last are rounding.
 NODES: Final = 16
-# Share of its largest value to which each function is resolved; ten times less is rounding.
+# Tolerance of each function over its largest value; a tenth of it is rounding.
 RESOLVED: Final = 1e-12
-# Share that suffices where halving resolves no more; functions that are rougher are refused.
+# Tolerance on the last panels, when the limits below end the halving; rougher functions raise an error.
 USABLE: Final = 1e-7
-# Largest number of panels, and least width of one over the interval: they end halving towards a tip like r^1.1.
+# Largest number of panels, and least width of a panel over the interval, which end the halving at tips like r^1.1.
 MOST_PANELS: Final = 200
 SMALLEST: Final = 2.0**-40
 
@@ -44,14 +44,14 @@ class Piecewise:
     def resolved(
         cls, sample: Callable[[FloatArray], FloatArray], low: float, high: float, error: float = 0.0, parts: int = 4
     ) -> Piecewise:
-        """Halves panels until the last coefficients of each function are small.
+        """Series of sampled functions, on panels that are halved until the last coefficients are small.
 
         Args:
             sample: Values of all functions, shape (functions, n), at y of shape (n,).
             low: Left end of the interval.
-            high: Right end.
-            error: Relative error of the samples, which need not be resolved any finer.
-            parts: Number of the first panels.
+            high: Right end of the interval.
+            error: Relative error of the samples, the tolerance on the last panels if it exceeds `USABLE`.
+            parts: Number of panels at the start.
 
         Raises:
             NotConvergedError: If a function is too rough.
@@ -90,11 +90,11 @@ class Piecewise:
         panel = self.edges[1:-1].searchsorted(y)
         low, high = self.edges[panel], self.edges[panel + 1]
         z = np.minimum(np.maximum((y - 0.5 * (low + high)) * (2.0 / (high - low)), -1.0), 1.0)
-        # As cosines: a few points cost a tenth of Clenshaw's recurrence.
+        # Sums of T_k(z) = cos(k arccos z) cost a tenth of Clenshaw's recurrence at a few points.
         terms = np.cos(np.multiply.outer(np.arange(self.series.shape[0]), np.arccos(z)))
         return np.asarray(np.einsum("kfn,kn->fn", self.series[..., panel], terms))
 
     @cached_property
     def slope(self) -> Piecewise:
-        """Derivatives by y."""
+        """Derivatives of the functions by y."""
         return Piecewise(self.edges, chebyshev.chebder(self.series, axis=0) * (2.0 / np.diff(self.edges)))

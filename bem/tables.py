@@ -1,14 +1,14 @@
-"""Tables of flat punches on uniform layers, as the paper made them: section 3.2 of Forsbach (2023).
+"""Tables of flat punches on uniform layers, as in section 3.2 of Forsbach (2023).
 
 A table holds k_bar(a/h) and p_bar(r/a; a/h), Eq. (10), at 400 ratios and 500 radii, made with discs of cells.
 Between its rows k_bar and q = p_bar sqrt(1 - rho^2) are splines over ln(a/h); below the first row 1/k_bar and q are
-linear in a/h, towards the half-space. Over rho, q is a polynomial in u = sqrt(1 - rho^2), and with it the Abel density
-phi_1 of the punch is known:
+linear in a/h, towards the half-space. Over rho, q is a polynomial in u = sqrt(1 - rho^2), from which the Abel density
+phi_1 of the punch follows:
 
     2 k_bar q = sum_n c_n P_2n(u)/P_2n(0),    phi_1(t) = sum_n c_n P_2n(t/a),    int_0^1 phi_1 d(t/a) = c_0 = k_bar.
 
-At its edge phi_1 = y_1 = sqrt(k_bar + d k_bar/d ln a), Eq. (6). Errors are stated by the same table of half as many
-cells, ratios and radii, which every table carries along (`FlatPunchTable.coarser`).
+At its edge phi_1 = y_1 = sqrt(k_bar + d k_bar/d ln a), Eq. (6). Errors are estimated from a second table with half as
+many cells, ratios and radii (`FlatPunchTable.coarser`).
 """
 
 from __future__ import annotations
@@ -34,12 +34,12 @@ from contact.scene.layer import Support
 
 SCHEMA: Final = "contact-verification/flat-punch-table/4"
 SMALLEST_RATIO, LARGEST_RATIO = 1e-3, 1e3
-# Ratios a/h up to which rows are solved together. With half as many a search solves rows that it does not need.
+# Largest a/h of partial tables, one of which is solved at a time. With half as many a search solves unnecessary rows.
 RUNGS: Final = (1.0, 4.0, 16.0, 64.0, 256.0, LARGEST_RATIO)
-# Rows beyond the largest ratio asked for, since splines end less well than they run; and the fewest rows of a table.
+# Number of rows beyond the largest ratio, since splines are less accurate near their ends; and least number of rows.
 BEYOND: Final = 6
-# a/h at which lattices with a gap between images begin to replace free space; at twice of it they have done so. A
-# sudden change would put a spike into the slope of k_bar.
+# a/h from which on to twice of it periodic lattices with a gap between images replace free space gradually. A sudden
+# change would put a spike into the slope of k_bar.
 THIN: Final = 8.0
 
 
@@ -66,10 +66,10 @@ class FlatPunchTable:
         poissons_ratio: nu; zero on an unbonded layer, where it has no influence.
         ratios: a/h, increasing, shape (n,).
         radii: rho = r/a in [0, 1), increasing, shape (m,).
-        stiffness: k_bar, shape (n,).
-        pressure: p_bar, shape (n, m).
-        cells: Cells across the grid that it was made on.
-        coarser: The table whose difference states errors; None in that table itself.
+        stiffness: Dimensionless stiffness k_bar = k_N/(2 E* a), shape (n,).
+        pressure: Dimensionless pressure p_bar, shape (n, m).
+        cells: Cells across the grid of the computation.
+        coarser: The coarser table for error estimates; None in the coarser table.
 
     Raises:
         InvalidInput: If shapes, order or values cannot be a table of flat punches.
@@ -85,7 +85,7 @@ class FlatPunchTable:
     coarser: FlatPunchTable | None = None
 
     def __post_init__(self) -> None:
-        """Refuse what is not a table."""
+        """Refuse arrays whose shapes, order or values are not those of a table."""
         shape = self.ratios.size, self.radii.size
         steps = np.diff(self.ratios, prepend=0.0), np.diff(self.radii), 1.0 - self.radii, self.radii[:1] + 1e-300
         if shape[0] < BEYOND or not all(np.all(values > 0.0) for values in steps):
@@ -99,7 +99,7 @@ class FlatPunchTable:
 
     @property
     def largest_ratio(self) -> float:
-        """Largest a/h that is covered."""
+        """Largest a/h of the table."""
         return float(self.ratios[-1])
 
     def at(self, ratio: FloatArray) -> Densities:
@@ -123,7 +123,7 @@ class FlatPunchTable:
 
     @cached_property
     def _spline(self) -> BSpline:
-        """ln k_bar and c_n/(2 k_bar), n > 0, over ln(a/h): least squares over the radii, which decay like q."""
+        """Spline over ln(a/h) of ln k_bar and c_n/(2 k_bar), n > 0, whose coefficients c_n are fitted to q(rho)."""
         u = np.sqrt(1.0 - self.radii**2)
         rows = even_legendre(u, min(LARGEST_DEGREE, self.radii.size // 2) + 1)
         n = np.arange(1, rows.shape[1])
@@ -139,7 +139,7 @@ class FlatPunchTable:
 
     @classmethod
     def of_tree(cls, tree: dict[str, Any]) -> Self:
-        """The inverse of `tree`."""
+        """The table from arrays and settings as `tree` returns them."""
         fields = {name: tree[name] for name in ("support", "poissons_ratio", "ratios", "radii", "cells")}
         coarser = cls.of_tree(tree["coarser"]) if "coarser" in tree else None
         return cls(**fields, stiffness=tree["k_bar"], pressure=tree["p_bar"], coarser=coarser)
@@ -159,12 +159,12 @@ def refuse_beyond(ratio: float, largest: float) -> None:
 
 
 def write_table(path: str | Path, table: FlatPunchTable) -> None:
-    """Write a table, and the one that states its errors, to an HDF5 file."""
+    """Write a table, and its coarser table, to an HDF5 file."""
     write_tree(path, {"schema": SCHEMA} | table.tree())
 
 
 def read_table(path: str | Path) -> FlatPunchTable:
-    """Read what `write_table` wrote.
+    """Read a table that `write_table` wrote.
 
     Raises:
         InvalidInput: If the file is missing, damaged, or no such table.
@@ -192,11 +192,11 @@ def tabulated_layer(layer: ElasticLayer) -> Layer:
 
 
 class FftTable(Record):
-    """Settings of tables by boundary elements; where MDR's flat punches come from (`Mdr.flat_punch`).
+    """Settings of tables by boundary elements, as a source of flat-punch data of MDR (`Mdr.flat_punch`).
 
     Attributes:
         cells: Cells across the grid, a multiple of 4.
-        ratios: Number of log-spaced ratios a/h from 1e-3 to 1e3; those beyond the contacts asked for are not solved.
+        ratios: Number of log-spaced ratios a/h from 1e-3 to 1e3; only those up to the largest contact are solved.
         radii: Number of radii r/a = sin(theta), equally spaced in theta.
 
     Raises:
@@ -218,7 +218,7 @@ class FftTable(Record):
             raise InvalidInput(f"ratios and radii must be at least {2 * BEYOND}, got {self.ratios} and {self.radii}")
 
     def solution(self, layer: ElasticLayer, largest_ratio: float = LARGEST_RATIO) -> FlatPunchTable:
-        """The table of a layer, complete by default, or up to at least a smaller ratio a/h.
+        """The table of a layer up to at least a ratio a/h, by default the complete one.
 
         Raises:
             InvalidInput: If the ratio is beyond 1000.
@@ -235,13 +235,14 @@ class FftTable(Record):
 
 @lru_cache(maxsize=64)
 def _table(settings: FftTable, layer: Layer, rung: float) -> FlatPunchTable:
+    """The table up to the ratio `rung`, with its coarser table, cached."""
     cells, count, radii = settings.cells, settings.ratios, settings.radii
     coarser = _made(layer, rung, cells // 2, (count + 1) // 2, radii // 2)
     return replace(_made(layer, rung, cells, count, radii), coarser=coarser)
 
 
 def _made(layer: Layer, rung: float, cells: int, count: int, columns: int) -> FlatPunchTable:
-    """The table of one grid; Q of each row has the edge value y_1, which the stiffness of all rows tells."""
+    """The table on one grid. The edge value of Q is y_1 from the derivative of the stiffness over all rows."""
     ratios = np.geomspace(SMALLEST_RATIO, LARGEST_RATIO, count)
     ratios = ratios[: int(np.searchsorted(ratios, rung * (1.0 - 1e-9))) + 1 + BEYOND]
     growth, at_zero, at_one = zip(*(_row(layer, ratio, cells) for ratio in ratios.tolist()), strict=True)
@@ -256,12 +257,12 @@ def _made(layer: Layer, rung: float, cells: int, count: int, columns: int) -> Fl
 
 @lru_cache(maxsize=4096)
 def _row(layer: Layer, ratio: float, cells: int) -> tuple[float, FloatArray, FloatArray]:
-    """k_bar, and Chebyshev coefficients of Q in 2 rho^2 - 1 with the edge values 0 and 1, of which they are linear.
+    """k_bar, and Chebyshev coefficients of Q in 2 rho^2 - 1 for the edge values 0 and 1, in which Q is linear.
 
-    Grids are in free space, or lattices with a gap between images, or shares of both in between.
+    The boundary is free space, or periodic with a gap between images, or a weighted mean of both in between.
     """
-    way = float(np.clip(np.log2(ratio / THIN), 0.0, 1.0))
-    periodic = way * way * (3.0 - 2.0 * way)
+    rise = float(np.clip(np.log2(ratio / THIN), 0.0, 1.0))
+    periodic = rise * rise * (3.0 - 2.0 * rise)
     shares: dict[Boundary, float] = {"free": 1.0 - periodic, "periodic": periodic}
     k, series = 0.0, np.zeros((2, LARGEST_DEGREE + 1))
     for boundary, share in shares.items():
@@ -273,7 +274,7 @@ def _row(layer: Layer, ratio: float, cells: int) -> tuple[float, FloatArray, Flo
 
 
 class TableFile(Record):
-    """A stored table as MDR's flat punches.
+    """A stored table as a source of flat-punch data of MDR.
 
     Attributes:
         path: HDF5 file that `write_table` wrote.
@@ -292,20 +293,20 @@ class TableFile(Record):
         """The stored table.
 
         Raises:
-            InvalidInput: If it is of another layer, or ends below the ratio a/h.
+            InvalidInput: If it belongs to another layer, or ends below the ratio a/h.
             UnsupportedSceneError: If the layer is not uniform, or a half-space.
         """
-        asked, table = tabulated_layer(layer), _stored(self.path)
-        if (table.support, table.poissons_ratio) != (asked.support, asked.poissons_ratio):
+        unit_layer, table = tabulated_layer(layer), _stored(self.path)
+        if (table.support, table.poissons_ratio) != (unit_layer.support, unit_layer.poissons_ratio):
             raise InvalidInput(
                 f"{self.path}: the table is of a {table.support} layer with nu = {table.poissons_ratio:g}, not of a "
-                f"{asked.support} one with nu = {asked.poissons_ratio:g}; make one with FftTable"
+                f"{unit_layer.support} one with nu = {unit_layer.poissons_ratio:g}; make one with FftTable"
             )
         refuse_beyond(largest_ratio, table.largest_ratio)
         return table
 
     def refined(self) -> Self:
-        """Refuses, since a stored table has no finer one.
+        """Raises an error, since a stored table cannot be refined.
 
         Raises:
             InvalidInput: Always.

@@ -1,7 +1,7 @@
 """The method of dimensionality reduction: layers and half-spaces as beds of independent springs.
 
-Enters: a scene. Leaves: its answer, with stated errors. Read `method` first, then `spring_bed` and `equilibria`;
-`bem.equation` solves the layer's equation, `contact.stated` states errors.
+Input: a scene. Output: its answer with error estimates. Read `method` first, then `spring_bed` and `equilibria`.
+`bem.equation` solves the integral equation of the layer, `contact.stated` computes error estimates.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ _HOME = {
 
 
 def __getattr__(name: str) -> Any:
-    """Load a public name when it is first asked for: the package itself is imported in hundredths of a second."""
+    """Import a public name at first use, so that the package itself is imported in hundredths of a second."""
     if name not in _HOME:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     value = getattr(import_module(_HOME[name]), name)

@@ -1,6 +1,6 @@
-"""All equilibria of an adhering contact (JKR), sampled over the contact radius, so that no fold is ever met.
+"""All equilibria of an adhering contact (JKR) as functions of the contact radius, which are unique also at folds.
 
-dl(a) = sqrt(2 pi dgamma a/c_N)   the outermost spring lets go                  Eq. (40)
+dl(a) = sqrt(2 pi dgamma a/c_N)   critical elongation of the outermost spring   Eq. (40)
 depth = g(a) - dl(a),  F = 2 E* (depth K - M)                                   Eqs. (41), (4)
 """
 
@@ -51,22 +51,22 @@ from mdr.spring_bed import Springs
 Triple: TypeAlias = tuple[FloatArray, FloatArray, FloatArray]
 # Relative error of the interpolated branches. A tenth of it is below rounding.
 _SAMPLED = 2e-14
-# Length of the finer branch over that of the branch: a factor other than 1 gives its polynomials other nodes.
+# Ratio of the first trial radii of the finer and of the usual branch: other than 1, so that interpolation nodes differ.
 _LONGER = 1.03
-# First trial radius beyond the flat end, over `balance_radius` beyond the flat end.
+# First trial a - b over `balance_radius` - b, b the flat radius.
 FIRST_WAY = 2.0
-# First trial a/h where `balance_radius`, which is of a half-space, is too large for the layer.
+# First trial a/h where `balance_radius`, which holds on a half-space, is too large for the layer.
 _THIN = 10.0
 
 
 def work_of_adhesion(scene: Scene) -> float:
-    """The scene's dgamma [J/m^2]."""
+    """Work of adhesion dgamma [J/m^2], zero without adhesion."""
     adhesion = scene.effect(Adhesion)
     return 0.0 if adhesion is None else adhesion.work_of_adhesion
 
 
 def balance_radius(scene: Scene) -> float:
-    """The contact radius [m] at which the indenter is as high as the elongation on the half-space is long."""
+    """Contact radius a [m] with f(a) = dl(a), the critical elongation on the half-space."""
     return radius_of_elongation(scene.indenter, work_of_adhesion(scene) / contact_modulus(scene.layer))
 
 
@@ -75,7 +75,7 @@ class Adhesive:
     """Equilibria of one scene at one resolution.
 
     Attributes:
-        scene: The problem.
+        scene: The scene.
         springs: Springs of the scene.
         longer: Factor by which branches exceed their first trial radius.
     """
@@ -86,7 +86,7 @@ class Adhesive:
 
     @property
     def finer(self) -> Adhesive:
-        """Equilibria of the scene at a finer resolution: the difference of the answers is the stated error."""
+        """Equilibria of the scene at a finer resolution, for error estimates."""
         return replace(self, springs=self.springs.finer, longer=_LONGER)
 
     @cached_property
@@ -94,11 +94,11 @@ class Adhesive:
         return work_of_adhesion(self.scene)
 
     def elongation(self, radius: FloatArray, y1: FloatArray) -> FloatArray:
-        """dl [m], Eq. (40)."""
+        """Critical elongation dl [m] at contact radii [m], Eq. (40)."""
         return np.asarray(np.sqrt(2 * np.pi * self._work * radius / self.springs.modulus) / y1)
 
     def states(self, radius: FloatArray, excess: FloatArray | None = None) -> FloatArray:
-        """Depth [m] and force [N] at contact radii [m], shape (2, n); `excess` is a - b [m] over a flat end."""
+        """Depth [m] and force [N] at contact radii [m], shape (2, n); `excess` is a - b [m], b the flat radius."""
         radius = np.maximum(radius, np.finfo(float).tiny)
         values = self.springs.at(radius, excess)
         depth = values.g - self.elongation(radius, values.y1)
@@ -126,7 +126,7 @@ class Adhesive:
         )
 
     def reaching(self, enough: Callable[[Branch], bool], compliance: float = 0.0) -> Branch:
-        """The shortest trial branch for which `enough` is true, or the branch up to the radius of the indenter."""
+        """The first trial branch for which `enough` is true, or else the branch up to the end of the indenter."""
         for radius in growing_radii(self.scene.indenter, self._first_radius()):
             try:
                 branch = self.branch(radius, compliance)
@@ -140,6 +140,7 @@ class Adhesive:
         return branch
 
     def _first_radius(self) -> float:
+        """First trial radius [m], from `balance_radius`, or from the thickness of a thin layer."""
         flat, thickness = self.scene.indenter.flat_radius, self.scene.layer.surface.thickness
         first = flat + self.longer * FIRST_WAY * (balance_radius(self.scene) - flat)
         is_guided = first <= self.springs.largest_ratio / 6 * thickness
@@ -147,7 +148,7 @@ class Adhesive:
 
 
 def refuse_touching(contacts: Adhesive, radius: FloatArray, depth: FloatArray) -> None:
-    """Refuse contacts outside which the indenter would touch; adhesion, which lifts it, only widens gaps."""
+    """Refuse contacts outside which the indenter would touch, first without adhesion, which widens gaps."""
     scene, springs = contacts.scene, contacts.springs
     if is_touched_nowhere(scene) or isinstance(scene.indenter, FlatPunch):
         return
@@ -163,7 +164,7 @@ def refuse_touching(contacts: Adhesive, radius: FloatArray, depth: FloatArray) -
 def solve_adhesive(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[str, Setting]) -> ContactPath:
     """Adhesive equilibria at prescribed radii, depths or forces.
 
-    A depth or force is reached from the undeformed layer: of several stable states the one of smallest radius.
+    Of several stable states with one depth or force the answer is that of smallest radius, which is reached by loading.
 
     Raises:
         InvalidInput: If a prescribed value lies beyond pull-off.
@@ -227,6 +228,7 @@ def _prescribed(contacts: Adhesive) -> Triple:
 
 
 def _refuse_missing(y: FloatArray, values: FloatArray, branch: Branch, quantity: int) -> None:
+    """Refuse prescribed depths [m] or forces [N] without a stable state, whose y is NaN."""
     missing = np.flatnonzero(np.isnan(y))
     if not missing.size:
         return
@@ -239,7 +241,7 @@ def _refuse_missing(y: FloatArray, values: FloatArray, branch: Branch, quantity:
 
 
 def _path_errors(contacts: Adhesive, triple: Triple, other: Triple) -> dict[str, StatedError]:
-    """Stated errors of a path, relative to its largest values."""
+    """Error estimates of a path over its largest values."""
     springs, (radius, depth, force) = contacts.springs, triple
     loading, rounding = contacts.scene.loading, contacts.rounding(radius)
     by_depth, by_force = (isinstance(loading, kind) for kind in (IndentationDepths, NormalForces))
@@ -267,7 +269,7 @@ def _path_errors(contacts: Adhesive, triple: Triple, other: Triple) -> dict[str,
 
 
 def _field_errors(contacts: Adhesive, triple: Triple, a_error: FloatArray) -> dict[str, StatedError]:
-    """Relative stated errors of pressure and surface displacement.
+    """Functions for relative error estimates of pressure and surface displacement.
 
     They add the difference of two resolutions, rounding, and the effect of `a_error`, the relative error of the radius.
     """

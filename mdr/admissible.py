@@ -1,8 +1,8 @@
-"""Whether an equilibrium is a contact: it presses everywhere, and the surface outside is touched nowhere.
+"""Checks that an equilibrium is a contact: pressure is positive inside, and the gap is positive outside.
 
-A stiff film on a soft base is pressed down by the edge of a flat end like a plate and lifts off in between. A profile
-with a hollow, or any profile on layers that soften downwards, may touch outside its circle. Both make every number
-computed for one full circle wrong, so they are refused.
+A stiff film on a soft base bends like a plate under a flat end and lifts off between its edges. A profile with a
+hollow, or any profile on layers that soften downwards, may touch outside its circle. Answers for one full circle would
+be wrong in both cases, so these scenes are refused.
 """
 
 from __future__ import annotations
@@ -17,28 +17,27 @@ from contact.answer.one_circle import Circle, never_touches_beside, refuse_touch
 from contact.records.validation import FloatArray
 from mdr.contact_surface import Surface
 
-# Radii between axis and edge at which the pressure is looked at, denser towards the edge. A film that pulls does so
-# over its thickness at least.
+# Number of radii between axis and edge at which the pressure is computed, denser towards the edge. Tension under a film
+# extends over its thickness at least.
 _RADII = 40
-# Distances from the edge and from breaks of the profile, over the thickness of the surface material, where the pressure
-# is looked at as well.
+# Further points: distances from the edge and from breaks of the profile, over the thickness of the surface material.
 _DISTANCES = np.geomspace(0.02, 30.0, 14)
-# Breaks with such neighbourhoods; measured profiles have more, without sharp kinks.
+# Largest number of breaks with such points; measured profiles have more breaks, without sharp kinks.
 _MOST_BREAKS = 6
-# A contact pulls where its pressure is below minus this share of the mean and below its stated error. Roundings in the
-# centre, which no stated error contains, reach 1e-9.
+# Least tension over the mean pressure that is refused; it also has to exceed the error estimate. Rounding errors in the
+# centre, which the estimate does not contain, reach 1e-9.
 _LEAST_TENSION = 1e-8
-# Overlap outside, relative to the depth, that is an error of the displacement.
+# Overlap outside over the depth that is tolerated as an error of the displacement.
 _OVERLAP = 1e-9
 
 
 class PullingContact(UnsupportedSceneError):
-    """The surfaces would have to pull at each other inside the contact, and nothing lets them.
+    """The contact would need tension inside, without adhesion to carry it.
 
     Args:
-        contact_radius: a [m].
-        radius: Where they pull most [m].
-        tension: How strongly [Pa].
+        contact_radius: Contact radius a [m].
+        radius: Radius of the largest tension [m].
+        tension: Largest tension [Pa].
         mean: Mean pressure of the contact [Pa].
     """
 
@@ -61,7 +60,7 @@ def refuse_pulling(surface: Surface, mean: float, error: Callable[[], float]) ->
         error: Computes the stated error of the pressure over the mean one.
 
     Raises:
-        PullingContact: With the contact radius, the place and the size of the largest tension.
+        PullingContact: With the contact radius, and radius and size of the largest tension.
     """
     a = surface.a
     density = surface.density(a * np.linspace(0, 1, 81)[1:-1])
@@ -82,7 +81,7 @@ def refuse_pulling(surface: Surface, mean: float, error: Callable[[], float]) ->
 
 
 def _radii(surface: Surface) -> FloatArray:
-    """Radii inside the contact [m], increasing, none where the pressure may be infinite: axis, edge, breaks."""
+    """Radii inside the contact [m], increasing, without axis, edge and breaks, where the pressure may be infinite."""
     a, tip = surface.a, surface.tip
     sharpest = sorted(tip.kinks, key=lambda kink: -abs(kink[1]))[:_MOST_BREAKS]
     breaks = [b for b, _ in sharpest] or list(tip.breaks[:_MOST_BREAKS])
@@ -96,7 +95,7 @@ def _radii(surface: Surface) -> FloatArray:
 
 
 def is_touched_nowhere(scene: Scene) -> bool:
-    """Whether no circle of this scene can be touched outside: one layer, or layers that stiffen downwards, convex."""
+    """Whether no touch outside the contact is possible: convex indenters on one layer, or on stiffening layers."""
     return never_touches_beside(scene) or (scene.indenter.is_convex and _stiffens_downwards(scene.layer))
 
 
@@ -113,9 +112,9 @@ def refuse_touching_outside(scene: Scene, surface: Surface) -> None:
 
 
 def _stiffens_downwards(layer: ElasticLayer) -> bool:
-    """Whether no part of a stack is softer, in shear or if confined, than one above it: then nothing bends, g rises.
+    """Whether shear and confined modulus of a stack never decrease downwards, so that g increases with the radius.
 
-    Observed, not proven: tests/verification/test_beside_contact_on_stacks.py.
+    Tested, not proved: tests/verification/test_beside_contact_on_stacks.py.
     """
     if not isinstance(layer, LayerStack):
         return False

@@ -1,6 +1,6 @@
-"""Thousands of scenes at once, results as arrays: impacts and elastic equilibria.
+"""Impacts and elastic equilibria of many scenes, with results as arrays.
 
-Scenes that are the same in the units of their own layer share all tables; only what differs is computed for each.
+Scenes with the same dimensionless problem (`own_units`) share its solution.
 """
 
 from __future__ import annotations
@@ -60,10 +60,10 @@ class Equilibria:
     """Elastic contacts, each array of shape (n,).
 
     Attributes:
-        contact_radius: a [m].
+        contact_radius: Contact radius a [m].
         indentation_depth: delta [m].
-        normal_force: F_N [N].
-        contact_stiffness: k_N [N/m].
+        normal_force: Normal force F_N [N].
+        contact_stiffness: Contact stiffness k_N [N/m].
     """
 
     contact_radius: FloatArray
@@ -96,10 +96,10 @@ def impacts(
 
 @one_thread
 def equilibria(scenes: Sequence[Scene], flat_punch: FlatPunchSource, *, progress: Progress | None = None) -> Equilibria:
-    """Elastic contacts at one prescribed radius, depth or force each.
+    """Elastic contacts of scenes with one prescribed radius, depth or force each.
 
-    Power laws on alike layers share one solution. Any other convex indenter on several plain layers is answered for all
-    of them at once; the rest one by one.
+    Power laws on layers of equal ratios share one solution. Contacts of another convex indenter with uniform layers are
+    computed together. All other scenes are solved one by one.
 
     Raises:
         InvalidInput: If a scene lists effects or prescribes more than one value.
@@ -138,6 +138,7 @@ def _refuse_unanswered(scenes: Sequence[Scene], states: FloatArray, depths: Floa
 
 
 def _refuse(number: int, scene: Scene) -> None:
+    """Refuse scenes with effects, or without one prescribed radius, depth or force."""
     if scene.effects:
         raise InvalidInput(f"scenes[{number}].effects: a batch of equilibria is elastic; leave effects out")
     if not isinstance(scene.loading, _PRESCRIBED) or scene.loading.values.size != 1:
@@ -145,17 +146,17 @@ def _refuse(number: int, scene: Scene) -> None:
 
 
 def _kind(number: int, scene: Scene) -> Hashable:
-    """Key of the group of scenes that share one solution: own units of power laws, or one indenter on plain layers."""
+    """Key of a group of scenes with one solution: dimensionless power law, or one indenter on uniform layers."""
     if not is_power_law(scene.indenter):
         layer = scene.layer.surface
-        alike = type(scene.loading), layer.poissons_ratio, scene.layer.support, scene.indenter
-        return alike if takes_part(scene) else number
+        key = type(scene.loading), layer.poissons_ratio, scene.layer.support, scene.indenter
+        return key if takes_part(scene) else number
     shared = own_units(scene.layer, scene.indenter)
     return type(scene.loading), shared.layer, shared.indenter
 
 
 def _together(scenes: list[Scene], flat_punch: FlatPunchSource) -> FloatArray:
-    """Radius, depth, force and stiffness of one group, shape (4, n), from one solution of the shared problem."""
+    """Radius, depth, force and stiffness of one group in SI units, shape (4, n)."""
     if not is_power_law(scenes[0].indenter):
         return _on_layers(scenes, flat_punch)
     units = [own_units(scene.layer, scene.indenter) for scene in scenes]

@@ -4,9 +4,9 @@
     p(r) = (E*/pi) [phi(a)/sqrt(a^2 - r^2) - int_r^a phi'(t)/sqrt(t^2 - r^2) dt]                      inside
     w(r) = (2/pi) [int_0^a phi(t)/sqrt(r^2 - t^2) dt - int_0^inf (1 - chi) phi^(k) J_0(kr) dk]        outside
 
-psi is a series of even Legendre polynomials, whose Abel images are known: P_2n(t/a) becomes P_2n(u)/(P_2n(0) a u) with
-a u = sqrt(a^2 - r^2). On contacts much wider than the layer is thick psi varies over a thickness next to every kink of
-the profile, and takes more polynomials.
+psi is a series of even Legendre polynomials, whose Abel images have a closed form: P_2n(t/a) becomes
+P_2n(u)/(P_2n(0) a u) with a u = sqrt(a^2 - r^2). In contacts much wider than the layer is thick psi varies within a
+thickness of every kink of the profile, and needs more polynomials.
 """
 
 from __future__ import annotations
@@ -22,15 +22,15 @@ from contact import InvalidInput
 from contact.records.validation import FloatArray
 from mdr.spring_bed import Springs
 
-# a/h beyond which kinks take more polynomials, and how many times as many: with half of them errors at a/h = 10 are
-# 5e-9, with twice of them those at a/h = 60 are a tenth.
+# a/h beyond which kinks need more polynomials, and factor of their number: with half as many errors at a/h = 10 are
+# 5e-9, with twice as many those at a/h = 60 are a tenth.
 _WIDE, _MORE = 3.0, 2.0
-# Share of the contact radius within which kinks count as the axis.
+# b/a below which a kink at radius b is treated as the axis.
 _CENTRE = 1e-3
 # Wave numbers that are summed at a time.
 _CHUNK = 20_000
-# A graded layer's 1 - chi falls like 1/k: the displacement outside takes so many times more wave numbers, up to k a of
-# about this. Twice as many leave a fifth of the error under a flat punch.
+# 1 - chi of a graded layer falls like 1/k: bounds of the factor on the largest wave number for w outside, and
+# the k a to reach. Twice of it leaves a fifth of the error under a flat punch.
 _SLOW_DECAY, _SLOW_WAVES = (10.0, 100.0), 2e3
 
 
@@ -46,7 +46,7 @@ def is_slow(springs: Springs, a: float) -> bool:
 
 
 def surface_of(springs: Springs, a: float, depth: float, *, is_singular: bool = False) -> Surface:
-    """Fields of the contact of radius a [m] at a depth [m]; p is singular at the edge if phi(a) is not zero."""
+    """Fields of the contact of radius a [m] at a depth [m]; `is_singular`: whether phi(a) is not zero."""
     if is_slow(springs, a):
         springs = springs.at_sizes(springs.sizes._replace(rate=_MORE * springs.sizes.rate))
     return Surface(springs, a, depth, is_singular=is_singular)
@@ -62,7 +62,7 @@ class Surface:
         is_singular: Whether phi(a) is not zero: under a flat punch, and with adhesion.
     """
 
-    # Logarithm of psi' at the edge of graded layers: psi' = smooth_slope - corner ln[(a + t)/(a - t)].
+    # Coefficient of a logarithm at the edge of graded layers: psi' = smooth_slope - corner ln[(a + t)/(a - t)].
     corner = 0.0
 
     def __init__(self, springs: Springs, a: float, depth: float, *, is_singular: bool = False) -> None:
@@ -97,11 +97,11 @@ class Surface:
         if self.kernel.tail and self.edge != 0:
             self.corner = -self.kernel.tail[0] / self.springs.unit * self.edge / np.pi
             m = 2.0 * np.arange(1, radius.count)
-            known = 4 * (2 * m + 1) / ((m - 1) * m * (m + 1) * (m + 2))
-            self._smooth = self._series - self.corner * self.a * np.concatenate([[2 * np.log(2) - 1], known])
+            coefficients = 4 * (2 * m + 1) / ((m - 1) * m * (m + 1) * (m + 2))
+            self._smooth = self._series - self.corner * self.a * np.concatenate([[2 * np.log(2) - 1], coefficients])
 
     def psi(self, t: FloatArray) -> FloatArray:
-        """psi [m] at t <= a [m]."""
+        """Smooth part psi of the density [m] at t <= a [m]."""
         return np.asarray(even_legendre(t / self.a, self._series.size) @ self._series)
 
     @property
@@ -112,8 +112,10 @@ class Surface:
     @property
     def edge_of_series(self) -> float:
         """phi(a) [m] of the truncated series; `edge` minus this is the truncation error."""
-        known = self.depth - float(self.tip.transform(np.array([self.a]))[0]) + 2 * np.log(2) * self.a * self.corner
-        return float(known + self._smooth.sum())
+        without_series = (
+            self.depth - float(self.tip.transform(np.array([self.a]))[0]) + 2 * np.log(2) * self.a * self.corner
+        )
+        return float(without_series + self._smooth.sum())
 
     def smooth_slope(self, t: FloatArray) -> FloatArray:
         """psi' [-] at t [m] without the logarithm at the edge, see `corner`."""
@@ -127,17 +129,17 @@ class Surface:
         return np.asarray(self.a * alternating @ even_bessel(k * self.a, self._series.size))
 
     def density(self, t: FloatArray) -> FloatArray:
-        """phi [m] at t <= a [m]."""
+        """Abel density phi [m] at t <= a [m]."""
         return np.asarray(self.depth - self.tip.quick(t) + self.psi(t))
 
     def _image(self, u: FloatArray) -> FloatArray:
-        """Abel image of psi but for its edge value, at a u = sqrt(a^2 - r^2)."""
+        """Abel image of psi - psi(a) at a u = sqrt(a^2 - r^2)."""
         n = np.arange(1, self._smooth.size)
         at_zero = np.concatenate([[1.0], np.cumprod(-(2 * n - 1) / (2 * n))])  # P_2n(0)
         return np.asarray((even_legendre(u, self._smooth.size) / at_zero - 1) @ self._smooth / (self.a * u))
 
     def _slope(self, t: FloatArray) -> FloatArray:
-        """-phi' that is integrated numerically, without the singular terms of kinks."""
+        """-phi' without the derivative of the series and without the singular terms of kinks, at t [m]."""
         if self.corner == 0:
             return self.tip.transform_slope(t)
         to_edge = np.maximum(self.a - t, 1e-17 * self.a)
@@ -147,7 +149,7 @@ class Surface:
         """p(r) [Pa] at radii [m], shape (n,), zero outside the contact.
 
         Raises:
-            InvalidInput: Where the pressure is infinite: at a sharp rim, at a cone's tip, at the edge of a flat punch.
+            InvalidInput: Where the pressure is infinite: at kinks, at the tip of a cone, at the edge of a flat punch.
         """
         inside = radius < self.a
         self._refuse_infinite(radius, inside | ((radius == self.a) & (self.edge != 0)))
@@ -178,13 +180,14 @@ class Surface:
             p[i] += (span * v * w * slope / (t * np.sqrt(to_r))).sum(axis=1)
         return np.asarray(self.springs.modulus / np.pi * p)
 
-    def _refuse_infinite(self, radius: FloatArray, asked: FloatArray) -> None:
+    def _refuse_infinite(self, radius: FloatArray, within: FloatArray) -> None:
+        """Refuse radii [m] at which the pressure is infinite, of those where `within` is true."""
         profile = self.tip.profile
         singular = [0.0] if float(profile.slope_at(0.0)) > 0 else []
         singular += [b for b in profile.kinks if b < self.a]
         if self.edge != 0:
             singular.append(self.a)
-        infinite = radius[np.asarray(asked, dtype=bool) & np.isin(radius, singular)]
+        infinite = radius[np.asarray(within, dtype=bool) & np.isin(radius, singular)]
         if infinite.size:
             raise InvalidInput(f"radius = {infinite[0]:g} m: the pressure is infinite at this sharp rim; ask beside it")
 
@@ -198,7 +201,10 @@ class Surface:
         return w
 
     def _outside(self, r: FloatArray) -> FloatArray:
-        """(2/pi) [depth arcsin(a/r) - int_0^a f'(s) arctan sqrt((a^2 - s^2)/(r^2 - a^2)) ds + ..] at r > a."""
+        """w(r) [m] at r > a, Eq. (13).
+
+        The part of the profile is (2/pi) [depth arcsin(a/r) - int_0^a f'(s) arctan sqrt((a^2 - s^2)/(r^2 - a^2)) ds].
+        """
         far, a = r[:, None], self.a
         height = np.zeros_like(r)
         ends = [self.tip.flat, *(b for b in self.tip.cuts if self.tip.flat < b < a), a]
@@ -206,8 +212,8 @@ class Surface:
             # f' may be singular at the axis, the arctan has a root near the edge.
             is_smooth = low > 0 and a - high > high - low
             v, w = (gauss if is_smooth else graded)(20 + self.sizes.extra)
-            s, beside = low + (high - low) * v, a - high + (high - low) * v[::-1]  # v is symmetric: 1 - v
-            angle = np.arctan(np.sqrt(beside * (a + s) / ((far - a) * (far + a))))
+            s, to_edge = low + (high - low) * v, a - high + (high - low) * v[::-1]  # v is symmetric: 1 - v
+            angle = np.arctan(np.sqrt(to_edge * (a + s) / ((far - a) * (far + a))))
             height += angle @ (w * (high - low) * self.tip.slope(s))
         v, w = gauss(2 * self._phi.size + 16 + self.sizes.extra)
         total = self.depth * np.arcsin(a / r) - height
@@ -230,7 +236,7 @@ class Surface:
         """Nodes k a and (1 - chi) phi^ times weights [m], by which `_softening` is a sum of J_0(kr)."""
         if farthest not in self._spectra:
             largest = self.sizes.reach * self.a / self.springs.unit
-            more = 2.0 ** (self.sizes.extra / 6)  # the finer solution that states errors: twice the wave numbers
+            more = 2.0 ** (self.sizes.extra / 6)  # twice the wave numbers at the finer resolution of error estimates
             reach = more * float(np.clip(_SLOW_WAVES / largest, *_SLOW_DECAY)) if self.kernel.tail else 1.0
             kappa, w, table = self._radius.waves(farthest, reach)
             rest = self.kernel.one_minus_chi(kappa / self.a * self.springs.unit)

@@ -1,4 +1,4 @@
-"""Detachment of an adhering indenter: where its contact goes when it is withdrawn, and where it is lost.
+"""Detachment of an adhering indenter: the states of its withdrawal, and the pull-off.
 
 The whole branch of equilibria (`mdr.adhesive`) gives stability and pull-off under every control
 (`bem.branch`). Errors: the same path on finer springs, and rounding errors of depth and force.
@@ -23,16 +23,17 @@ from mdr.contact_surface import surface_of
 from mdr.equilibria import springs_of
 from mdr.profiles import FlatTip
 
-# States of a path, and the share of them during which the front rests at a punch's edge.
+# Number of states of a path, and number of those with the contact radius of a flat punch.
 POINTS = 200
 _PINNED = POINTS // 5
-# A punch's tension may be largest in its centre from this Poisson's ratio on; beyond this a/h it keeps its shape.
+# Least Poisson's ratio of a layer with a second maximum of tension in the centre, largest a/h at which the tension is
+# computed (its shape is the same beyond), and r/a of the point with which the centre is compared.
 _CONFINED, _THINNEST, _INSIDE = 0.45, 50.0, 0.1
 # Relative rounding error of contact radii along a path, a tenth of that of the radius at pull-off.
 _RADIUS = 1e-14
-# Change between resolutions where contact is lost, over that of other states: it is the place of a minimum, which moves
-# by the slope of the branch's error, and is rounded. With 1 two of fifty graded layers are not covered.
-_PLACE = 2.0
+# Factor on the error estimates of the pull-off: as a minimum of the branch it also varies with the slope of the error.
+# With 1 two of fifty graded layers are not covered.
+_MINIMUM = 2.0
 
 
 class Withdrawal(NamedTuple):
@@ -41,7 +42,7 @@ class Withdrawal(NamedTuple):
     Attributes:
         contacts: Equilibria of the scene.
         branch: Equilibria up to a radius at least as large as the first one.
-        start: y of the branch where the front sets off.
+        start: y of the branch from which on the contact radius decreases.
     """
 
     contacts: Adhesive
@@ -50,7 +51,7 @@ class Withdrawal(NamedTuple):
 
 
 def withdrawal(contacts: Adhesive, loading: Detachment) -> Withdrawal:
-    """Equilibria of the withdrawal that a loading prescribes, and where it starts.
+    """Equilibria of the withdrawal that a loading prescribes, and y of its start.
 
     Raises:
         InvalidInput: If there is nothing to detach, or the indenter ends too early.
@@ -67,9 +68,9 @@ def withdrawal(contacts: Adhesive, loading: Detachment) -> Withdrawal:
 
 
 def shares(*, is_punch: bool) -> FloatArray:
-    """Shares of y, and of depth and force, along a path relative to where the front sets off, shape (2, POINTS).
+    """y, and depth and force, along a path, shape (2, POINTS), over those where the contact radius starts to decrease.
 
-    The front of a flat punch first rests at the edge, while depth and force rise.
+    Under a flat punch the contact radius is first constant, while depth and force increase in proportion.
     """
     rests = _PINNED if is_punch else 0
     y = np.append(np.ones(rests), np.linspace(1.0, 0.0, POINTS - rests, endpoint=False))
@@ -114,7 +115,7 @@ def solve_detachment(scene: Scene, flat_punch: FlatPunchSource, settings: Mappin
 
 
 def _path_errors(fine: Withdrawal, finer: Withdrawal, along: FloatArray, loaded: FloatArray) -> dict[str, FloatArray]:
-    """Stated errors along a path relative to its largest values; depth and force at the same radii."""
+    """Error estimates along a path over its largest values; depth and force are compared at equal radii."""
     y, branch, springs = fine.start * along, fine.branch, fine.contacts.springs
     radius, values = branch.radius(y), loaded * branch.values(y)
     other = loaded * finer.contacts.states(radius, branch.radius(y, springs.tip.flat))
@@ -128,7 +129,7 @@ def _path_errors(fine: Withdrawal, finer: Withdrawal, along: FloatArray, loaded:
 
 
 def _pull_off_errors(fine: Withdrawal, finer: Withdrawal, control: int) -> dict[str, FloatArray]:
-    """Relative stated errors of the numbers of the pull-off."""
+    """Relative error estimates of force, depth and radius at pull-off."""
     scalars, others = (path.branch.pull_off(control, path.start) for path in (fine, finer))
     lost = scalars["pull_off_contact_radius"]
     of_depth, of_force = fine.contacts.rounding(np.array([lost]))[:, 0] if lost else (0.0, 0.0)
@@ -136,19 +137,19 @@ def _pull_off_errors(fine: Withdrawal, finer: Withdrawal, control: int) -> dict[
     errors = {}
     for name, value in scalars.items():
         size = abs(value) or 1.0
-        errors[name] = _PLACE * stated_error(value, others[name], scale=size, floor=floors.get(name, of_force) / size)
+        errors[name] = _MINIMUM * stated_error(value, others[name], scale=size, floor=floors.get(name, of_force) / size)
     return errors
 
 
 def _notes(contacts: Adhesive, radius: float) -> tuple[str, ...]:
-    """A warning where the contact is likely to lose its circle before the theory lets it detach."""
+    """A warning where cavitation or fingering is likely before the computed axisymmetric detachment."""
     layer, springs = contacts.scene.layer, contacts.springs
     if layer.is_half_space or (layer.is_uniform and (layer.support != "bonded" or layer.poissons_ratio < _CONFINED)):
         return ()
     thickness = springs.unit * springs.kernel.units
-    asked = min(radius, _THINNEST * thickness)
-    punch = replace(springs, tip=FlatTip(FlatPunch(radius=asked)))
-    pressure = surface_of(punch, asked, 1.0, is_singular=True).pressure(asked * np.array([0.0, _INSIDE]))
+    a = min(radius, _THINNEST * thickness)
+    punch = replace(springs, tip=FlatTip(FlatPunch(radius=a)))
+    pressure = surface_of(punch, a, 1.0, is_singular=True).pressure(a * np.array([0.0, _INSIDE]))
     if pressure[0] <= pressure[1]:
         return ()
     warning = (

@@ -1,7 +1,8 @@
 """Elastic contact without effects: equilibria under prescribed radii, depths or forces, with stated errors.
 
-By radius: depth g(a), Eq. (3). By depth or force: the radius by search, then the prescribed value is inserted as it is.
-Errors: the same states on finer springs (`contact.stated`), and rounding errors times the condition of the equation.
+For a prescribed radius the depth is g(a), Eq. (3). For a prescribed depth or force the radius is found by a search, and
+the prescribed value is inserted unchanged. Error estimates: the change of the states on finer springs
+(`contact.stated`), plus rounding errors times the condition number of the equation.
 """
 
 from __future__ import annotations
@@ -40,31 +41,32 @@ from mdr.profiles import FlatTip
 from mdr.radius_search import Quantity, RadiusSearch, refuse_too_wide
 from mdr.spring_bed import Springs, SpringValues, State
 
-# A stated error, or the function that computes it.
+# An error estimate, or the function that computes it at first use.
 StatedError: TypeAlias = FloatArray | Callable[[], FloatArray]
-# States of a path at which errors are computed and contacts are checked; the largest change counts for all of them.
+# Numbers of states of a path at which errors are computed and contacts are checked; the largest error is used for all.
 _COMPARED, CHECKED = 8, 12
 # Radii inside, and radii outside over the contact radius, at which fields are compared.
 _INSIDE, _OUTSIDE = 8, np.array([1.001, 1.02, 2.0, 4.0])
-# Distances from breaks, in thicknesses, at which pressures are compared as well. The outermost two alone state a third
-# of the error at a/h = 600.
+# Further points: distances from breaks over the thickness. The outermost two alone give a third of the error at
+# a/h = 600.
 _DISTANCES = np.array([-1.0, -0.5, -0.25, 0.25, 0.5, 1.0])
-# Share of the polynomials of the companion where series converge slowly: errors are stated 4 to 50 times too large.
+# Number of polynomials of the comparison where series converge slowly, over that of the answer. The error estimate is 4
+# to 50 times the error.
 _FEWER = 0.65
 # Relative rounding error of pressure and displacement by their quadratures.
 _FIELD_ROUNDING = 2e-13
-# Error of pressures that are infinite at the edge of a graded layer: their series converge slowly. With half of it one
-# of thirty scenes is not covered.
+# Relative error of pressures that are infinite at the edge of a graded layer, whose series converge slowly. At half of
+# it one of thirty scenes is not covered.
 _GRADED_EDGE = 2e-9
 
 
 def solve_elastic(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[str, Setting]) -> ContactPath:
-    """Contact radius, depth, force and stiffness, with pressure and displacement on demand.
+    """Contact radius, depth, force and stiffness; pressure and displacement are computed at first use.
 
     Raises:
         InvalidInput: If a prescribed value is out of reach of the indenter, or the contact becomes too wide.
         SeveralContacts: If the contact would not be one circle.
-        UnsupportedSceneError: If the surfaces would pull inside, or the indenter would touch outside.
+        UnsupportedSceneError: If there would be tension inside the contact, or a second contact outside.
     """
     log = StageLog()
     springs = springs_of(scene, flat_punch, log)
@@ -92,7 +94,7 @@ def solve_elastic(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
 
 
 def springs_of(scene: Scene, flat_punch: FlatPunchSource, log: StageLog) -> Springs:
-    """Springs of a scene; those of a layer are solutions of its equation, or of a table."""
+    """Springs of a scene, from the integral equation or a table; the log counts them as flat-punch data."""
     if scene.layer.is_half_space:
         return springs_on(scene.layer, scene.indenter, flat_punch)
     with log.stage("flat_punch_data"):
@@ -104,8 +106,8 @@ def springs_on(layer: ElasticLayer, indenter: Profile, flat_punch: FlatPunchSour
     """Springs of a layer under an indenter, by the equation of contact or by a table of flat punches.
 
     Raises:
-        UnsupportedSceneError: If a table is asked for of a layer that is not uniform.
-        InvalidInput: If a stored table is of another layer.
+        UnsupportedSceneError: If the source is a table and the layer is not uniform.
+        InvalidInput: If a stored table belongs to another layer.
     """
     if isinstance(flat_punch, IntegralEquation):
         return Springs.of(layer, indenter, flat_punch.sizes)
@@ -117,12 +119,12 @@ def springs_on(layer: ElasticLayer, indenter: Profile, flat_punch: FlatPunchSour
 
 
 def is_simple(scene: Scene) -> bool:
-    """Whether g rises and no contact pulls or is touched outside: one layer under a convex profile."""
+    """Whether g increases and the contact is one circle without tension for sure: one layer under a convex profile."""
     return scene.layer.is_uniform and scene.indenter.is_convex
 
 
 def _radii(scene: Scene, springs: Springs) -> FloatArray:
-    """Contact radii [m] of what is prescribed."""
+    """Contact radii [m] at the prescribed radii, depths or forces, shape (n,)."""
     loading, indenter = scene.loading, scene.indenter
     if not isinstance(loading, ContactRadii | IndentationDepths | NormalForces):
         raise UnsupportedSceneError(f"loading {type(loading).__name__} prescribes no radii, depths or forces")
@@ -143,10 +145,10 @@ def _radii(scene: Scene, springs: Springs) -> FloatArray:
 
 
 def _refuse_unrisen(indenter: Profile) -> None:
-    """Refuse a table that begins flat.
+    """Refuse a tabulated profile whose first heights are zero, unless it is a flat end.
 
     Raises:
-        InvalidInput: With the radius up to which it does.
+        InvalidInput: With the radius up to which it is flat.
     """
     if not isinstance(indenter, FlatPunch) and not indenter.flat_radius and indenter.breakpoints:
         first = indenter.breakpoints[0]
@@ -156,7 +158,7 @@ def _refuse_unrisen(indenter: Profile) -> None:
 
 
 def _states(scene: Scene, springs: Springs, radius: FloatArray, values: SpringValues) -> State:
-    """Equilibria at radii [m]; what is prescribed is inserted as it is."""
+    """Equilibria at radii [m], with prescribed depths or forces inserted unchanged."""
     loading = scene.loading
     if isinstance(loading, IndentationDepths):
         return springs.state(radius, values, loading.values)
@@ -172,12 +174,12 @@ def is_singular(scene: Scene, radius: float) -> bool:
 
 
 def refuse_inadmissible(scene: Scene, springs: Springs, state: State) -> None:
-    """Refuse paths with tension in a contact, or with a second contact outside one.
+    """Refuse paths with tension inside a contact, or with a second contact outside.
 
-    Where g rises the widest contact has the smallest gaps, so gaps are checked for it alone.
+    Where g increases the widest contact has the smallest gaps, so gaps are checked for it alone.
 
     Raises:
-        UnsupportedSceneError: With the contact radius and the place.
+        UnsupportedSceneError: With the contact radius, and the radius of tension or touch.
     """
     if is_simple(scene):
         return
@@ -195,35 +197,35 @@ def refuse_inadmissible(scene: Scene, springs: Springs, state: State) -> None:
 
 
 def _spread(radius: FloatArray, count: int) -> NDArray[np.intp]:
-    """Indices of at most so many radii, from the smallest to the widest."""
+    """Indices of at most `count` radii, evenly from the smallest to the largest."""
     order = np.argsort(radius)
     return order[sorted(set(np.linspace(0, order.size - 1, min(order.size, count)).astype(int).tolist()))]
 
 
 def _elastic_errors(scene: Scene, springs: Springs, state: State, values: SpringValues) -> dict[str, StatedError]:
-    """Relative errors, shape (n,) each, zero for the prescribed quantity; those of fields are called at first use."""
+    """Relative error estimates by name, shape (n,), zero of the prescribed quantity; fields have functions instead."""
     some = _spread(state.radius, _COMPARED)
     states = State(*(row[some] for row in state))
     finer, flat, a = springs.finer.at(states.radius), springs.tip.flat, state.radius
     is_punch = isinstance(scene.indenter, FlatPunch)
     by_radius, by_depth = (isinstance(scene.loading, kind) for kind in (ContactRadii, IndentationDepths))
-    companion = springs.finer.state(states.radius, finer, None if by_radius else states.depth)
+    finer_states = springs.finer.state(states.radius, finer, None if by_radius else states.depth)
     floor, whole = springs.floor(a)
-    if scene.indenter.ends_upright:  # the last digit of a changes g
+    if scene.indenter.ends_upright:  # a rounding error of a changes g
         floor = floor + EPS * a * springs.tip.transform_slope(a) / springs.tip.transform(a)
     depth = _largest(values.g[some], finer.g, states.depth) + floor
-    force = _largest(states.force, companion.force, states.force) + whole + floor
-    stiffness = _largest(states.stiffness, companion.stiffness, states.stiffness) + whole
+    force = _largest(states.force, finer_states.force, states.force) + whole + floor
+    stiffness = _largest(states.stiffness, finer_states.stiffness, states.stiffness) + whole
     zero = np.zeros(a.size)
     a_error = zero if by_radius or is_punch else depth * _sensitivity(scene, springs, states)
     # At a prescribed force the depth, and at a prescribed depth the force, is stationary in the radius.
     of_depth, of_force = depth if by_radius else force, force + (depth if by_radius else 0.0)
-    # Between the edge of a flat end and that of the contact pressures go with a - b.
+    # Pressures between the flat radius b and the edge vary like a - b.
     pressure = whole + a_error / np.maximum(1 - flat / a, 1e-12)
-    # Outside thin layers w is a small difference of terms of the size of phi, K/a times the depth. An error of the
-    # radius changes it like the gap next to the edge, by its power 3/2.
+    # On thin layers w outside is a small difference of terms of the size of phi, K/a times the depth. An error of the
+    # radius changes w by its power 3/2, like the gap near the edge.
     displacement = (zero if by_depth else of_depth) + a_error**1.5 + whole + EPS * values.K / a
-    # Functions outlive the answer's other arrays, so they refer to a few states only.
+    # The functions below refer to a few states only, since they stay in memory as long as the answer.
     ends = {(a, depth, force / (np.pi * a * a)) for a, depth, force in np.transpose(states[:3])[[0, -1]].tolist()}
     widest, deepest = float(states.radius[-1]), float(states.depth[-1])
     return {
@@ -240,19 +242,19 @@ def _elastic_errors(scene: Scene, springs: Springs, state: State, values: Spring
     }
 
 
-def _sensitivity(scene: Scene, springs: Springs, seen: State) -> float:
-    """d(ln a)/d(ln g), one at most where g rises faster than a."""
+def _sensitivity(scene: Scene, springs: Springs, states: State) -> float:
+    """Largest d(ln a)/d(ln g) of the states, at least 1."""
     if is_simple(scene):
         return 1.0
-    inner = np.maximum(seen.radius * (1 - 1e-4), springs.tip.flat)
-    risen = (seen.depth - springs.at(inner).g) / np.where(seen.depth == 0, 1, seen.depth)
-    return float(np.max(1 / np.maximum(risen / np.maximum(1 - inner / seen.radius, EPS), 1e-3), initial=1.0))
+    inner = np.maximum(states.radius * (1 - 1e-4), springs.tip.flat)
+    growth = (states.depth - springs.at(inner).g) / np.where(states.depth == 0, 1, states.depth)
+    return float(np.max(1 / np.maximum(growth / np.maximum(1 - inner / states.radius, EPS), 1e-3), initial=1.0))
 
 
 def surface_pair(springs: Springs, a: float, depth: float, *, is_singular: bool) -> list[Surface]:
-    """One contact at two resolutions: that of the answer, and another one whose change states its error.
+    """One contact at two resolutions: that of the answer, and the comparison for error estimates.
 
-    All quadratures of the other one are finer. Where the error falls like a power of the number of polynomials, it has
+    All quadratures of the comparison are finer. Where the error falls like a power of the number of polynomials, it has
     fewer of them.
     """
     finer = springs.finer
@@ -262,7 +264,7 @@ def surface_pair(springs: Springs, a: float, depth: float, *, is_singular: bool)
 
 
 def pressure_error(springs: Springs, a: float, depth: float, scale: float, *, is_singular: bool) -> float:
-    """Stated error over a pressure [Pa] of the pressure of a contact of radius a [m], by two resolutions."""
+    """Error estimate over `scale` [Pa] of the pressure in a contact of radius a [m], from two resolutions."""
     pair, unit = surface_pair(springs, a, depth, is_singular=is_singular), springs.unit
     # Errors are largest within a thickness of the breaks, and oscillate there.
     near = np.add.outer(np.array(springs.tip.breaks[:_INSIDE]), unit * _DISTANCES).ravel()
@@ -274,7 +276,7 @@ def pressure_error(springs: Springs, a: float, depth: float, scale: float, *, is
 
 
 def displacement_error(springs: Springs, a: float, depth: float, *, is_singular: bool) -> float:
-    """Stated error of the displacement outside a contact of radius a [m] over the depth [m], by two resolutions."""
+    """Error estimate over the depth [m] of the displacement outside a contact of radius a [m], from two resolutions."""
     outside = a * _OUTSIDE
     if not isinstance(springs.tip, FlatTip):  # a punch's flank is upright
         outside = outside[outside < springs.tip.end]
@@ -285,22 +287,22 @@ def displacement_error(springs: Springs, a: float, depth: float, *, is_singular:
 
 
 def _largest(answer: FloatArray, other: FloatArray, scale: FloatArray) -> float:
-    """Largest relative change between two resolutions, times the safety."""
+    """Largest error estimate: the safety factor times the relative change between two resolutions."""
     return float(stated_error(answer, other, scale=scale).max())
 
 
 @dataclass(frozen=True, eq=False)
 class PathFields:
-    """Surface fields of every step of a path, each contact solved when it is first asked for.
+    """Surface fields of every step of a path; each contact is solved at first use and cached.
 
     Attributes:
-        scene: The problem.
+        scene: The scene.
         springs: Springs of the scene.
-        radius: a [m], shape (n,).
-        depth: delta [m], shape (n,).
-        flat_punch: Settings of the answer.
-        settings: Settings as the answer reports them.
-        adheres: Whether the edge is held by adhesion.
+        radius: Contact radius a [m], shape (n,).
+        depth: Indentation depth delta [m], shape (n,).
+        flat_punch: Source of flat-punch data.
+        settings: Settings that the answer reports.
+        adheres: Whether the contact has adhesion, so that the pressure is infinite at the edge.
     """
 
     scene: Scene
@@ -313,7 +315,7 @@ class PathFields:
     _surfaces: dict[int, Surface] = field(default_factory=dict)
 
     def surface(self, step: int) -> Surface:
-        """One step's contact."""
+        """The contact of one step."""
         if step not in self._surfaces:
             a = float(self.radius[step])
             singular = self.adheres or is_singular(self.scene, a)
@@ -321,18 +323,18 @@ class PathFields:
         return self._surfaces[step]
 
     def pressure(self, radius: FloatArray, step: int) -> FloatArray:
-        """p(r) [Pa], zero outside the contact."""
+        """Pressure p(r) at one step [Pa], zero outside the contact."""
         return self.surface(step).pressure(radius)
 
     def surface_displacement(self, radius: FloatArray, step: int) -> FloatArray:
-        """w(r) [m]."""
+        """Surface displacement w(r) at one step [m]."""
         return self.surface(step).displacement(radius)
 
     def inside(self, step: int, known: KnownContact) -> InteriorFields:
-        """The body under one step."""
+        """Fields inside the layer at one step; `known` are radius and errors of its contact."""
         from mdr.inside import interior  # noqa: PLC0415 - only those who look inside load it
 
         singular = self.adheres or is_singular(self.scene, known.radius)
-        if not self.adheres:  # two resolutions of the contact itself tell more
+        if not self.adheres:  # the error follows from two resolutions of the contact instead
             known = known._replace(density_error=0.0)
         return interior(self.springs, self.scene.layer, known, float(self.depth[step]), is_singular=singular)

@@ -1,4 +1,4 @@
-"""First-order contact of harmonics cos(n phi) on the layer that carries the mean contact of radius a.
+"""First-order contact of harmonics f_n(r) cos(n phi) of an indenter, within the mean contact of radius a.
 
 For f_n(r) cos(n phi) the density of the pressure obeys
 
@@ -22,8 +22,8 @@ from bem.numerics import cholesky, gauss, panels, solve_factored, spherical_bess
 from contact.records.validation import FloatArray
 from contact.scene.shapes import Raised
 
-# Nodes of the quadratures over u, and further ones over s, between two breakpoints. Half as many lose 1e-7 of blunt
-# pyramids, twice as many 1e-9.
+# Nodes of quadratures over u, and additional ones over s, between two breakpoints. The error for blunt pyramids is 1e-7
+# with half as many, 1e-9 with twice as many.
 _NODES = 20
 
 
@@ -31,7 +31,7 @@ class Harmonics:
     """Densities of harmonics under one contact radius.
 
     Args:
-        radius: The equation of that radius; None on the half-space.
+        radius: The integral equation at that radius; None on the half-space.
         orders: n, shape (p,).
     """
 
@@ -45,6 +45,7 @@ class Harmonics:
             self._solve(radius)
 
     def _solve(self, radius: Radius) -> None:
+        """Factor the equation of each order, and compute `resolvent` and `edge`."""
         kappa, w, _ = radius.waves()
         weight = 2 / np.pi * w * radius.kernel.one_minus_chi(kappa / radius.a)
         bessel = spherical_bessel(kappa, max(self.orders) + 2 * self.count)
@@ -60,11 +61,11 @@ class Harmonics:
 
     @property
     def growth(self) -> FloatArray:
-        """n/2 + a (psi_n - psi_0) of every order but the first, which is 0, shape (p - 1,)."""
+        """n/2 + a (psi_n(a) - psi_0(a)) for all orders n but the first, n = 0, shape (p - 1,)."""
         return np.asarray(np.array(self.orders[1:]) / 2 + self.edge[1:] - self.edge[0])
 
     def density_at_edge(self, shape: Raised, a: float) -> FloatArray:
-        """phi_n(a) [m] of every order, shape (p,)."""
+        """phi_n(a) [m] for all orders n, shape (p,)."""
         return np.asarray(
             transforms(shape, self.orders, np.array([a]))[:, 0] + (self.resolvent * self._moments(shape, a)).sum(axis=1)
         )

@@ -1,4 +1,4 @@
-"""Displacement and stress inside the body under one contact, from the Abel density phi of its pressure.
+"""Displacement and stress inside the layer under one contact, from the Abel density phi of its pressure.
 
 Half-space part: the contact is a superposition of flat punches of radius t and weight -phi'(t), and one of radius a
 and weight phi(a). With I_mn = int p^ k^m exp(-kz) J_n(kr) dk, zeta = z + i t, R = sqrt(r^2 + zeta^2), Re R > 0, a
@@ -10,8 +10,9 @@ density of one on [0, t] has
     2G u_r/r = -(1 - 2nu) I_01/r + z I_11/r    2G u_z = 2(1 - nu) I_00 + z I_10    zz = -I_10 - z I_20    rz = -z I_21
     rr + 2G u_r/r = -I_10 + z I_20             tt - 2G u_r/r = -2nu I_10           p = (2/3)(1 + nu) I_10
 
-By parts nothing cancels towards the surface. Layer part: an integral over the wave number k of what the layers add to
-the transfer from the surface to a depth, times p^ = (E*/pi) phi^. z points into the body, tension is positive.
+Integration by parts avoids cancellation near the surface. Layer part: the integral over the wave number k of the
+transfer function from the surface to a depth, minus that of the half-space, times p^ = (E*/pi) phi^. The z axis points
+into the layer, tension is positive.
 """
 
 from __future__ import annotations
@@ -34,23 +35,23 @@ from contact.stated import SAFETY
 from mdr.contact_surface import Surface, is_slow, surface_of
 from mdr.spring_bed import Springs
 
-# Fields take so many times more polynomials than k_N, which is stationary: with half of it they err by 1e-9 at a/h = 5.
+# Number of polynomials for fields over that for k_N, which is stationary: with half of it errors at a/h = 5 are 1e-9.
 _POLYNOMIALS = 2.0
-# The surface is looked at this share of a below it; with 1e-9 it is seen beside edges.
+# Least depth over a at which fields are computed, in place of the surface; with 1e-9 errors show near edges.
 _NEAREST = 1e-12
-# Largest wave number of stacks times the top layer's thickness: exp(-45) is left out; with half of it 1e-10.
+# Largest wave number of stacks times the top layer's thickness; the truncation error is exp(-45), at half of it 1e-10.
 _REACH = 45.0
-# Of graded layers times a, whose waves fall like exp(-kz)/k: half of it doubles the error near the edge. Also k z.
+# Largest k a and k z of graded layers, whose waves decay like exp(-kz)/k: half of them doubles the error near the edge.
 _GRADED_REACH, _GRADED_FADED = 400.0, 40.0
-# Radians that `Sizes.nodes` = 20 Gauss nodes resolve to the last digit; with twice of it to 1e-8.
+# Radians per panel, which `Sizes.nodes` = 20 Gauss nodes resolve to rounding; with twice of it to 1e-8.
 _PHASE = 25.0
-# Points at a time, and numbers in a table of waves at a time: what fits into the cache.
+# Points, and entries of a table of waves, that are computed at a time, so that they stay in the processor's cache.
 _POINTS, _WAVES = 1000, 1 << 18
-# Contact radii from the contact of which stresses on a half-space, which fall like 1/r^2, are below all roundings; and
-# contact radii and thicknesses by which those on a layer, which fall exponentially, have vanished long ago.
+# Distance from the contact over a from which on stresses in a half-space, which fall like 1/r^2, are below rounding,
+# and distance over a + h for layers, where they fall exponentially.
 _FARTHEST, _FARTHEST_OF_WAVES = 1e8, 1e3
-# Roundings of the sum of the sizes of all terms, in those of the contact's force, and of the distance to its edge;
-# half of it is exceeded at times.
+# Rounding error of fields over that of the force and of the distance from the edge, times the sum of the magnitudes of
+# all terms; half of it is exceeded at times.
 _ROUNDINGS = 4.0
 
 
@@ -69,11 +70,11 @@ class Fields(NamedTuple):
 
 
 class Body:
-    """A layer under the pressure of one contact.
+    """Fields inside a layer under the pressure of one contact.
 
     Args:
         layer: The layer.
-        surface: The contact; its density, and nothing else, enters.
+        surface: The contact, of which only the density is used.
     """
 
     def __init__(self, layer: ElasticLayer, surface: Surface) -> None:
@@ -83,7 +84,7 @@ class Body:
         self.unit = 1.0 if layer.is_half_space else layer.surface.thickness
 
     def at(self, r: FloatArray, z: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Rows of `Fields` at points [m] of shape (n,), and the sizes of the terms they are sums of, shape (9, n)."""
+        """Rows of `Fields` at points [m] of shape (n,), and sums of the magnitudes of their terms, each (9, n)."""
         z = np.maximum(z, _NEAREST * self.a)
         blocks = np.array_split(np.arange(r.size), 1 + r.size // _POINTS)
         near = np.concatenate([self._half_space(r[some], z[some]) for some in blocks], axis=1)
@@ -111,26 +112,30 @@ class Body:
         for low, high in pairwise([0.0, *(b for b in self.tip.breaks if b < a), a]):
             point, above, gap, weight, rest = self._nodes(low, high, r, z)
             t = np.sqrt(low**2 + above)
-            falls = self.tip.transform_slope(t) - surface.smooth_slope(t)  # -phi'
+            minus_slope = self.tip.transform_slope(t) - surface.smooth_slope(t)  # -phi'
             for b, jump in self.tip.kinks:
                 if b <= low:
-                    falls += jump * b / np.sqrt((low - b) * (low + b) + above)
+                    minus_slope += jump * b / np.sqrt((low - b) * (low + b) + above)
             if surface.corner and high == a:
-                falls -= surface.corner * np.log((a + t) ** 2 / rest)
+                minus_slope -= surface.corner * np.log((a + t) ** 2 / rest)
             elif surface.corner:
-                falls -= surface.corner * np.log((a + t) / (a - t))
-            falls *= weight / t
+                minus_slope -= surface.corner * np.log((a + t) / (a - t))
+            minus_slope *= weight / t
             for i, integrand in enumerate(_punch(r[point, None], z[point, None], t, gap)):
-                integrals[i] += np.bincount(point, (integrand * falls).sum(axis=1), r.size)
+                integrals[i] += np.bincount(point, (integrand * minus_slope).sum(axis=1), r.size)
         return self.surface.springs.modulus / np.pi * integrals
 
     def _nodes(
         self, low: float, high: float, r: FloatArray, z: FloatArray
     ) -> tuple[NDArray[np.intp], FloatArray, FloatArray, FloatArray, FloatArray]:
-        """Gauss nodes of all panels: their point, t^2 - low^2, r^2 - t^2, t dt, high^2 - t^2.
+        """Gauss nodes in t on all panels between two radii [m], for all points (r, z).
 
-        t^2 = low^2 + (high^2 - low^2) sin^2(angle) has roots at both ends. Panels end at the angle of r, and go
-        fourfold away from it, first by the distance of the pole r + i z.
+        t^2 = low^2 + (high^2 - low^2) sin^2(angle) removes the roots at both ends. Panels end at the angle of r. Their
+        widths grow fourfold with the distance from it, and start with the distance of the pole r + i z.
+
+        Returns:
+            Index of the point of each panel, shape (p,), and at the nodes of each panel t^2 - low^2, r^2 - t^2,
+            weights of t dt, high^2 - t^2, shape (p, nodes).
         """
         span, end = (high - low) * (high + low), np.pi / 2
         share = np.arcsin(high / self.a) - np.arcsin(low / self.a)
@@ -146,13 +151,13 @@ class Body:
         x, w = gauss(self.nodes)
         offset = start[:, None] + width[:, None] * x
         angle = middle[point, None] + offset
-        # With the digits of the offset, however close to r.
+        # r^2 - t^2 without cancellation, however close t is to r.
         gap = ((r - closest) * (r + closest))[point, None] - span * np.sin(offset) * np.sin(angle + middle[point, None])
         weight = span * np.sin(angle) * np.cos(angle) * width[:, None] * w
         return point, span * np.sin(angle) ** 2, gap, weight, span * np.cos(angle) ** 2
 
     def _layer(self, r: FloatArray, z: FloatArray) -> tuple[FloatArray, FloatArray, NDArray[np.bool_]]:
-        """What layers add; G of the material over the surface's; whether the half-space part counts there."""
+        """Rows that layers add, shape (9, n), G over that of the surface, and whether points are in the top layer."""
         fields, shear, within_top = np.empty((9, r.size)), np.empty(r.size), np.empty(r.size, dtype=bool)
         groups = np.floor(np.log2(z)) if self.kernel.tail else np.zeros(z.size)
         for number in sorted(set(groups.tolist())):
@@ -164,18 +169,19 @@ class Body:
                 here = some[places == place]
                 parts = 1 + here.size * k.size // _WAVES
                 for few in np.array_split(here[np.argsort(z[here], kind="stable")], parts):
-                    (depth, at), (radius, beside) = (np.unique(x[few], return_inverse=True) for x in (z, r))
+                    depth, depth_index = np.unique(z[few], return_inverse=True)
+                    radius, radius_index = np.unique(r[few], return_inverse=True)
                     scaled = depth[:, None] / self.unit
                     material = descent.material(place, scaled)
                     rows = load * self._rows(k, depth[:, None], material, descent.at(place, scaled))
                     shear[few], within_top[few] = (
-                        np.broadcast_to(material.shear_modulus, scaled.shape)[at, 0],
+                        np.broadcast_to(material.shear_modulus, scaled.shape)[depth_index, 0],
                         material.is_top,
                     )
                     if depth.size * radius.size <= 4 * few.size:  # a grid
-                        fields[:, few] = _waves(rows, k, radius)[:, at, beside]
+                        fields[:, few] = _waves(rows, k, radius)[:, depth_index, radius_index]
                     else:
-                        fields[:, few] = _waves(rows, k, r[few], at)
+                        fields[:, few] = _waves(rows, k, r[few], depth_index)
         return fields, shear, within_top
 
     def _rows(self, k: FloatArray, z: FloatArray, material: Material, transfer: Transfer) -> FloatArray:
@@ -189,7 +195,7 @@ class Body:
         return rows - _row_factors(half_space_at(k * z, self.nu), k, Material(1.0, self.nu, 0.0, 0.0, is_top=True))
 
     def _load(self, lowest: float, widest: float) -> tuple[FloatArray, FloatArray]:
-        """Wave numbers [1/m] and p^ times their weights, for points below a depth and up to a radius."""
+        """Wave numbers [1/m] and p^ times weights, shape (m,), for points at z >= lowest and r <= widest [m]."""
         top = _REACH / self.unit
         if self.kernel.tail:
             most = _GRADED_REACH * (1 + self.surface.sizes.extra / 2)
@@ -198,20 +204,20 @@ class Body:
         return k, w * self.surface.springs.modulus / np.pi * self._transform(k)
 
     def _transform(self, k: FloatArray) -> FloatArray:
-        """phi^(k) = int_0^a phi cos kt dt [m^2]: that of the profile by as many moments as k a resolves."""
+        """phi^(k) = int_0^a phi cos kt dt [m^2] at k [1/m]; the part of the profile is a series of moments."""
         a, surface = self.a, self.surface
         count = 12 + int(k[-1] * a / 2)
         n = np.arange(count)
         load = -self.tip.moments(np.array([a]), count, surface.sizes.extra)[0]
         load[0] += surface.depth
-        known = a * (load * np.sqrt(4 * n + 1) * (-1.0) ** n) @ even_bessel(k * a, count)
-        return np.asarray(known + surface.smooth_transform(k))
+        profile_part = a * (load * np.sqrt(4 * n + 1) * (-1.0) ** n) @ even_bessel(k * a, count)
+        return np.asarray(profile_part + surface.smooth_transform(k))
 
 
 def wave_rule(top: float, length: float, longest: float, nodes: int) -> tuple[FloatArray, FloatArray]:
-    """Nodes and weights of wave numbers up to `top` for functions like cos(k length).
+    """Nodes and weights of wave numbers up to `top` for functions like cos(k length), shape (n,).
 
-    Panels of four periods, halved towards k = 0 down to where the kernel of that longest length is like a polynomial.
+    Panels are four periods wide. Towards k = 0 they are halved down to 1/(4 longest), below which chi is smooth.
     """
     width = 8 * np.pi / length
     first = min(width, top, 0.25 / longest)
@@ -221,7 +227,7 @@ def wave_rule(top: float, length: float, longest: float, nodes: int) -> tuple[Fl
 
 
 def _punch(r: FloatArray, z: FloatArray, t: FloatArray | float, gap: FloatArray) -> FloatArray:
-    """The six integrals of a density of one on [0, t], those with n = 1, m < 2 over r; gap = r^2 - t^2."""
+    """I_00, I_10, I_20, I_01/r, I_11/r, I_21 of a unit density on [0, t], shape (6, ..); gap = r^2 - t^2."""
     zeta = z + 1j * t
     inverse = 1 / np.sqrt(gap + z * z + 2j * z * t)
     beyond = 1 / (zeta + 1 / inverse)
@@ -230,7 +236,7 @@ def _punch(r: FloatArray, z: FloatArray, t: FloatArray | float, gap: FloatArray)
 
 
 def _panels(middle: FloatArray, pole: FloatArray, fixed: FloatArray) -> tuple[NDArray[np.intp], FloatArray, FloatArray]:
-    """Panels of [0, pi/2]: of each its point, its start relative to `middle`, its width."""
+    """Panels of [0, pi/2] for each point: index of the point, start minus `middle`, and width, each of shape (p,)."""
     steps = pole[:, None] * 4.0 ** np.arange(25)
     ends = np.concatenate([fixed - middle[:, None], 0 * steps[:, :1], steps, -steps], axis=1)
     ends = np.sort(np.clip(ends, -middle[:, None], np.pi / 2 - middle[:, None]), axis=1)
@@ -240,7 +246,7 @@ def _panels(middle: FloatArray, pole: FloatArray, fixed: FloatArray) -> tuple[ND
 
 
 def _row_factors(transfer: Transfer, k: FloatArray, material: Material) -> FloatArray:
-    """Factors of p^ times the Bessel function in each row."""
+    """Factors of p^ times the Bessel function in each of the nine rows, from the transfer functions U, W, Q, P."""
     u, w, q, p = transfer
     _, nu, stiffens, turns, _ = material
     m, share = nu / (1 - nu), (1 + nu) / (3 * (1 - nu))
@@ -250,7 +256,10 @@ def _row_factors(transfer: Transfer, k: FloatArray, material: Material) -> Float
 
 
 def _waves(rows: FloatArray, k: FloatArray, r: FloatArray, at: NDArray[np.intp] | None = None) -> FloatArray:
-    """Sums over k of rows times J1/r, J0 or J1: all depths by all radii, or each radius at its own depth."""
+    """Sums over k of rows times J1/r, J0 or J1: for all pairs of depth and radius, or with `at` for one depth each.
+
+    `at` is the index of the depth of each radius.
+    """
     kr = np.multiply.outer(r, k)
     even, odd = special().j0(kr), special().j1(kr)
     over_r = np.where(r[:, None] > 0, odd / np.where(r > 0, r, 1.0)[:, None], k / 2)
@@ -261,7 +270,7 @@ def _waves(rows: FloatArray, k: FloatArray, r: FloatArray, at: NDArray[np.intp] 
 
 
 def _from_rows(rows: FloatArray, r: FloatArray, shear: FloatArray) -> FloatArray:
-    """In the order of `Fields`, from the nine rows and G [Pa]."""
+    """`Fields` as an array, shape (9, n), from the nine rows of `Body` and G [Pa]."""
     hoop, axial, zz, rz, s1, s2, p, p_r, p_z = rows
     return np.array([r * hoop / (2 * shear), axial / (2 * shear), s1 - hoop, s2 + hoop, zz, rz, p, p_r, p_z])
 
@@ -274,7 +283,7 @@ class Interior:
         layer: The layer.
         pair: The contact at two resolutions, the finer one first.
         known: Radius and errors of the contact.
-        depth: delta [m], to which errors of displacements are relative.
+        depth: Indentation depth delta [m], to which errors of displacements are relative.
     """
 
     layer: ElasticLayer
@@ -283,10 +292,10 @@ class Interior:
     depth: float
 
     def at(self, radius: FloatArray, depth: FloatArray) -> InsideFields:
-        """At points [m] of shape (n,).
+        """Fields and error estimates at radii and depths [m] of shape (n,).
 
         Raises:
-            InvalidInput: A point so far away that nothing is left to be resolved.
+            InvalidInput: If a point is so far away that stresses are below rounding.
         """
         self._refuse_distant(radius, depth)
         z = np.minimum(depth, self.layer.thickness)
@@ -295,7 +304,7 @@ class Interior:
         floor = _ROUNDINGS * float(surface.springs.floor(np.array([surface.a]))[1][0])
         near = np.hypot(radius - self.known.radius, np.maximum(z, _NEAREST * self.known.radius))
         errors = SAFETY * np.abs(values - other) + (floor + _ROUNDINGS * EPS * self.known.radius / near) * sizes
-        rises = 1 / min(1.0, max(surface.tip.exponent - 1, 0.1))  # stress at a tip r^n goes with z^(n-1)
+        rises = 1 / min(1.0, max(surface.tip.exponent - 1, 0.1))  # stress near a tip r^n varies like z^(n-1)
         raised = 2 * rises * np.maximum(_NEAREST * self.known.radius - z, 0.0)
         errors[:2] += raised * np.abs(values[2:6]).max(axis=0) / self.layer.contact_modulus
         errors[2:7] += raised * np.abs(values[7:]).max(axis=0)
@@ -311,10 +320,11 @@ class Interior:
             "hydrostatic_pressure": (slice(6, 7), stress),
             "pressure_gradient": (slice(7, 9), max(steepest, stress / length)),
         }
-        known = self.known.density_error
-        return {name: float(errors[rows].max()) / (scale or np.inf) + known for name, (rows, scale) in kinds.items()}
+        shared = self.known.density_error
+        return {name: float(errors[rows].max()) / (scale or np.inf) + shared for name, (rows, scale) in kinds.items()}
 
     def _refuse_distant(self, radius: FloatArray, depth: FloatArray) -> None:
+        """Refuse points [m] so far away that stresses are below rounding."""
         layer, a = self.layer, self.known.radius
         farthest = _FARTHEST * a if layer.is_half_space else _FARTHEST_OF_WAVES * (a + layer.thickness)
         distant = np.flatnonzero(np.maximum(radius, depth) > farthest)
@@ -328,10 +338,10 @@ class Interior:
 def interior(
     springs: Springs, layer: ElasticLayer, known: KnownContact, depth: float, *, is_singular: bool
 ) -> Interior:
-    """The body under one contact [m]; `is_singular`: whether phi(a) is not zero.
+    """Fields inside the layer under one contact at a depth [m]; `is_singular`: whether phi(a) is not zero.
 
-    The contact has finer sizes, and in its companion the usual ones and a radius that is off by its error. Where errors
-    fall like a power of the sizes, the companion has half the resolution.
+    The answer has finer sizes. The solution for error estimates has the usual sizes and a radius shifted by its error.
+    Where errors fall like a power of the sizes, it has half the resolution.
     """
     shifted = min(known.radius * (1 + known.radius_error), springs.tip.end)
     sizes = springs.sizes
@@ -341,11 +351,11 @@ def interior(
 
 
 def field_sizes(sizes: Sizes) -> Sizes:
-    """Sizes with polynomials enough for fields inside."""
+    """Sizes with `_POLYNOMIALS` times as many polynomials, for fields inside the layer."""
     return sizes._replace(rate=_POLYNOMIALS * sizes.rate)
 
 
 def _surface(springs: Springs, sizes: Sizes, a: float, depth: float, is_singular: bool) -> Surface:
-    """A contact whose density ends with zero, or with adhesion, in the same discretisation as the density itself."""
+    """The contact of radius a [m] at a resolution; without a singular edge its depth is g(a) in that resolution."""
     fine = springs.at_sizes(field_sizes(sizes))
     return surface_of(fine, a, depth if is_singular else float(fine.at([a]).g[0]), is_singular=is_singular)

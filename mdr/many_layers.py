@@ -1,7 +1,7 @@
-"""One indenter on many layers that differ in thickness and modulus only: all contacts at once.
+"""Contacts of one indenter with many layers that differ in thickness and modulus only, computed together.
 
-The flat punches of such layers depend on a/h alone, so one interpolation of them serves all contacts
-(`Springs.thickness`). Radii under prescribed depths or forces: a search on coarse springs, ended on accurate ones.
+The flat punches of such layers depend on a/h alone, so all contacts use one interpolation of them
+(`Springs.thickness`). Radii under prescribed depths or forces are searched on coarse springs, then on accurate ones.
 """
 
 from __future__ import annotations
@@ -20,16 +20,16 @@ from mdr.equilibria import is_simple
 from mdr.radius_search import Quantity, RadiusSearch
 from mdr.spring_bed import LARGEST_RATIO, Springs
 
-# ln of radii [m] near a flat end at which the half-space's answer is tabulated for first guesses.
+# z, see `RadiusSearch.place`, at which the answer of the half-space is tabulated for first guesses.
 _TABLE = np.linspace(-60.0, 40.0, 400)
-# Secant steps on coarse springs; six are usual. They end at this logarithmic residual.
+# Largest number of secant steps on coarse springs, six are usual, and their tolerance of ln(depth or force).
 _STEPS, _CLOSE = 40, 1e-4
-# Least and largest powers with which depth or force grow: near a flat end, and of the steepest tips.
+# Bounds of d ln(depth or force)/dz: the least near a flat end, the largest for the steepest tips.
 _POWERS = (0.2, 25.0)
 
 
 def takes_part(scene: Scene) -> bool:
-    """Whether a scene may be answered together with others: one value, and a circle that nothing can disturb."""
+    """Whether a scene can be solved together with others: one prescribed value, and a circle as its only contact."""
     values = getattr(scene.loading, "values", np.zeros(1))
     rises = not isinstance(scene.indenter, FlatPunch)
     is_layer = isinstance(scene.layer, Layer) and not scene.layer.is_half_space
@@ -41,7 +41,7 @@ def equilibria_on_layers(scenes: Sequence[Scene], sizes: Sizes) -> FloatArray:
 
     Args:
         scenes: Scenes that take part, of one indenter, one kind of loading, one support and Poisson's ratio.
-        sizes: Resolution.
+        sizes: Sizes of the discretisation.
     """
     layer, indenter = scenes[0].layer, scenes[0].indenter
     values = np.array([getattr(scene.loading, "values", np.zeros(1))[0] for scene in scenes])
@@ -71,26 +71,26 @@ def _radii(springs: Springs, quantity: Quantity, targets: FloatArray) -> FloatAr
     """Contact radii [m] with these depths [m] or forces over E* [m^2]; infinite where the search does not converge."""
     y, search = np.log(targets), RadiusSearch(springs, may_fall=False)
     start = search.scale(_on_half_space(springs, quantity, y))
-    slope, before = np.full_like(start, 2.0 if quantity == "force" else 1.0), np.full((2, y.size), np.nan)
+    slope, previous = np.full_like(start, 2.0 if quantity == "force" else 1.0), np.full((2, y.size), np.nan)
     for _ in range(_STEPS):
-        off = search.logarithm(springs.coarse, quantity, start) - y
-        now = np.stack([start, off])
-        step, change = now - before
-        rise = np.divide(change, step, out=slope.copy(), where=np.abs(step) > 0)
-        slope, before = np.clip(rise, *_POWERS), now
-        if float(np.abs(off).max()) < _CLOSE:
+        residual = search.logarithm(springs.coarse, quantity, start) - y
+        current = np.stack([start, residual])
+        step, change = current - previous
+        secant = np.divide(change, step, out=slope.copy(), where=np.abs(step) > 0)
+        slope, previous = np.clip(secant, *_POWERS), current
+        if float(np.abs(residual).max()) < _CLOSE:
             break
-        start = start - np.clip(off / slope, -1.0, 1.0)
-    usable = np.abs(off) < _CLOSE
+        start = start - np.clip(residual / slope, -1.0, 1.0)
+    usable = np.abs(residual) < _CLOSE
     radius = np.full_like(y, np.inf)
     radius[usable] = search.among(usable).refined(quantity, y[usable], start[usable], slope[usable])
     return radius
 
 
 def _on_half_space(springs: Springs, quantity: Quantity, y: FloatArray) -> FloatArray:
-    """Contact radii [m] with these logarithms of depth or force on a half-space, roughly."""
+    """Approximate contact radii [m] on a half-space with y = ln(depth or force), shape (n,)."""
     search = RadiusSearch(replace(springs, kernel=ContactKernel(None), thickness=1.0), may_fall=False)
     with np.errstate(all="ignore"):
         table = search.logarithm(search.springs, quantity, _TABLE)
-    known = np.isfinite(table)
-    return search.place(np.interp(y, np.maximum.accumulate(table[known]), _TABLE[known]))
+    is_finite = np.isfinite(table)
+    return search.place(np.interp(y, np.maximum.accumulate(table[is_finite]), _TABLE[is_finite]))

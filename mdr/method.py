@@ -1,6 +1,6 @@
 """The method record: which scenes the method of dimensionality reduction models, and the call that solves them.
 
-One row of `SOLVERS` each; the module of an effect is imported when a scene first asks for it.
+`SOLVERS` has one row per computation; its module is imported when a scene first needs it.
 """
 
 from __future__ import annotations
@@ -52,19 +52,19 @@ from contact.records.validation import in_range
 from contact.scene.effects import Viscoelasticity
 
 _EQUILIBRIA = (ContactRadii, IndentationDepths, NormalForces)
-# Relative accuracy of what is integrated in time, unless another is asked for.
+# Default relative accuracy of integration in time.
 DEFAULT_ACCURACY = 1e-9
-# The coarsest accuracy that time steps are chosen for: what coarser steps would save is too little to be measured.
+# Coarsest accuracy for which time steps are chosen: coarser steps save too little time to be measured.
 COARSEST = 1e-4
 
 
 @dataclass(frozen=True)
 class Solver:
-    """One computation.
+    """One computation, by the name of its function.
 
     Attributes:
-        effects: The effects it models; a scene must list exactly these kinds.
-        loadings: The loadings it takes.
+        effects: Modelled effects; a scene must list exactly these kinds.
+        loadings: Modelled kinds of loading.
         module: Module of the function.
         function: Name of the function.
     """
@@ -75,12 +75,12 @@ class Solver:
     function: str
 
     def takes(self, scene: Scene) -> bool:
-        """Whether loading and effects are this computation's."""
+        """Whether the computation models loading and effects of the scene."""
         listed = len(scene.effects) == len(self.effects) and all(scene.effect(kind) for kind in self.effects)
         return listed and isinstance(scene.loading, self.loadings)
 
     def load(self) -> Callable[..., Solution]:
-        """Import the module now."""
+        """The function, after import of its module."""
         function: Callable[..., Solution] = getattr(importlib.import_module(self.module), self.function)
         return function
 
@@ -98,7 +98,7 @@ SOLVERS = (
 
 
 def _not_relaxing(layer: ElasticLayer, model: str) -> str:
-    """Why the layer does not relax as one: all of it must share one relaxation function and nu = 1/2."""
+    """Reason why springs do not relax alike, empty if they do: they need one relaxation function and nu = 1/2."""
     if layer.has_elastic_base:
         return (
             f"mdr models {model} where everything relaxes alike, and the elastic base does not: chi would depend on "
@@ -113,7 +113,7 @@ def _not_relaxing(layer: ElasticLayer, model: str) -> str:
 
 
 def _compressible_part(layer: ElasticLayer) -> str:
-    """The parts that relax in volume differently than in shape, by name and Poisson's ratio."""
+    """Names and values of Poisson's ratios below 1/2, for messages."""
     if isinstance(layer, LayerStack):
         ratios = [
             (n, sublayer.poissons_ratio) for n, sublayer in enumerate(layer.sublayers) if sublayer.poissons_ratio != 0.5
@@ -128,7 +128,7 @@ SHAPES = Solver((), (IndentationDepths, NormalForces), "mdr.shapes", "solve_shap
 
 
 def solver_of(scene: Scene) -> Solver | Unsupported:
-    """The computation for a scene, or what stands in the way."""
+    """The computation for a scene, or the reason why there is none."""
     if isinstance(scene.indenter, Shape):
         other = None if SHAPES.takes(scene) else not_round("mdr", scene, "without effects under depths or forces")
         return SHAPES if other is None else other
@@ -159,8 +159,8 @@ class Mdr(Record):
 
     Attributes:
         flat_punch: Source of the flat punch's stiffness and pressure.
-        accuracy: Wanted relative accuracy of what is integrated in time (impacts, histories). Coarser ones than
-            `COARSEST` are answered by it; what does not move is more accurate whatever is asked.
+        accuracy: Relative accuracy of integration in time (impacts, histories). Values above `COARSEST` have the effect
+            of `COARSEST`. Equilibria are always more accurate.
     """
 
     name: ClassVar[str] = "mdr"
@@ -169,7 +169,7 @@ class Mdr(Record):
     accuracy: Annotated[float, *in_range(1e-13, 0.1, "1e-9 costs twice as much as 1e-6")] = DEFAULT_ACCURACY
 
     def supports(self, scene: Scene) -> Supported | Unsupported:
-        """Contact of any profile with layers and half-spaces: elastic, adhesive, or incompressible and viscoelastic."""
+        """`Supported`, or the reason why not: elastic, adhesive, or incompressible viscoelastic contact is modelled."""
         solver = solver_of(scene)
         return solver if isinstance(solver, Unsupported) else Supported()
 

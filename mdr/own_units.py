@@ -1,6 +1,6 @@
-"""Scenes that are one problem in their own units: a power law f = C r^n on layers that differ in scale.
+"""Dimensionless problems of power laws f = C r^n, which layers of equal ratios share.
 
-With lengths in the thickness h, depths in C h^n and forces in E* C h^(n+1), every layer of the same ratios is the same.
+Lengths are in the thickness h, depths in C h^n, forces in E* C h^(n+1).
 """
 
 from __future__ import annotations
@@ -18,11 +18,11 @@ from mdr.profiles import PowerTip, tip_of
 
 @dataclass(frozen=True)
 class OwnUnits:
-    """A problem in its own units.
+    """A dimensionless problem and its units.
 
     Attributes:
-        layer: The layer, of thickness 1 and E* = 1.
-        indenter: f = r^n.
+        layer: The layer with thickness 1 and E* = 1.
+        indenter: The power law f = r^n.
         length: Unit of length [m].
         depth: Unit of depth [m].
         stiffness: Unit of stiffness [N/m].
@@ -38,12 +38,12 @@ class OwnUnits:
 
 
 def is_power_law(indenter: Profile) -> bool:
-    """Whether f = C r^n."""
+    """Whether the profile is a power law f = C r^n."""
     return isinstance(tip_of(indenter), PowerTip)
 
 
 def own_units(layer: ElasticLayer, indenter: Profile) -> OwnUnits:
-    """A power law's problem in its own units.
+    """The dimensionless problem of a power law.
 
     Args:
         layer: Layer, stack or half-space.
@@ -61,5 +61,5 @@ def own_units(layer: ElasticLayer, indenter: Profile) -> OwnUnits:
 
 @lru_cache(maxsize=64)
 def _unit_power(exponent: float) -> PowerLaw:
-    """f = r^n."""
+    """The power law f = r^n, cached."""
     return PowerLaw(exponent=exponent, reference_radius=1.0, reference_height=1.0)

@@ -1,11 +1,11 @@
-"""What the contact needs of a profile of revolution f(r): its half-space transform, and moments of that.
+"""Half-space transform g_hs of a profile of revolution f(r), and the moments of g_hs.
 
     g_hs(x) = x int_0^x f'(r)/sqrt(x^2 - r^2) dr                                                   Eq. (15)
     m_n(x)  = int_0^1 g_hs(x s) b_n(s) ds = x int_0^(pi/2) f'(x cos t) sqrt(4n+1) Q_n(sin t) sin t dt
 
-b_n = sqrt(4n+1) P_2n, Q_n as in `bem.numerics.abel_legendre`. The second integrand is smooth wherever f' is, so kinks
-of g_hs cost nothing: panels in the angle end at the radii where f' is not analytic. Profiles with closed forms stand
-in `tip_of`; every other profile of `contact` is integrated from its `slope_at`.
+b_n = sqrt(4n+1) P_2n, Q_n as in `bem.numerics.abel_legendre`. The second integrand is smooth wherever f' is, so panels
+in the angle t end at the radii where f' is not analytic. `tip_of` lists the profiles with closed forms; every other
+profile of `contact` is integrated from its `slope_at`.
 """
 
 from __future__ import annotations
@@ -34,27 +34,28 @@ from contact.scene.profiles import (
     TruncatedParaboloid,
 )
 
-# Numbers that one table of moments may hold at a time.
+# Largest number of entries of a table of moments that is computed at a time.
 _BLOCK = 2_000_000
 # Chebyshev points per stretch for the slope of g_hs of a profile without a closed form.
 _SAMPLES = 40
-# Growth of rounding errors in closed forms of measured profiles that is accepted: 1e4 leaves 1e-12. Uneven radii exceed
-# it, and are integrated piece by piece.
+# Largest amplification of rounding errors by closed forms of measured profiles: 1e4 leaves 1e-12. Profiles with uneven
+# radii exceed it, and are integrated numerically.
 _CANCELLATION = 1e4
-# Power with which nodes crowd towards the inner end of a panel, for tips like r^1.7 that are not analytic there.
+# Exponent of the substitution that concentrates nodes at the inner end of a panel, where tips like r^1.7 are not
+# analytic.
 _CROWDING = 4
 
 
 class Tip:
-    """A profile by quadrature of its own slope. Radii in metres.
+    """Transform of a profile by quadrature of its slope. Radii in metres.
 
     Attributes:
         profile: Profile of revolution.
-        flat: Radius of its flat end [m].
-        end: Radius [m] at which it ends.
-        breaks: Radii > 0 [m] where it is not analytic.
-        kinks: (b, jump of f' at b): g_hs' has the singular terms jump b/sqrt(x^2 - b^2) there, which
-            `transform_slope` leaves out; none where it includes them.
+        flat: Radius of the flat end [m].
+        end: Radius [m] at which the profile ends.
+        breaks: Radii > 0 [m] where f is not analytic.
+        kinks: Pairs (b, jump of f' at b). The terms jump b/sqrt(x^2 - b^2) of g_hs', singular at b, are not included in
+            `transform_slope` for these b.
     """
 
     kinks: tuple[tuple[float, float], ...] = ()
@@ -66,7 +67,7 @@ class Tip:
 
     @cached_property
     def exponent(self) -> float:
-        """n of a tip that starts like r^n; 1 with a flat end."""
+        """n in f ~ r^n near the axis; 1 with a flat end."""
         if self.flat:
             return 1.0
         r = np.array([1e-6 * min([*self.breaks[:1], self.end, 1.0])])
@@ -80,15 +81,15 @@ class Tip:
 
     @property
     def is_convex(self) -> bool:
-        """Whether f' never falls."""
+        """Whether f' never decreases."""
         return self.profile.is_convex
 
     def height(self, r: FloatArray) -> FloatArray:
-        """f [m]."""
+        """Height f(r) of the profile [m]."""
         return self.profile.height(r)
 
     def slope(self, r: FloatArray) -> FloatArray:
-        """f' at r > 0."""
+        """Slope f'(r) of the profile at r > 0 [m]."""
         return self.profile.slope_at(r)
 
     def transform(self, x: FloatArray) -> FloatArray:
@@ -101,15 +102,15 @@ class Tip:
         return total.reshape(np.shape(x))
 
     def transform_beyond(self, excess: FloatArray) -> FloatArray:
-        """g_hs [m] at an excess x - b [m] over the flat radius b, whose digits x loses close to it."""
+        """g_hs [m] at x = b + excess, b the flat radius; accurate for any small excess [m]."""
         return self.transform(self.flat + excess)
 
     def quick(self, x: FloatArray) -> FloatArray:
-        """g_hs [m] where many values are asked for; of rough measured profiles to 1e-11 only."""
+        """g_hs [m] by a faster formula, accurate to 1e-11 for rough measured profiles."""
         return self.transform(x)
 
     def transform_slope(self, x: FloatArray) -> FloatArray:
-        """g_hs' at x > 0 [m] of any shape, but for the singular terms of `kinks`."""
+        """g_hs' at x > 0 [m] of any shape, without the singular terms of `kinks`."""
         slope = np.zeros_like(x)
         for low, high, series in self._stretches(float(np.max(x, initial=0.0))):
             inside = (x > low) & (x <= high)
@@ -156,16 +157,16 @@ class Tip:
 
 
 class FlatTip(Tip):
-    """A flat-ended cylinder: nothing rises within its radius."""
+    """A flat punch: f = 0 within its radius."""
 
     def transform(self, x: FloatArray) -> FloatArray:
-        """g_hs = 0."""
+        """Transform g_hs = 0."""
         return np.zeros_like(x)
 
     transform_slope = transform
 
     def moments(self, x: FloatArray, count: int, extra: int = 0) -> FloatArray:
-        """m_n = 0."""
+        """Moments m_n = 0, shape (x.size, count)."""
         return np.zeros((x.size, count))
 
 
@@ -182,7 +183,7 @@ class PowerTip(Tip):
         return np.asarray(self._gain * (x / self._radius) ** self.exponent)
 
     def transform_slope(self, x: FloatArray) -> FloatArray:
-        """g_hs'."""
+        """Derivative g_hs' at x > 0 [m]."""
         return np.asarray(self._gain * self.exponent / self._radius * (x / self._radius) ** (self.exponent - 1))
 
     def moments(self, x: FloatArray, count: int, extra: int = 0) -> FloatArray:
@@ -193,7 +194,7 @@ class PowerTip(Tip):
 
 
 class BallTip(Tip):
-    """A sphere of radius R up to its equator, or the cap of a cone that it touches at b = R sin(theta)."""
+    """A sphere of radius R up to its equator, or continued by a cone that is tangent to it at b = R sin(theta)."""
 
     _crowds = False
 
@@ -237,7 +238,7 @@ class BallTip(Tip):
         return np.where(x < self._tangent, cap, x * (logarithm + self._flank * np.arctan2(far, self._tangent)))
 
     def transform_slope(self, x: FloatArray) -> FloatArray:
-        """g_hs'."""
+        """Derivative g_hs' at x > 0 [m]."""
         R, b, near = self._radius, self._tangent, self._near
         s = np.minimum(x, b)
         cap = self._artanh(s) + s * R / ((R - s) * (R + s))
@@ -275,39 +276,42 @@ class PiecewiseTip(Tip):
         )
 
     def slope(self, r: FloatArray) -> FloatArray:
-        """f'."""
+        """Slope f'(r) of the profile, zero on the flat end."""
         i = np.clip(np.searchsorted(self._knots, r, "right") - 1, 0, None)
         d = np.maximum(r - self._knots[i], 0)
         value, first, second = np.moveaxis(self._pieces[i], -1, 0)
         return np.where(r >= self._knots[0], value + d * (first + d * second), 0.0)
 
     def _angle(self, x: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-        """x, the knots b, sqrt(x^2 - b^2) and arccos(b/x); zero where x < b."""
+        """x, knots b, sqrt(x^2 - b^2) and arccos(b/x), the last two zero where x < b; the last axis is b."""
         wide, b = np.asarray(x, dtype=np.float64)[..., None], self._knots
         far = np.sqrt(np.maximum((wide - b) * (wide + b), 0))
         return wide, b, far, np.arctan2(far, np.where(b == 0, 1e-300, b)) * (wide > b)
 
     @cached_property
     def _is_even(self) -> bool:
-        """Whether the closed forms below keep their digits up to the end of the profile, or far beyond its knots."""
+        """Whether rounding errors of the closed forms stay below `_CANCELLATION` up to the end of the profile."""
         if self._knots.size == 1:
             return True
         size = (np.abs(self._jumps) * self.end ** np.arange(3)).sum()
         return bool(size < _CANCELLATION * np.abs(self.slope(self._knots)).max())
 
     def quick(self, x: FloatArray) -> FloatArray:
-        """Closed form where it keeps its digits."""
+        """g_hs [m] by the closed form where rounding errors are small, else by quadrature."""
         return self._closed(x) if self._is_even else self.transform(x)
 
     def _closed(self, x: FloatArray) -> FloatArray:
-        """Jumps at b of f', f'', f''' give x I_m with I_m = int_b^x (r - b)^m/sqrt(x^2 - r^2) dr, m = 0, 1, 2."""
+        """g_hs = x sum_b sum_m j_m I_m, I_m = int_b^x (r - b)^m/sqrt(x^2 - r^2) dr, m = 0, 1, 2, at all knots b.
+
+        j_m is the jump of the coefficient of (r - b)^m in f' at b.
+        """
         wide, b, far, angle = self._angle(x)
         integrals = (angle, far - b * angle, (wide**2 / 2 + b * b) * angle - 1.5 * b * far)
         total: FloatArray = sum(i @ j for i, j in zip(integrals, self._jumps.T, strict=True))
         return x * total
 
     def transform(self, x: FloatArray) -> FloatArray:
-        """g_hs: closed form where nothing cancels."""
+        """Transform g_hs [m]: closed form for a single knot, where it does not cancel, else by quadrature."""
         return self._closed(x) if self._knots.size == 1 else super().transform(x)
 
     def transform_beyond(self, excess: FloatArray) -> FloatArray:
@@ -321,7 +325,7 @@ class PiecewiseTip(Tip):
         return np.asarray(x * rise)
 
     def transform_slope(self, x: FloatArray) -> FloatArray:
-        """g_hs' without `kinks`."""
+        """Derivative g_hs' without the singular terms of `kinks`."""
         if not self._is_even:
             return self._integrated_slope(x)
         wide, b, far, angle = self._angle(x)
@@ -330,7 +334,7 @@ class PiecewiseTip(Tip):
         return total
 
     def _integrated_slope(self, x: FloatArray) -> FloatArray:
-        """g_hs' = int (f' + r f'') dt over r = x cos t, but for kinks."""
+        """g_hs' = int (f' + r f'') dt over r = x cos t, without the terms of `kinks`."""
         flat, slope = np.ravel(x), np.empty(np.size(x))
         for part in self._parts(flat, 1):
             angle, w = self._angles(flat[part], lambda span: 16 + int(8 * span))

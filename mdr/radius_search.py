@@ -1,8 +1,8 @@
 """Contact radii under prescribed depths or forces.
 
-The depth g(a) and the force F(a) are tabulated roughly over ln(a - b), b the radius of the flat end. From a start and
-a slope of the table an interval is found by the accurate springs, and the root in it. On stacks g may fall over a
-stretch of radii: then several radii have one depth, and the caller says which of them is a contact.
+The depth g(a) and the force F(a) are tabulated roughly over ln(a - b), b the radius of the flat end. The accurate
+springs then bracket the root from a first guess and slope of the table, and compute it by secants. On stacks g may
+decrease over a range of radii. Then several radii have one depth, and the caller decides which of them is a contact.
 """
 
 from __future__ import annotations
@@ -21,26 +21,26 @@ from mdr.spring_bed import Springs
 
 Quantity = Literal["depth", "force"]
 
-# Trial radii double up to this share of the radius of an upright end; their distance to it then has these shares.
+# Trial radii double up to this share of the radius of an upright end. Then their distances from it have these shares.
 _NEAR_END, _CLOSER = 0.7, (0.2, 0.05, 0.01, 1e-3, 1e-6)
-# Radii per e-fold of the rough table. Half as many cost one more step.
+# Radii per unit of z in the rough table. Half as many cost one more step.
 _DENSITY = 6
 # Error of ln(load) of the cubic between knots for which one Newton step suffices. At 100 times it radii are 1e-12 off.
 _NEAR = 1e-10
-# First interval over the first step. Half and twice of it take 7 % more evaluations.
+# Length of the first bracket over the Newton step. Half and twice of it take 7 % more evaluations.
 _WIDER = 2.0
 # Largest number of steps before the search raises an error. Four are usual; bisection alone needs sixty.
 _MOST_STEPS = 200
 # Tolerance of ln(load). Half of it takes 1 % more evaluations; at ten times it radii are 3e-14 off.
 _SMALLEST = 1e-14
-# ln(a/h) below which the layers under the first change g too little to let it fall.
+# ln(a/h) below which g increases on every stack, since lower layers hardly change it.
 _WITHIN_LAYER = -5.0
 # Radii tabulated around each maximum of g. Half as many fail at depths within 0.3 % of the maximum.
 _AROUND_TOP = 41
-# Breaks of a profile between which a table is refined; more are measured points, whose steps are small.
+# Number of further radii of a table between two neighbouring breaks of a profile, if g may decrease.
 _PER_BREAK = 4
-# Loads from which starts are interpolated between knots, and the number of these: with half of them a million loads
-# take one evaluation more.
+# Number of loads above which first guesses are interpolated between knots, and number of knots: with half as many knots
+# a million loads take one more evaluation each.
 _MANY, _KNOTS = 20_000, 4096
 
 
@@ -58,21 +58,21 @@ class SeveralContacts(UnsupportedSceneError):
 
 
 def largest_radius(springs: Springs) -> float:
-    """Largest contact radius [m] that is answered: the indenter's end, or the largest ratio of the springs."""
+    """Largest supported contact radius [m]: the end of the indenter, or the largest a/h of the springs."""
     thickest = np.inf if springs.kernel.is_uniform else springs.unit * springs.kernel.units
     return min(springs.tip.end, springs.largest_ratio * thickest)
 
 
 def growing_radii(indenter: Profile, first: float) -> Iterator[float]:
-    """Trial radii [m], each way from the flat end twice the one before, up to the end.
+    """Trial radii [m] up to the end of the indenter, whose distance from the flat radius doubles from one to the next.
 
-    A end where the flank is upright is approached, not reached.
+    An end with an upright flank is approached, not reached.
     """
     flat, end = indenter.flat_radius, indenter.max_radius
-    way = first - flat
-    while math.isinf(end) or flat + way < _NEAR_END * end:
-        yield flat + way
-        way *= 2.0
+    excess = first - flat
+    while math.isinf(end) or flat + excess < _NEAR_END * end:
+        yield flat + excess
+        excess *= 2.0
     upright = not np.isfinite(indenter.slope_at(end))
     yield from (end * (1.0 - share) for share in _CLOSER if upright)
     if not upright:
@@ -97,11 +97,11 @@ def refuse_too_wide(springs: Springs, radius: float) -> None:
 
 
 class RadiusSearch:
-    """Contact radii of one scene without adhesion.
+    """Search of contact radii of one scene without adhesion.
 
     Args:
         springs: Springs of the scene.
-        may_fall: Whether g may fall: on stacks, and under profiles that are not convex.
+        may_fall: Whether g may decrease: on stacks, and under profiles that are not convex.
     """
 
     def __init__(self, springs: Springs, *, may_fall: bool) -> None:
@@ -109,7 +109,7 @@ class RadiusSearch:
         self._unit = springs.unit * springs.thickness
 
     def place(self, z: FloatArray) -> FloatArray:
-        """Contact radii a = b + u/(1 + u/(end - b)) [m], u = unit e^z: all z are within the indenter."""
+        """Contact radii a = b + u/(1 + u/(end - b)) [m], u = unit e^z, which are within the indenter for all z."""
         tip = self.springs.tip
         u, span = self._unit * np.exp(z), tip.end - tip.flat
         return np.asarray(tip.flat + u / (1 + u / span))
@@ -121,22 +121,22 @@ class RadiusSearch:
         return np.asarray(np.log(grown / np.maximum(1 - grown / (tip.end - tip.flat), EPS) / self._unit))
 
     def logarithm(self, springs: Springs, quantity: Quantity, z: FloatArray) -> FloatArray:
-        """ln(depth or force) at z."""
+        """ln(depth or force) of equilibria at z, shape (n,), by these springs."""
         state = springs.states(self.place(np.atleast_1d(z)))
         return np.asarray(np.log(np.maximum(getattr(state, quantity), 1e-300)))
 
     def among(self, some: BoolArray) -> RadiusSearch:
-        """The search for the radii where `some` is true, each with its own thickness if the springs have several."""
+        """The search for those radii where `some` is true; it selects their thicknesses if the springs have several."""
         thickness = self.springs.thickness
         if isinstance(thickness, float):
             return self
         return RadiusSearch(replace(self.springs, thickness=thickness[some]), may_fall=self.may_fall)
 
     def refuse_falls(self, largest: float) -> None:
-        """Refuse profiles whose g falls before a contact radius [m].
+        """Refuse scenes whose g decreases anywhere up to a contact radius [m].
 
         Raises:
-            SeveralContacts: With the radius up to which it rises.
+            SeveralContacts: With the radius up to which g increases.
         """
         if not self.may_fall:
             return
@@ -147,7 +147,7 @@ class RadiusSearch:
             raise SeveralContacts(fall)
 
     def _grid(self, low: float, high: float) -> FloatArray:
-        """Values of z at which g is tabulated: equidistant, and some between neighbouring breaks if g may fall."""
+        """Values of z at which g is tabulated: equidistant, and some between neighbouring breaks if g may decrease."""
         z = np.linspace(low, high, 2 + int(_DENSITY * (high - low)))
         if not self.may_fall or not self.springs.tip.breaks:
             return z
@@ -157,25 +157,25 @@ class RadiusSearch:
         return np.array(sorted({*z.tolist(), *more[(more > low) & (more < high)].tolist()}))
 
     def _fall(self, z: FloatArray, logarithm: FloatArray) -> float | None:
-        """Contact radius [m] up to which the MDR profile g rises; None where it rises throughout.
+        """Contact radius [m] up to which the MDR profile g increases; None if it increases throughout.
 
-        Where ln g of the coarse springs falls anywhere, the accurate springs compute the whole table again.
+        If ln g of the coarse springs decreases anywhere, the accurate springs compute the whole table again.
 
         Args:
-            z: places of the radii as in `place`, increasing, shape (n,).
+            z: z of the radii as in `place`, increasing, shape (n,).
             logarithm: ln g at z by the coarse springs, shape (n,).
         """
         radius = self.place(z)
-        apart = radius > self.springs.tip.flat * (1 + 1e-12)
-        apart[1:] &= np.diff(radius) > 1e-9 * radius[1:]  # leaves out radii that differ by rounding, near the end
-        if (np.diff(logarithm[apart]) > 0).all():
+        distinct = radius > self.springs.tip.flat * (1 + 1e-12)
+        distinct[1:] &= np.diff(radius) > 1e-9 * radius[1:]  # leaves out radii that differ by rounding, near the end
+        if (np.diff(logarithm[distinct]) > 0).all():
             return None
-        exact = self.logarithm(self.springs, "depth", z[apart])
-        falls = np.flatnonzero(np.diff(exact) <= 0)
-        return float(radius[apart][falls[0]]) if falls.size else None
+        exact = self.logarithm(self.springs, "depth", z[distinct])
+        decreases = np.flatnonzero(np.diff(exact) <= 0)
+        return float(radius[distinct][decreases[0]]) if decreases.size else None
 
     def _table(self, quantity: Quantity, least: float, most: float) -> tuple[FloatArray, FloatArray]:
-        """z and ln(depth or force) between these logarithms and a little beyond, by the coarse springs."""
+        """z and ln(depth or force), which covers least to most, by the coarse springs, each of shape (n,)."""
         coarse = self.springs.coarse
         last = self._last()
         top, step = min(0.0, last), 1.0
@@ -192,7 +192,7 @@ class RadiusSearch:
         return z, self.logarithm(coarse, quantity, z)
 
     def _least(self) -> float:
-        """Place below which g surely rises: small contacts within the first layer and the first break."""
+        """z below which g increases for sure: small contacts within the first layer and the first break."""
         if not self.may_fall:
             return float("inf")
         inner = [b for b in self.springs.tip.breaks if b > self.springs.tip.flat][:1]
@@ -201,7 +201,7 @@ class RadiusSearch:
         )
 
     def _last(self) -> float:
-        """Place beyond which contacts are too wide, or rounded to the indenter's end."""
+        """z beyond which contacts are too wide, or radii are rounded to the end of the indenter."""
         largest = largest_radius(self.springs)
         if not np.isfinite(largest):
             return float("inf")
@@ -209,25 +209,25 @@ class RadiusSearch:
         return min(float(self.scale(np.array([largest]))[0]), float(rounded))
 
     def _refuse_reach(self, quantity: Quantity, most: float, top: float) -> None:
-        """Refuse a depth [m] or force [N] that the last place does not reach, by the accurate springs.
+        """Refuse ln(depth or force) = most if it is larger than at z = top, by the accurate springs.
 
         Raises:
-            InvalidInput: With what is reached there.
+            InvalidInput: With the largest depth [m] or force [N].
         """
         radius = self.place(np.array([top]))
         reached = float(getattr(self.springs.states(radius), quantity)[0])
         if np.log(reached) >= most:
             return
-        wanted, profile = float(np.exp(most)), self.springs.tip.profile
+        target, profile = float(np.exp(most)), self.springs.tip.profile
         if radius[0] < profile.max_radius * (1 - 1e-9):
             raise InvalidInput(
-                f"loading.values = {wanted:g}: only {reached:g} is reached at a/h = {self.springs.largest_ratio:g}, "
+                f"loading.values = {target:g}: only {reached:g} is reached at a/h = {self.springs.largest_ratio:g}, "
                 "up to which contacts are answered; press less"
             )
         if profile.ends_upright:
-            raise InvalidInput(f"loading.values = {wanted:g}: {profile.UPRIGHT_END}; press less")
+            raise InvalidInput(f"loading.values = {target:g}: {profile.UPRIGHT_END}; press less")
         raise InvalidInput(
-            f"loading.values = {wanted:g}: the indenter ends at a radius of {profile.max_radius:g} m, where "
+            f"loading.values = {target:g}: the indenter ends at a radius of {profile.max_radius:g} m, where "
             f"{reached:g} is reached; ask for less or describe the indenter further out"
         )
 
@@ -235,13 +235,13 @@ class RadiusSearch:
         """Contact radii [m] with these depths [m] or forces [N], shape (n,).
 
         Args:
-            quantity: What the targets are.
-            targets: Positive, shape (n,).
-            is_contact: Raises UnsupportedSceneError at radii [m] that are no contact; asked where g falls before.
+            quantity: "depth" or "force".
+            targets: Depths or forces > 0, shape (n,).
+            is_contact: Raises UnsupportedSceneError at radii [m] that are no contact; used if g decreases anywhere.
 
         Raises:
-            InvalidInput: If the indenter ends before, or the contact becomes too wide.
-            SeveralContacts: If no single circle is an answer.
+            InvalidInput: If the contact would exceed the indenter or the largest a/h.
+            SeveralContacts: If no radius is a contact of one circle.
         """
         y = np.log(targets)
         z, table = self._table(quantity, float(y.min()), float(y.max()))
@@ -271,14 +271,14 @@ class RadiusSearch:
         return np.concatenate([self._between(quantity, part, place(part), 1 / place(part, 1)) for part in parts])
 
     def _between(self, quantity: Quantity, y: FloatArray, z: FloatArray, slope: FloatArray) -> FloatArray:
-        """Radii [m] with these logarithms by one step of Newton from cubics between knots, where it suffices."""
-        missed = self.logarithm(self.springs, quantity, z) - y
-        radius, far = self._radius(z - missed / slope), np.abs(missed) > _NEAR
+        """Radii [m] with y = ln(depth or force) by one Newton step from z, where it suffices, else by `refined`."""
+        residual = self.logarithm(self.springs, quantity, z) - y
+        radius, far = self._radius(z - residual / slope), np.abs(residual) > _NEAR
         radius[far] = self.refined(quantity, y[far], z[far], slope[far]) if far.any() else 0.0
         return radius
 
     def _radius(self, z: FloatArray) -> FloatArray:
-        """Radii [m] at z; what doubles cannot tell from the flat end is put there."""
+        """Radii [m] at z; those within rounding of the flat radius are set to it."""
         radius, flat = self.place(z), self.springs.tip.flat
         return np.where(radius - flat < 8 * EPS * flat, flat, radius)
 
@@ -290,7 +290,10 @@ class RadiusSearch:
         is_contact: Callable[[float], None],
         ring: SeveralContacts,
     ) -> FloatArray:
-        """Radius of the contact among all radii with one depth or force; the contact problem has one solution only."""
+        """Contact radii [m] with y = ln(depth or force) where g decreases in between.
+
+        Several radii have one depth or force. The contact problem has one solution, selected by `is_contact`.
+        """
         z, contact_radii = rough[0], np.empty_like(y)
         tops = 1 + np.flatnonzero((np.diff(rough[1])[:-1] > 0) & (np.diff(rough[1])[1:] <= 0))
         close = [np.linspace(z[i - 1], z[i + 1], _AROUND_TOP) for i in tops.tolist()]
@@ -308,59 +311,64 @@ class RadiusSearch:
         return contact_radii
 
     def _only_contact(self, radii: list[float], is_contact: Callable[[float], None], ring: SeveralContacts) -> float:
-        objection: UnsupportedSceneError = ring
+        """First radius [m] that is a contact.
+
+        Raises:
+            UnsupportedSceneError: If none is one.
+        """
+        error: UnsupportedSceneError = ring
         for radius in radii:
             try:
                 is_contact(radius)
             except UnsupportedSceneError as refusal:
-                # A circle short of the falling stretch, known to one step of the table, has its own reason.
-                objection = refusal if radius < ring.radius * np.exp(1 / _DENSITY) else objection
+                # The error of a circle smaller than the range of decreasing g, to one step of the table, is raised.
+                error = refusal if radius < ring.radius * np.exp(1 / _DENSITY) else error
                 continue
             return radius
-        raise objection
+        raise error
 
     def refined(self, quantity: Quantity, y: FloatArray, z: FloatArray, slope: FloatArray) -> FloatArray:
-        """Radii [m] with these logarithms, from a start and its slope.
+        """Radii [m] with y = ln(depth or force), from first guesses z and slopes dy/dz, shape (n,).
 
         Raises:
-            NotConvergedError: If one was not found.
+            NotConvergedError: If the search does not converge.
         """
 
-        def missed(z: FloatArray, at: BoolArray) -> FloatArray:
+        def residual(z: FloatArray, at: BoolArray) -> FloatArray:
             search = self.among(at)
             return search.logarithm(search.springs, quantity, z) - y[at]
 
-        first = missed(z, np.ones(z.shape, dtype=np.bool_))
+        first = residual(z, np.ones(z.shape, dtype=np.bool_))
         step = -_WIDER * first / np.maximum(slope, 1e-3)
         step = np.where(first < 0, 1, -1) * np.maximum(np.abs(step), EPS * (1 + np.abs(z)))
-        return self._radius(roots(missed, z, first, step))
+        return self._radius(roots(residual, z, first, step))
 
 
 def roots(
-    missed: Callable[[FloatArray, BoolArray], FloatArray], start: FloatArray, first: FloatArray, step: FloatArray
+    function: Callable[[FloatArray, BoolArray], FloatArray], start: FloatArray, first: FloatArray, step: FloatArray
 ) -> FloatArray:
     """Roots x of functions, shape (n,), by secants in brackets (Anderson and Bjorck 1973, BIT 13, 253).
 
-    An end of the bracket that stays counts with a smaller value, so that the next secant ends beyond the root.
+    The value at the end of the bracket that stays is reduced, so that the next secant ends beyond the root.
 
     Args:
-        missed: Values at x of the functions that a mask of shape (n,) selects.
-        start: First ends of the brackets.
-        first: Values there.
-        step: Towards the root. It doubles until it reaches beyond.
+        function: function(x, mask) returns values at x of the functions that a mask of shape (n,) selects.
+        start: First ends of the brackets, shape (n,).
+        first: Values of the functions at `start`.
+        step: Steps towards the roots, which double until the functions change sign.
 
     Raises:
-        NotConvergedError: If a root was not found.
+        NotConvergedError: If a root is not found.
     """
     x1, f1, x2, at = start.copy(), first.copy(), start + step, np.ones(start.shape, dtype=np.bool_)
-    f2, step = missed(x2, at), step.copy()
+    f2, step = function(x2, at), step.copy()
     for _ in range(_MOST_STEPS):
         at = (f1 * f2 > 0) & (np.abs(f2) > _SMALLEST)
         if not at.any():
             break
         x1[at], f1[at], step[at] = x2[at], f2[at], 2 * step[at]
         x2[at] += step[at]
-        f2[at] = missed(x2[at], at)
+        f2[at] = function(x2[at], at)
     else:
         raise NotConvergedError("no contact radius has the load", {"ln(load) missed by": float(np.abs(f2[at]).max())})
     for _ in range(_MOST_STEPS):
@@ -368,7 +376,7 @@ def roots(
         if not at.any():
             return x2
         x = x2[at] - f2[at] * (x2[at] - x1[at]) / (f2[at] - f1[at])
-        f = missed(x, at)
+        f = function(x, at)
         share = 1 - f / f2[at]
         crosses = f * f2[at] <= 0
         x1[at] = np.where(crosses, x2[at], x1[at])

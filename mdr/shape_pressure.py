@@ -23,12 +23,12 @@ from mdr.harmonics import Harmonics, basis_of
 from mdr.spring_bed import Springs
 
 # Nodes in u = sqrt(1 - s^2/a^2) of the brackets, of their integrals, and in ln(x) of the densities. With half of them
-# pressures lose 1e-4 of their mean.
+# errors of pressures are 1e-4 of the mean.
 _NODES: Final = 40
 _INTEGRAL: Final = np.polynomial.legendre.leggauss(40)
 _DENSITY: Final = 160
-# Share of the outline within which the error of the pressure is stated: at the edge an error of the outline makes one
-# of 100 %.
+# r over the outline a(phi) up to which the error of the pressure is estimated. At the edge any error of the outline
+# changes the pressure by 100 %.
 _INSIDE: Final = 0.98
 # Smallest x over a of the densities. With ten times of it pressures change by 2e-5 of their mean, with a tenth by 5e-5.
 _LEAST: Final = 1e-3
@@ -45,8 +45,8 @@ class ShapeFields:
         shape: The indenter.
         springs: Springs of the mean profile.
         mean: The path of the mean profile.
-        radius: abar [m], shape (n,).
-        harmonics: alpha_n [m], shape (n, p).
+        radius: Mean radius abar of the outline [m], shape (n,).
+        harmonics: Amplitudes alpha_n of the outline [m], shape (n, p).
     """
 
     shape: Raised | Flat
@@ -57,7 +57,7 @@ class ShapeFields:
     _brackets: dict[int, CubicSpline] = field(default_factory=dict)
 
     def outline(self, angle: FloatArray, step: int) -> FloatArray:
-        """a(phi) [m]: of a flat punch its own."""
+        """a(phi) [m], for a flat punch the outline of the punch."""
         if isinstance(self.shape, Flat):
             return self.shape.outline(angle)
         return np.asarray(self.radius[step] + self._cosines(angle) @ self.harmonics[step])
@@ -74,7 +74,7 @@ class ShapeFields:
         return p
 
     def truncation(self, step: int) -> float:
-        """Largest pressure [Pa] of the upper half of the orders, within `_INSIDE` of the outline."""
+        """Truncation error [Pa]: the largest sum of pressures of the upper half of the orders n, up to `_INSIDE`."""
         orders = np.array(self.shape.orders)
         upper = orders > LARGEST_ORDER / 2
         u = np.linspace(np.sqrt(1.0 - _INSIDE**2), 1.0, _NODES)
@@ -85,11 +85,11 @@ class ShapeFields:
 
     @property
     def _power(self) -> int:
-        """Power of u with which the pressure ends at the edge."""
+        """Exponent of u in the pressure near the edge."""
         return -1 if isinstance(self.shape, Flat) else 1
 
     def _bracket(self, step: int) -> CubicSpline:
-        """Brackets of every order over their power of u, as a function of u."""
+        """Splines over u of p_n + s p_0' alpha_n/a for all orders, divided by `_power` of u [Pa]."""
         if step not in self._brackets:
             a = float(self.mean.contact_radius[step])
             u = np.sin(np.pi / 2 * (np.arange(_NODES) + 0.5) / _NODES)
@@ -98,7 +98,7 @@ class ShapeFields:
         return self._brackets[step]
 
     def _smooth(self, a: float, step: int, u: FloatArray) -> FloatArray:
-        """p_n without what the delta function causes, shape (u.size, p)."""
+        """p_n [Pa] without the part of the delta function, shape (u.size, p)."""
         orders, x = np.array(self.shape.orders), a * np.geomspace(_LEAST, 1.0, _DENSITY)
         radius = None if self.springs.kernel.is_uniform else self.springs.radius(a)
         harmonics = Harmonics(radius, self.shape.orders)
@@ -122,11 +122,11 @@ class ShapeFields:
         return float(self.springs.at([a]).y1[0] * self.mean.indentation_depth[step])
 
     def _shifted(self, a: float, step: int, u: FloatArray) -> FloatArray:
-        """s p_0'(s) alpha_n/a, and what the delta function causes, shape (u.size, p)."""
+        """s p_0'(s) alpha_n/a, plus the part of the delta function [Pa], shape (u.size, p)."""
         s, power, alpha = a * np.sqrt(1.0 - u**2), self._power, self.harmonics[step]
 
         def regular(r: FloatArray) -> FloatArray:
-            """p_0 over its power of sqrt(a^2 - r^2)."""
+            """p_0(r) divided by sqrt(a^2 - r^2) to the `_power`."""
             return np.asarray(self.mean.pressure(r, step) / np.sqrt((a - r) * (a + r)) ** power)
 
         slope = (regular(s * (1 + _STEP)) - regular(s * (1 - _STEP))) / (2 * _STEP)

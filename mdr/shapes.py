@@ -1,4 +1,4 @@
-"""Indenters that are nearly round: mean profile, outline to first order, force and stiffness to second order.
+"""Nearly axisymmetric indenters: mean profile, outline to first order, force and stiffness to second order.
 
 The mean of f(r, phi) over phi presses a circle of radius a_0. With the densities phi_n at its edge (`mdr.harmonics`)
 
@@ -6,7 +6,7 @@ The mean of f(r, phi) over phi presses a circle of radius a_0. With the densitie
     F = F_0 + S,  S = E*/2 sum_n phi_n(a_0)^2/g'(a_0),    k_N = dF/ddelta = k_0 + S'(a_0)/g'(a_0)
 
 A flat punch of outline a(phi) has k_N = <k_0(a(phi))> + E* y_1^2 sum_n alpha_n^2 [n/(2 abar) + psi_n - psi_0]. The same
-formula gives abar of a raised shape from its k_N. What is left is of third order: S sqrt(sum alpha_n^2)/a_0.
+formula gives abar of a raised shape from its k_N. The truncation error is of third order, S sqrt(sum alpha_n^2)/a_0.
 """
 
 from __future__ import annotations
@@ -32,15 +32,17 @@ from mdr.shape_pressure import ShapeFields
 from mdr.spring_bed import Springs
 
 NOTE = "outline and pressure are of first order, force and stiffness of second order in the deviation from a circle"
-# Largest stated error of force or stiffness by the third order.
+# Largest relative error estimate of force or stiffness by the third order; beyond it a shape is refused.
 LARGEST_THIRD = 0.05
-# Second order of the pressure over its mean, per (sum alpha_n^2)/a^2: 4 for an ellipse at 0.98 of the outline.
-_BESIDE_EDGE = 4.0
+# Second-order error of the pressure near the edge over the mean pressure, per (sum alpha_n^2)/a^2: 4 for an ellipse at
+# 0.98 of the outline.
+_NEAR_EDGE = 4.0
 # Relative step of derivatives by the contact radius. Half and twice of it change k_N by 1e-6 of its second order.
 _STEP = 1e-3
-# Radii of one path at which harmonics are solved, and their number per octave: with half of them k_N loses 1e-6.
+# Largest number of radii of a path at which harmonics are solved without interpolation, and their number per octave
+# with it. With half of them the error of k_N is 1e-6.
 _MOST_RADII, _PER_OCTAVE = 30, 8
-# Corrections of the depth under a given force; three are usual.
+# Largest number of corrections of the depth under a given force, three are usual, and relative tolerance of the depth.
 _CORRECTIONS, _CLOSE = 12, 1e-12
 
 
@@ -48,11 +50,11 @@ class Expansion(NamedTuple):
     """Contacts of a shape to second order, n of them with p harmonics.
 
     Attributes:
-        radius: abar [m], shape (n,).
-        force: F [N], shape (n,).
-        stiffness: k_N [N/m], shape (n,).
+        radius: Mean radius abar of the outline [m], shape (n,).
+        force: Normal force F [N], shape (n,).
+        stiffness: Contact stiffness k_N [N/m], shape (n,).
         outline: alpha_n [m], shape (n, p).
-        third: Relative size of the third order of force, stiffness and radius, shape (3, n).
+        third: Third order of force, stiffness and radius, over these, shape (3, n).
     """
 
     radius: FloatArray
@@ -63,11 +65,11 @@ class Expansion(NamedTuple):
 
 
 def solve_shape(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[str, Setting]) -> ContactPath:
-    """Depth, force, stiffness and mean contact radius of a shape, with outline and pressure on demand.
+    """Depth, force, stiffness and mean contact radius of a shape; outline and pressure are computed at first use.
 
     Raises:
         UnsupportedSceneError: If the third order may exceed `LARGEST_THIRD`, or the layer is graded.
-        NotConvergedError: If the depth under a force is not found.
+        NotConvergedError: If the depth under a force does not converge.
     """
     log, shape, loading = StageLog(), scene.indenter, scene.loading
     assert isinstance(shape, Raised | Flat)
@@ -112,6 +114,7 @@ def solve_shape(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[str
 
 
 def _refuse_far(shape: Shape, expansion: Expansion) -> None:
+    """Refuse shapes whose third order may exceed `LARGEST_THIRD`."""
     worst = SAFETY * float(expansion.third[:2].max())
     if worst > LARGEST_THIRD:
         size = float(np.sqrt((expansion.outline**2).sum(axis=1)).max() / abs(expansion.radius).max())
@@ -122,7 +125,7 @@ def _refuse_far(shape: Shape, expansion: Expansion) -> None:
 
 
 def _errors(scene: Scene, path: ContactPath, expansion: Expansion, fields: ShapeFields) -> dict[str, StatedError]:
-    """Relative errors: those of the mean profile plus the third order."""
+    """Relative error estimates: those of the mean profile plus the third order."""
     force, stiffness, radius = SAFETY * expansion.third
     share = path.normal_force / (path.contact_stiffness * path.indentation_depth)  # d(ln depth)/d(ln F)
     by_depth = isinstance(scene.loading, IndentationDepths)
@@ -132,9 +135,9 @@ def _errors(scene: Scene, path: ContactPath, expansion: Expansion, fields: Shape
     pressure = path.normal_force / (np.pi * path.contact_radius**2)
 
     def of_pressure() -> FloatArray:
-        """The second order, largest near the edge, and the error of truncated harmonics."""
-        left = np.array([fields.truncation(step) for step in range(len(path))])
-        return np.asarray(SAFETY * (_BESIDE_EDGE * size + left / pressure) + of_mean)
+        """Relative error of the pressure by second order, largest near the edge, truncation, and mean profile."""
+        truncation = np.array([fields.truncation(step) for step in range(len(path))])
+        return np.asarray(SAFETY * (_NEAR_EDGE * size + truncation / pressure) + of_mean)
 
     return {
         "contact_radius": mean["contact_radius"] + radius,
@@ -147,7 +150,7 @@ def _errors(scene: Scene, path: ContactPath, expansion: Expansion, fields: Shape
 
 @dataclass(frozen=True)
 class Expanded:
-    """Second order of a shape on springs of its mean profile.
+    """Expansion of a shape to second order about its mean profile.
 
     Attributes:
         springs: Springs of the mean profile.
@@ -158,18 +161,18 @@ class Expanded:
     shape: Raised | Flat
 
     def at(self, path: ContactPath) -> Expansion:
-        """The contacts of a shape at the depths of its mean profile."""
+        """Contacts of the shape at the depths of a path of its mean profile."""
         if isinstance(self.shape, Flat):
             return self._flat(self.shape, path)
         return self._raised(self.shape, path)
 
     def harmonics(self, a: float) -> Harmonics:
-        """Equations of the order 0 and those of the shape under the contact radius a [m]."""
+        """Equations of order 0 and of the orders of the shape at a contact radius a [m]."""
         radius = None if self.springs.kernel.is_uniform else self.springs.radius(a)
         return Harmonics(radius, (0, *self.shape.orders))
 
     def _flat(self, shape: Flat, path: ContactPath) -> Expansion:
-        """Second order of a flat punch, whose stiffness is one constant for all depths."""
+        """Contacts of a flat punch to second order, with one stiffness for all depths."""
         angle, weight = shape.sector()
         outline, orders = shape.outline(angle), np.array(shape.orders)
         a, steps = float(weight @ outline), np.ones(len(path))
@@ -185,7 +188,7 @@ class Expanded:
         )
 
     def _raised(self, shape: Raised, path: ContactPath) -> Expansion:
-        """Radius, force F + S, stiffness k + dS/ddelta and the edge's harmonics at each depth, to second order."""
+        """Contacts of a raised shape to second order: force F_0 + S and stiffness k_0 + dS/ddelta."""
         a, modulus = path.contact_radius, self.springs.modulus
         step = np.minimum(_STEP, (self.springs.tip.end / a - 1) / 4)
         around = a[:, None] * (1 + step[:, None] * np.arange(-2, 3))
@@ -195,18 +198,18 @@ class Expanded:
         rise = (g[:, 2:] - g[:, :-2]) / width  # g' at the three inner radii
         phi, growth = self._edges(shape, around[:, 1:-1])
         S = 0.5 * modulus * (phi**2).sum(axis=2) / rise
-        more = ((S[:, 2:] - S[:, :1]) / width / rise[:, 1:2])[:, 0]  # dS/ddelta
+        stiffness_change = ((S[:, 2:] - S[:, :1]) / width / rise[:, 1:2])[:, 0]  # dS/ddelta
         outline = -phi[:, 1] / (rise * y1[:, 1:-1])[:, 1:2]
-        curve = (y1[:, 3:4] ** 2 - y1[:, 1:2] ** 2) / width / 2  # of the average of k_0(a(phi)), over E*
-        known = modulus * (outline**2 * (curve + y1[:, 2:3] ** 2 * growth[:, 1] / a[:, None])).sum(axis=1)
-        radius = a + (more - known) / (2 * modulus * y1[:, 2] ** 2)
+        curvature = (y1[:, 3:4] ** 2 - y1[:, 1:2] ** 2) / width / 2  # second order of <k_0(a(phi))> over E*
+        by_outline = modulus * (outline**2 * (curvature + y1[:, 2:3] ** 2 * growth[:, 1] / a[:, None])).sum(axis=1)
+        radius = a + (stiffness_change - by_outline) / (2 * modulus * y1[:, 2] ** 2)
         size = np.sqrt((outline**2).sum(axis=1)) / a
-        force, stiffness = path.normal_force + S[:, 1], path.contact_stiffness + more
-        third = np.array([S[:, 1] * size / force, np.abs(more) * size / stiffness, size**3])
+        force, stiffness = path.normal_force + S[:, 1], path.contact_stiffness + stiffness_change
+        third = np.array([S[:, 1] * size / force, np.abs(stiffness_change) * size / stiffness, size**3])
         return Expansion(radius, force, stiffness, outline, third)
 
     def _edges(self, shape: Raised, radii: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """phi_n(a) [m] and growth at radii [m], each of shape (n, m, p); of long paths by splines over ln(a)."""
+        """phi_n(a) [m] and `Harmonics.growth` at radii [m], shape (n, m, p); for long paths splines over ln(a)."""
         flat, scale = radii.ravel(), self.springs.tip.transform
         count = int(_PER_OCTAVE * np.log2(flat.max() / flat.min())) + 4
         nodes = flat if flat.size <= max(count, _MOST_RADII) else np.geomspace(flat.min(), flat.max(), count)

@@ -3,7 +3,7 @@
     K(a) = int_0^a y_1^2 dx,   k_N = 2 E* K              Eqs. (5), (6), (10)
     M(a) = int_0^a y_1^2 g dx, F = 2 E* (depth K - M)    Eq. (4)
 
-`Springs.at(radii) -> y_1, g, K, M` is all that elastic contact, adhesion, impacts, histories and fits ask.
+`Springs.at(radii) -> y_1, g, K, M` is the input of elastic contact, adhesion, impacts, histories and fits.
 """
 
 from __future__ import annotations
@@ -27,20 +27,20 @@ from mdr.profiles import Tip, tip_of
 # Rounding errors of depth and force, in units of eps times their condition. Half of it is exceeded by one scene in
 # twenty.
 _ROUNDINGS = 16.0
-# Relative error of a graded layer's tabulated kernel, which both resolutions share: 6e-13 of k_N at most was seen.
+# Relative error of k_N by a graded layer's tabulated kernel, which both resolutions share; the largest seen is 6e-13.
 _GRADED_KERNEL = 2e-12
-# Contact radius over the thickness of the surface material up to which contacts are answered.
+# Largest supported contact radius over the thickness of the surface material.
 LARGEST_RATIO = 1000.0
-# Radii that are answered at a time: their rows stay in the cache.
+# Radii evaluated at a time, so that their rows stay in the processor's cache.
 _BLOCK = 2048
 
 
 class SpringValues(NamedTuple):
-    """Springs at some radii.
+    """Springs at n radii a, each array of shape (n,).
 
     Attributes:
-        y1: Root of c_N/E* [-], shape (n,).
-        g: MDR profile [m].
+        y1: y_1 = sqrt(c_N/E*) [-].
+        g: MDR profile g(a) [m].
         K: int_0^a y_1^2 dx [m].
         M: int_0^a y_1^2 g dx [m^2].
     """
@@ -62,16 +62,16 @@ class State(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Springs:
-    """Springs and MDR profile of one layer under one profile, for any radius.
+    """Springs and MDR profile of one layer under one indenter, as functions of the radius.
 
     Attributes:
-        kernel: 1 - chi of the layer.
-        unit: Length [m] in which the kernel counts.
-        modulus: E* [Pa].
-        tip: The profile.
-        sizes: Resolution.
-        thickness: Thickness of the layer under each radius that is asked for, in units of `unit`, shape (n,); one where
-            all radii are on the same layer.
+        kernel: Kernel 1 - chi of the layer.
+        unit: Unit of length of the kernel [m].
+        modulus: Contact modulus E* [Pa].
+        tip: Profile of the indenter.
+        sizes: Sizes of the discretisation.
+        thickness: Thickness of the layer for each radius, in units of `unit`, shape (n,); one where all radii are on
+            the same layer.
     """
 
     kernel: ContactKernel
@@ -84,7 +84,7 @@ class Springs:
 
     @property
     def largest_ratio(self) -> float:
-        """Contact radius over the thickness of the surface material up to which contacts are answered."""
+        """Largest supported contact radius over the thickness of the surface material."""
         return LARGEST_RATIO
 
     @classmethod
@@ -92,7 +92,7 @@ class Springs:
         """Springs of a layer, stack, graded layer or half-space under an indenter.
 
         Raises:
-            UnsupportedSceneError: If no kernel is known of this kind of layer.
+            UnsupportedSceneError: If there is no kernel for this kind of layer.
         """
         return cls(contact_kernel(layer), unit_of(layer), contact_modulus(layer), tip_of(indenter), sizes)
 
@@ -102,12 +102,12 @@ class Springs:
 
     @cached_property
     def finer(self) -> Springs:
-        """The companion whose change states errors."""
+        """Springs of the same scene at a finer resolution, for error estimates."""
         return self.at_sizes(self.sizes.finer)
 
     @cached_property
     def coarse(self) -> Springs:
-        """Springs for searching radii, to 1e-4."""
+        """Springs with a relative error of 1e-4, for radius searches."""
         return self.at_sizes(COARSE)
 
     @cached_property
@@ -116,25 +116,25 @@ class Springs:
         return flat_punches(self.kernel, self.sizes, kinked=bool(self.tip.breaks))
 
     def radius(self, a: float) -> Radius:
-        """The equation of one contact radius a [m]."""
+        """The integral equation at a contact radius a [m]."""
         return self.punches.radius(a / self.unit)
 
     def at(self, radii: ArrayLike, excess: FloatArray | None = None) -> SpringValues:
-        """y_1, g, K, M at radii > 0 [m], shape (n,); near a flat end of radius b pass `excess` = a - b [m], exact."""
+        """y_1, g, K, M at radii > 0 [m], shape (n,); near a flat end of radius b pass `excess` = a - b [m] exactly."""
         x = np.atleast_1d(np.asarray(radii, dtype=np.float64))
         values = SpringValues(*np.empty((4, x.size)))
         for index, punch, resolvent, _ in self._rows(x):
             a = x[index]
             moments = self.tip.moments(a, punch.shape[1], self.sizes.extra)
             y1 = 1 + resolvent[:, 0]
-            alone = self.tip.transform(a) if excess is None else self.tip.transform_beyond(excess[index])
-            transform = alone + (resolvent * moments).sum(axis=1)
+            g_hs = self.tip.transform(a) if excess is None else self.tip.transform_beyond(excess[index])
+            transform = g_hs + (resolvent * moments).sum(axis=1)
             values.y1[index], values.g[index] = y1, transform / y1
             values.K[index], values.M[index] = a * punch[:, 0], a * (punch * moments).sum(axis=1)
         return values
 
     def _rows(self, x: FloatArray) -> Iterator[Rows]:
-        """Flat punches of radii [m], a block and an octave at a time."""
+        """Rows of flat punches at radii x [m], a block and an octave at a time."""
         ratios = x / (self.unit * self.thickness)
         for start in range(0, x.size, _BLOCK):
             for rows in self.punches.at(ratios[start : start + _BLOCK]):
@@ -150,10 +150,10 @@ class Springs:
         return floor[0], floor[1]
 
     def state(self, radii: FloatArray, values: SpringValues, depth: FloatArray | None = None) -> State:
-        """Equilibria at radii [m] whose springs are known, without a depth [m] those without adhesion.
+        """Equilibria at radii [m] with these springs and depths [m]; by default the depth is g, without adhesion.
 
-        The force is stationary in the radius at the depth of the equilibrium: a radius that is a little off moves it by
-        its square only. So prescribed depths are inserted as they are.
+        At the depth of the equilibrium the force is stationary in the radius, so an error of the radius changes it by
+        the square of that error only. Therefore prescribed depths are inserted unchanged.
         """
         depth = values.g if depth is None else depth
         force = 2 * self.modulus * (depth * values.K - values.M)
@@ -164,5 +164,5 @@ class Springs:
         return self.state(radii, self.at(radii))
 
     def depth_of(self, force: FloatArray, values: SpringValues) -> FloatArray:
-        """Depth [m] under a force [N] where springs up to the edge are known, Eq. (4)."""
+        """Depth [m] under a force [N] from the springs up to the edge, depth = (F/(2 E*) + M)/K, Eq. (4)."""
         return np.asarray((force / (2 * self.modulus) + values.M) / values.K)

@@ -1,12 +1,12 @@
-"""Springs from a table of flat punches, Eqs. (11) and (12): the equation of contact is replaced by measured punches.
+"""Springs from a table of flat punches, Eqs. (11) and (12), instead of the integral equation.
 
-A table knows the Abel density phi_1(t; a) of every punch (`bem.tables`). Reciprocity gives the force of a profile, and
-the release of energy at the edge its depth:
+A table contains the Abel density phi_1(t; a) of all punches (`bem.tables`). Reciprocity gives the force of a profile,
+and the energy release at the edge its depth:
 
     M(a) = int_0^a phi_1(t; a) g_hs(t) dt,   g = M'/K',   K' = y_1^2,   y_1 = phi_1(a; a),            Eqs. (4), (11)
     R(a, t) = d phi_1(t; a)/da / y_1,        y_1 g = g_hs(a) + int_0^a R(a, t) g_hs(t) dt.
 
-So phi_1 and R stand where `bem.equation` has punch and resolvent. Any other pressure is a superposition of punches,
+So phi_1 and R replace punch and resolvent of `bem.equation`. Any other pressure is a superposition of punches,
 Eq. (12): phi = W + int_0^r R W + int_r^a R (..), in operators A^-1 = (1 + R)^T (1 + R) with A of the equation.
 """
 
@@ -31,7 +31,8 @@ from mdr.spring_bed import Springs
 
 TableSource: TypeAlias = FftTable | TableFile
 
-# Relative errors that both tables share: of q, where conjugate gradients stop, and of k_bar, stationary there.
+# Relative errors that both tables share: of q by the tolerance of conjugate gradients, and of k_bar, which is
+# stationary.
 _PRESSURE_FLOOR, _STIFFNESS_FLOOR = 1e-6, 2e-9
 
 
@@ -41,8 +42,8 @@ class TablePunches:
 
     Attributes:
         source: Settings of the tables.
-        layer: Layer that they are of.
-        is_coarser: Whether these are the punches that state errors.
+        layer: The layer.
+        is_coarser: Whether the coarser tables are used, for error estimates.
     """
 
     source: TableSource
@@ -50,31 +51,31 @@ class TablePunches:
     is_coarser: bool = False
 
     def table(self, ratio: float) -> FlatPunchTable:
-        """The table that covers a ratio a/h."""
+        """The table up to at least a ratio a/h."""
         table = self.source.solution(self.layer, ratio)
         return table.coarser if self.is_coarser and table.coarser else table
 
     def at(self, ratios: FloatArray) -> Iterator[Rows]:
-        """Punches and resolvents at ratios a/h, shape (n,), rung after rung."""
+        """Punches and resolvents at ratios a/h, shape (n,), one range of `RUNGS` after the other."""
         rung = np.searchsorted(np.array(RUNGS[:-1]), ratios)
         for number in np.unique(rung).tolist():
             index = np.flatnonzero(rung == number)
             y1, density, slope = self.table(float(ratios[index].max())).at(ratios[index])
             n = np.arange(density.shape[1])
             degree = np.sqrt(4 * n + 1)
-            # t dP_2n(t)/dt = 2n P_2n + sum_(j < n) (4j + 1) P_2j: rows fall with t where t/a is kept.
+            # t dP_2n(t)/dt = 2n P_2n + sum_(j < n) (4j + 1) P_2j converts the derivative at constant t/a to constant t.
             stretch = np.diag(2.0 * n) + np.triu(np.repeat(4.0 * n + 1, n.size).reshape(n.size, n.size), 1)
             resolvent = (slope - density @ stretch.T) / (y1[:, None] * degree)
-            # phi_1 ends with y_1, whatever its series does.
+            # The value phi_1(a) = y_1 is used instead of that of the truncated series.
             resolvent[:, 0] = y1 - 1
             yield Rows(index, density / degree, resolvent, np.ones((index.size, 2)))
 
     def radius(self, ratio: float) -> TableRadius:
-        """The operator of one contact radius."""
+        """The inverse operator A^-1 at one contact radius."""
         return TableRadius(self, ratio)
 
     def unknowns(self, ratio: float) -> int:
-        """Cells of a quadrant of the grid."""
+        """Number of cells of a quadrant of the grid."""
         return self.table(ratio).cells ** 2 // 4
 
 
@@ -112,7 +113,7 @@ class TableSprings(Springs):
     """Springs and MDR profile from tables of flat punches.
 
     Attributes:
-        measured: Flat punches of the layer.
+        measured: Flat punches of the layer from tables.
     """
 
     measured: TablePunches = field(kw_only=True)
@@ -134,12 +135,12 @@ class TableSprings(Springs):
 
     @cached_property
     def finer(self) -> Springs:
-        """The companion whose change states errors: tables of half as many cells, and finer quadratures."""
+        """Springs for error estimates: tables of half as many cells, and finer quadratures."""
         return replace(self, sizes=self.sizes.finer, measured=replace(self.measured, is_coarser=True))
 
     @property
     def coarse(self) -> Springs:
-        """These springs, which cost little."""
+        """These springs themselves, since they are cheap."""
         return self
 
     @property

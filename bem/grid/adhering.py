@@ -1,7 +1,7 @@
-"""An adhering indenter on discs of cells: its branch of equilibria, and what is met along it.
+"""An adhering indenter on discs of cells: its branch of equilibria, and the states that a loading reaches.
 
-Flat punches are smooth functions of the radius. They are sampled on a few discs and interpolated. What is steep in
-depth and force, integrals over the profile, is computed where it is asked for.
+Flat punches are smooth functions of the radius, so they are interpolated between a few discs. Integrals over the
+profile, which may vary steeply, are computed at each radius.
 """
 
 from __future__ import annotations
@@ -22,26 +22,26 @@ from contact.records.validation import FloatArray
 from contact.scene.extent import radius_of_elongation
 from contact.scene.loading import Loading
 
-# Discs between axis and the largest radius; the coarser companion takes 3/4 of them. With half as
-# many pull-offs of layers lose 1e-5.
+# Number of discs between axis and largest radius; the coarser solution has 3/4 of them. With half as many the error of
+# pull-off forces of layers is 1e-5.
 NODES: Final = 20
-# Factor by which the largest radius grows while the branch is too short, and its first value over the thickness.
+# Factor on the largest radius while the branch is too short, and its largest first value over the thickness.
 GROWTH: Final = 1.6
 FIRST_RATIO: Final = 4.0
-# How much farther than the largest prescribed value a branch reaches.
+# Largest value of a branch over the largest prescribed value.
 BEYOND: Final = 1.1
 
 
 @dataclass(frozen=True, eq=False)
 class SampledPunches:
-    """ln(kappa) and the coefficients of Q by polynomials of u^(1/m), u = ln(1 + a/h), both one at the axis.
+    """Interpolation of ln(kappa) and of the coefficients of Q by polynomials of u^(1/m), u = ln(1 + a/h).
 
-    m = 2 on graded layers, where they start like a ln(a), and one on others.
+    m = 2 on graded layers, where both start like a ln(a), and 1 on others. At a = 0 kappa = Q = 1.
 
     Attributes:
         thickness: h [m].
         end: u at the largest radius.
-        power: m.
+        power: Root m in u^(1/m).
         growth: Chebyshev coefficients of ln(kappa), shape (n,).
         series: Chebyshev coefficients of the coefficients of Q, shape (n, m).
     """
@@ -72,7 +72,7 @@ class SampledPunches:
         return replace(growths, series=series.chebfit(x, np.array(rows), nodes - 1))
 
     def at(self, radius: float) -> Punches:
-        """Interpolated flat punches about one radius [m]."""
+        """Interpolated flat punches near one radius [m]."""
         u = log1p(radius / self.thickness)
         share = (u / self.end) ** (1.0 / self.power)
         x, steepness = 2.0 * share - 1.0, 2.0 * share / (self.power * u) * radius / (self.thickness + radius)
@@ -88,7 +88,7 @@ class AdheringIndenter:
 
     Attributes:
         scene: Layer, indenter and adhesion.
-        pressing: Discs.
+        pressing: The indenter on discs of cells.
         punches: Flat punches of all radii.
         end: Largest radius [m].
     """
@@ -121,7 +121,7 @@ class AdheringIndenter:
         return np.array([(state.depth, E * state.load) for state in states]).T
 
     def at(self, radius: float) -> PressedState:
-        """The equilibrium at a radius [m], whose edge bears phi, Eq. (40)."""
+        """The equilibrium at a radius [m], with phi(a) = `edge_density`, Eq. (40)."""
         if radius == 0.0:
             return PressedState(0.0, 0.0, 0.0, 1.0, 0.0)
         state = self.punches.at(radius).pressed(self.scene.indenter, radius)
@@ -129,7 +129,7 @@ class AdheringIndenter:
 
 
 def adhesive_length(scene: Scene) -> float:
-    """dgamma/E* [m]."""
+    """Work of adhesion over E*, dgamma/E* [m]."""
     adhesion = scene.effect(Adhesion)
     return 0.0 if adhesion is None else adhesion.work_of_adhesion / contact_modulus(scene.layer)
 
@@ -140,12 +140,12 @@ def edge_density(scene: Scene, radius: float) -> float:
 
 
 def prescribed_quantity(loading: Loading) -> int:
-    """What is prescribed, or for a withdrawal the force, which shows all of the way back."""
+    """Index of the prescribed quantity in `Branch.functions`; for a withdrawal FORCE."""
     return FORCE if isinstance(loading, NormalForces | Detachment) else DEPTH
 
 
 def largest_radius(scene: Scene, pressing: Pressing) -> float:
-    """A radius [m] up to which the branch holds all that is prescribed, or all of a withdrawal."""
+    """A radius [m] up to which the branch includes all prescribed values, or the whole withdrawal."""
     indenter, loading = scene.indenter, scene.loading
     if isinstance(loading, ContactRadii):
         return float(loading.values.max())
@@ -159,8 +159,8 @@ def largest_radius(scene: Scene, pressing: Pressing) -> float:
     coarse = replace(pressing, cells=min(FIRST_CELLS, pressing.cells))
     while radius < indenter.max_radius:
         trial = AdheringIndenter.up_to(scene, coarse, radius, NODES // 2).branch
-        wanted = trial.strength if values is None else BEYOND * max(float(values.max()), 0.0)
-        if trial.at(quantity, trial.end) > wanted:
+        target = trial.strength if values is None else BEYOND * max(float(values.max()), 0.0)
+        if trial.at(quantity, trial.end) > target:
             return radius
         radius *= GROWTH
     return indenter.max_radius
@@ -169,12 +169,11 @@ def largest_radius(scene: Scene, pressing: Pressing) -> float:
 def followed(contacts: AdheringIndenter, values: FloatArray) -> FloatArray:
     """Radii [m] at prescribed depths [m] or forces [N] in their order, from out of contact; zero without contact.
 
-    Adhesion of this type has no reach: an approaching indenter snaps in as it touches, at zero depth, to the smallest
-    stable contact. Pressed further or withdrawn the edge moves along the stable branch; where that ends it jumps to
-    another stable radius, or off.
+    Adhesion has zero range here: an approaching indenter snaps in at zero depth, to the smallest stable contact. Then
+    the radius follows the stable branch. At its end it jumps to another stable radius, or to zero.
 
     Raises:
-        InvalidInput: If a force pulls that no contact can carry, or the contact outgrows the indenter.
+        InvalidInput: If no contact carries a tensile force, or the contact exceeds the indenter.
     """
     places, y, quantity = [], 0.0, prescribed_quantity(contacts.scene.loading)
     stable = contacts.branch.solutions(quantity, values).T
@@ -190,7 +189,7 @@ def followed(contacts: AdheringIndenter, values: FloatArray) -> FloatArray:
 
 
 def _next_place(contacts: AdheringIndenter, quantity: int, value: float, stable: FloatArray, y: float) -> float:
-    """y of the branch where the edge goes next, from y, of the stable equilibria at the prescribed value."""
+    """y of the state that follows from a state y, one of the stable equilibria (y) at the prescribed value."""
     indenter, branch = contacts.scene.indenter, contacts.branch
     if y == 0.0:
         if value < 0.0:
@@ -207,7 +206,7 @@ def _next_place(contacts: AdheringIndenter, quantity: int, value: float, stable:
 
 
 def start_of_withdrawal(contacts: AdheringIndenter) -> float:
-    """Radius [m] as given, at the punch's edge, or pressed as hard as the contact can pull."""
+    """First radius [m] of a withdrawal: as given, that of a flat punch, or that under a load equal to the strength."""
     if contacts.scene.loading.initial_contact_radius is not None or isinstance(contacts.scene.indenter, FlatPunch):  # type: ignore[attr-defined]
         return contacts.end
     return contacts.branch.widest(FORCE, contacts.branch.strength)

@@ -1,4 +1,4 @@
-"""Answers of boundary elements: each contact on one grid and on half as many cells, whose change states its error."""
+"""Answers of boundary elements: each contact is solved on one grid and, for error estimates, on half as many cells."""
 
 from __future__ import annotations
 
@@ -34,19 +34,19 @@ PRESCRIBED: Final[dict[type, Prescribed]] = {
     IndentationDepths: "indentation_depth",
     NormalForces: "normal_force",
 }
-# Times the difference to half as many cells: stated errors of pressures, whose order next to kinks is one half. Half of
-# it covers 90 % of random scenes instead of 97 %.
+# Error estimate of pressures over the difference to half as many cells; their order near kinks is one half. Half of it
+# covers 90 % of random scenes instead of 97 %.
 FIELD_SAFETY: Final = 4.0
-# What two grids do not show of a stiffness at a given radius.
+# Relative error of a stiffness at a given radius that two grids share.
 STIFFNESS_FLOOR: Final = 1e-9
-# On the half-space, exact by construction, quadratures and roots are left.
+# Relative error on the half-space, exact by construction but for quadratures and root searches.
 HALF_SPACE_FLOOR: Final = 1e-11
-# States along a detachment, and states of a path outside which gaps are computed, on grids of so many cells, whose
-# displacements are uncertain by so much.
+# Number of states along a detachment, number of those whose gaps outside are checked, cells across the grids of these
+# checks, and relative error of displacements on these grids.
 STATES: Final = 100
-LOOKED_AT: Final = 20
+CHECKED: Final = 20
 COARSE_CELLS: Final = 128
-UNCERTAIN: Final = 5e-3
+COARSE_ERROR: Final = 5e-3
 
 
 @dataclass(frozen=True)
@@ -60,17 +60,17 @@ class FieldSequence:
     steps: Sequence[ContactFields]
 
     def pressure(self, radius: FloatArray, step: int) -> FloatArray:
-        """p(r) [Pa] of one step."""
+        """Pressure p(r) of one step [Pa]."""
         return self.steps[step].pressure(radius)
 
     def surface_displacement(self, radius: FloatArray, step: int) -> FloatArray:
-        """w(r) [m] of one step."""
+        """Surface displacement w(r) of one step [m]."""
         return self.steps[step].surface_displacement(radius)
 
 
 @dataclass(frozen=True)
 class GridSolver:
-    """One scene on one grid and its coarser companion.
+    """Solver of one scene on two grids; the coarser one gives error estimates.
 
     Attributes:
         scene: Scene that is solved.
@@ -114,7 +114,10 @@ class GridSolver:
         return self._path(list(zip(fine, coarse, strict=True)), adheres=True)
 
     def _followed(self, contacts: AdheringIndenter) -> list[ContactFields]:
-        """What is prescribed is inserted as it is: a flat punch may be held below its fold."""
+        """Contacts in the order of the loading, with prescribed depths or forces inserted unchanged.
+
+        A flat punch at its full radius may have a depth or force below that of its fold.
+        """
         loading = self.scene.loading
         values = np.array(loading.values)  # type: ignore[attr-defined]
         radius = values if isinstance(loading, ContactRadii) else followed(contacts, values)
@@ -130,7 +133,7 @@ class GridSolver:
         return contact_fields
 
     def _adhering(self, pressing: Pressing, state: PressedState) -> ContactFields:
-        # A flat end holds the front: its density is what the contact bears, not what adhesion could.
+        # At the flat radius the edge is pinned: phi(a) follows from the depth and is smaller than adhesion could carry.
         is_pinned = state.radius == self.scene.indenter.flat_radius
         edge = state.depth * state.edge_flat if is_pinned else edge_density(self.scene, state.radius)
         return ContactFields(pressing, state, state, edge)
@@ -180,7 +183,7 @@ class GridSolver:
             )
 
     def _path(self, pairs: Sequence[tuple[ContactFields, ContactFields]], *, adheres: bool) -> ContactPath:
-        """The answer, with errors of its fields, unless the indenter touches outside a contact."""
+        """The answer with error estimates; raises an error if the indenter touches outside a contact."""
         rows, other = (self._values([pair[i].state for pair in pairs]) for i in (0, 1))
         errors = self._errors(rows, other, adheres=adheres)
         shared = np.maximum(errors["indentation_depth"], errors["normal_force"])
@@ -207,7 +210,7 @@ class GridSolver:
         return {"scene": self.scene, "method": "bem", "settings": self.settings} | numbers
 
     def _errors(self, rows: FloatArray, coarse_rows: FloatArray, *, adheres: bool) -> dict[str, FloatArray]:
-        """Stated errors by name; none of what is prescribed, and only the floor of a stiffness at a given radius."""
+        """Error estimates by name: zero of prescribed quantities, the floor of a stiffness at a given radius."""
         is_punch = isinstance(self.scene.indenter, FlatPunch) and not adheres
         is_given = is_punch or isinstance(self.scene.loading, ContactRadii)
         errors = {}
@@ -222,7 +225,7 @@ class GridSolver:
 
     @staticmethod
     def _stated(values: FloatArray, other: FloatArray, floor: FloatArray | float, *, path: bool = False) -> FloatArray:
-        """Values of one path are relative to its largest magnitude."""
+        """Error estimates relative to the values, or with `path` to their largest magnitude."""
         scale = np.abs(values).max() if path else values
         return stated_error(values, other, scale=scale, floor=floor, sequence=path)
 
@@ -236,13 +239,13 @@ class GridSolver:
         return self._least + shared_error(self.pressing.cells, ratio, is_stationary=is_stationary)
 
     def _refuse_touching(self, contacts: AdheringIndenter, radius: FloatArray, errors: dict[str, FloatArray]) -> None:
-        """Refuse a withdrawal of which some state is touched outside its circle, as coarse discs show it."""
+        """Refuse a withdrawal with a second contact outside in any state, computed on coarse discs."""
         if self.scene.indenter.is_convex:
             return
         coarse = replace(self.pressing, cells=min(COARSE_CELLS, self.pressing.cells))
-        for i in np.linspace(0, radius.size - 1, LOOKED_AT).astype(int).tolist():
+        for i in np.linspace(0, radius.size - 1, CHECKED).astype(int).tolist():
             state = contacts.at(float(radius[i]))
             height = max(abs(state.depth), float(self.scene.indenter.height(state.radius)))
-            tolerance = 2.0 * (float(errors["indentation_depth"][i]) + UNCERTAIN) * height
+            tolerance = 2.0 * (float(errors["indentation_depth"][i]) + COARSE_ERROR) * height
             displacement = self._adhering(coarse, state).surface_displacement
             refuse_touching(self.scene, [Circle(state.radius, state.depth, displacement, tolerance)])

@@ -1,9 +1,9 @@
-"""Discs of square cells pressed into a layer, and measured by the half-space.
+"""Discs of square cells pressed into a layer, and calibrated on the half-space.
 
-A disc of cells is no circle, and no cell resolves the pressure at its edge. Both act within a cell or two of the edge,
-where every layer responds like the half-space. So the *same cells* are pressed flat into the half-space: its stiffness
-k = 2 E* a gives the effective radius a, its pressure E*/(pi sqrt(a^2 - r^2)) per unit depth gives what the cells make
-of the singularity. The quotient Q of a layer's pressure and the half-space's is a smooth function of r^2.
+A disc of cells is no circle, and cells do not resolve the pressure at its edge. Both errors arise within a cell or two
+of the edge, where every layer responds like the half-space. So the *same cells* are pressed flat into the half-space.
+The stiffness k = 2 E* a defines the effective radius a, and the pressure is the discrete counterpart of
+E*/(pi sqrt(a^2 - r^2)) per unit depth. The quotient Q of the pressures on layer and half-space is smooth in r^2.
 
 Lengths of cell fields in cell sizes, pressures in units of E*.
 """
@@ -23,29 +23,30 @@ from bem.grid.transforms import fast_period
 from contact import ElasticLayer, Profile, UnsupportedSceneError
 from contact.records.validation import BoolArray, FloatArray
 
-# Radius of the disc as drawn over half the grid: its edge stays a few cells inside.
+# Radius of the circle that contains the cells of the disc, over half the grid: its edge is a few cells inside.
 FILL: Final = 0.97
-# Largest error of the displacement under the disc. Stiffnesses lose its square, Q ten times as much.
+# Largest error of the displacement under the disc. The error of stiffnesses is its square, that of Q ten times of it.
 TOLERANCE: Final = 1e-8
-# Largest degree of Q in 2 r^2/a^2 - 1; half of it misses the edge of thin layers, twice as much follows single cells.
+# Largest degree of Q in 2 r^2/a^2 - 1; half of it misses the edge of thin layers, twice of it fits single cells.
 LARGEST_DEGREE: Final = 20
-# Cells inside the edge from which on the quotient of two pressures is smooth: with 1 and 5 pressures err twice as much.
+# Distance from the edge, in cells, beyond which the quotient of two pressures is smooth: with 1 or 5 pressure errors
+# double.
 EDGE_CELLS: Final = 2.5
-# Thicknesses between periodic images, which act on each other by exp(-0.739 * 28) = 1e-9; half of it leaves 3e-5.
+# Gap between periodic images over the thickness: their interaction is exp(-0.739 * 28) = 1e-9; at half of it 3e-5.
 IMAGE_GAP: Final = 28.0
 # Largest periodic lattice over the cells across the disc; a thicker layer needs a wider gap.
 LARGEST_LATTICE: Final = 4.0
-# What two grids do not show of depth and force: times (s/a)^2 with the cell size s, and a/h of thick layers, near the
-# half-space that measures the discs. Half of it leaves one table of ten unstated where two grids agree by accident.
+# Relative error of depth and force that two grids share, over (s/a)^2 min(a/h, 1) with the cell size s. At half of it
+# one table of ten is not covered where two grids agree by accident.
 SHARED: Final = 0.2
-# Cells that a layer must be thick: at half of it every wavenumber of the grid sees the limit of thin layers.
+# Least thickness of a layer in cells: at half of it all wavenumbers of the grid are in the limit of thin layers.
 LEAST_LAYER: Final = 1.0
-# Cells that must lie between the edge and an upright end, towards which the depth grows without bound.
+# Least number of cells between the edge of the contact and an upright end, towards which the depth diverges.
 END_CELLS: Final = 4.0
 
 
 class Unresolved(UnsupportedSceneError):
-    """Cells are too large, and two grids may agree all the same."""
+    """Cells are too large to resolve the contact; two grids may agree nevertheless."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,8 +55,8 @@ class Disc:
 
     Attributes:
         cells: Cells across the grid.
-        boundary: Boundary of the operators of layers.
-        contact: Covered cells, shape (m, m), m = cells/2.
+        boundary: Boundary condition of operators of layers, "free" or "periodic".
+        contact: Cells of the disc, shape (m, m), m = cells/2.
         pressure: p/E* under a unit depth of the half-space, same shape.
         operator: Operator of the half-space.
     """
@@ -73,13 +74,13 @@ class Disc:
 
     @cached_property
     def centres(self) -> FloatArray:
-        """r of the cell centres over a, shape (m, m)."""
+        """r/a of the cell centres, shape (m, m)."""
         centre = (np.arange(self.cells // 2) + 0.5) / self.radius
         return np.asarray(np.hypot(centre[:, None], centre))
 
     @cached_property
     def _basis(self) -> tuple[FloatArray, FloatArray]:
-        """QR factors of the Chebyshev polynomials on the cells; each lower degree is a leading section."""
+        """QR factors of the Chebyshev polynomials at the cells; leading sections are those of lower degrees."""
         x = np.minimum(2.0 * self.centres[self.contact] ** 2 - 1.0, 1.0)
         orthogonal, triangle = np.linalg.qr(chebyshev.chebvander(x, LARGEST_DEGREE))
         return orthogonal, triangle
@@ -89,28 +90,30 @@ class Disc:
         return np.asarray(pressure[self.contact] / self.pressure[self.contact])
 
     def series(self, pressure: FloatArray, degree: int, edge: float | None = None) -> FloatArray:
-        """Chebyshev coefficients of the quotient in 2 r^2/a^2 - 1: least squares with the total of the pressure.
+        """Chebyshev coefficients of the quotient Q in 2 r^2/a^2 - 1, shape (degree + 1,).
+
+        They are a least-squares fit under the constraint that the integral equals the sum of the pressure.
 
         Args:
-            pressure: On the cells.
-            degree: Of the polynomial.
-            edge: The value at the edge where it is known.
+            pressure: p/E* on the cells, shape (m, m).
+            degree: Degree of the polynomial.
+            edge: Q at the edge, as a second constraint where it is known.
         """
         orthogonal, triangle = self._basis
         n, j = degree + 1, np.arange(degree + 1)
         inverse = np.linalg.inv(triangle[:n, :n])
         fitted = inverse @ (orthogonal[:, :n].T @ self.quotient(pressure))
         # int_0^1 T_j(2 rho^2 - 1) rho/sqrt(1 - rho^2) drho, and T_j(1).
-        known = [((-1.0) ** j / (1.0 - 4.0 * j**2), 2.0 * float(pressure.sum()) / self.radius)]
-        known += [] if edge is None else [(np.ones(n), edge)]
-        rows, values = np.array([row for row, _ in known]), np.array([value for _, value in known])
+        constraints = [((-1.0) ** j / (1.0 - 4.0 * j**2), 2.0 * float(pressure.sum()) / self.radius)]
+        constraints += [] if edge is None else [(np.ones(n), edge)]
+        rows, values = np.array([row for row, _ in constraints]), np.array([value for _, value in constraints])
         change = inverse @ inverse.T @ rows.T
         return np.asarray(fitted + change @ np.linalg.solve(rows @ change, values - rows @ fitted))
 
 
 @lru_cache(maxsize=16)
 def disc_of(cells: int, boundary: Boundary = "free", threads: int = 1) -> Disc:
-    """The disc of a grid of `cells` x `cells`."""
+    """The disc of a grid of `cells` x `cells`, cached."""
     centre = np.arange(cells // 2) + 0.5
     contact = np.hypot(centre[:, None], centre) < FILL * cells / 2
     operator = grid_operator(HALF_SPACE, 1.0, cells, boundary, threads)
@@ -118,9 +121,10 @@ def disc_of(cells: int, boundary: Boundary = "free", threads: int = 1) -> Disc:
 
 
 def shared_error(cells: int, ratio: FloatArray, *, is_stationary: bool = False) -> FloatArray:
-    """Relative error of depth and force at ratios a/h, shape (n,), which half as many cells share.
+    """Relative error of depth and force at ratios a/h that two grids share, shape (n,).
 
-    It falls with the square of a/h where they are stationary in the radius: where one is prescribed, and at pull-off.
+    It falls with the square of a/h where depth and force are stationary in the radius: where one of them is prescribed,
+    and at pull-off.
     """
     return np.asarray(SHARED / disc_of(cells).radius ** 2 * np.minimum(ratio, 1.0) ** (1 + is_stationary))
 
@@ -130,10 +134,10 @@ class Punch:
     """A flat punch on one disc of cells.
 
     Attributes:
-        disc: The cells.
+        disc: Disc of cells.
         layer: The layer.
         threads: Number of threads of the transforms.
-        radius: a [m].
+        radius: Contact radius a [m].
         pressure: p_1/E* under a unit depth, shape (m, m).
         growth: kappa = k_N/(2 E* a), k_bar of Eq. (10).
         degree: Degree of Q, the quotient of p_1 and the half-space's pressure; zero on the half-space.
@@ -149,15 +153,15 @@ class Punch:
 
     @property
     def cell_size(self) -> float:
-        """s [m]."""
+        """Side s of a cell [m]."""
         return self.radius / self.disc.radius
 
     def series(self, degree: int, edge: float | None = None) -> FloatArray:
-        """Chebyshev coefficients of Q in 2 r^2/a^2 - 1; phi_1 = Q(1) where it is known better."""
+        """Chebyshev coefficients of Q in 2 r^2/a^2 - 1; `edge` prescribes phi_1 = Q(1), see `Disc.series`."""
         return self.disc.series(self.pressure, degree, edge) if self.degree else np.ones(1)
 
     def quotient(self, share: FloatArray) -> FloatArray:
-        """Q at r/a."""
+        """Q at share = r/a."""
         return np.asarray(chebyshev.chebval(2.0 * share**2 - 1.0, self.series(self.degree)))
 
     def risen(self, indenter: Profile) -> FloatArray:
@@ -189,7 +193,7 @@ def punch(layer: ElasticLayer, radius: float, cells: int, boundary: Boundary = "
 
 
 def _on_disc(disc: Disc, operator: GridOperator, displacement: FloatArray | float) -> FloatArray:
-    """p on the quadrant of the disc, in a lattice that may be larger."""
+    """p/E* on the quadrant of the disc for a displacement in cell sizes; the operator's lattice may be larger."""
     m, more = disc.cells // 2, operator.inverse.cells - disc.cells // 2
     target = displacement if isinstance(displacement, float) else np.pad(displacement, (0, more))
     return pressed(operator, np.pad(disc.contact, (0, more)), target, TOLERANCE)[:m, :m]

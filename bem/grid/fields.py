@@ -18,13 +18,14 @@ from bem.kernels.of_layer import surface_kernel
 from contact.answer.one_circle import no_single_circle
 from contact.records.validation import FloatArray
 
-# Radii summed at a time, which bounds the memory: with four times as many 2048 points take 0.4 GB.
+# Number of radii summed at a time, which bounds the memory: with four times as many 2048 points take 0.4 GB.
 CHUNK: Final = 4
-# Share of the largest quotient of pressures below which a cell counts as pulled; noise of rings is a tenth of it.
+# Least tension over the largest quotient of pressures that counts; noise of rings is a tenth of it.
 PULLED: Final = 1e-3
-# Cells of the coarser grid within which it has to show the same.
+# Distance, in cells of the coarser grid, within which the coarser grid has to show tension too.
 NEARBY: Final = 1.5
-# Cells next to edges and kinks in which the sign of the pressure is not resolved; half of it refuses worn cones.
+# Distance from edges and kinks, in cells, within which the sign of the pressure is not resolved; half of it refuses
+# worn cones.
 BESIDE_KINKS: Final = 8.0
 # Radii r/a at which fields of two grids are compared.
 INSIDE: Final = np.sqrt((np.arange(64) + 0.5) / 64)
@@ -33,13 +34,13 @@ OUTSIDE: Final = np.array([1.01, 1.02, 1.05, 1.1, 1.2, 1.35, 1.6, 2.0, 2.5])
 
 @dataclass(frozen=True, eq=False)
 class ContactFields:
-    """Fields under and around one contact; zero without contact.
+    """Surface fields of one contact; zero without contact.
 
     Attributes:
         pressing: Layer, indenter and discs.
         state: Depth, force and stiffness at the contact radius a.
-        solved: Depth, force and stiffness at the radius of a disc, which differs slightly from a.
-        edge: phi(a) [m], zero without adhesion; None for a flat punch without adhesion, where it is not prescribed.
+        solved: Depth, force and stiffness at the radius of the solved disc, which differs slightly from a.
+        edge: phi(a) [m], zero without adhesion; None for a flat punch without adhesion, where it is not used.
     """
 
     pressing: Pressing
@@ -49,7 +50,7 @@ class ContactFields:
 
     @property
     def radius(self) -> float:
-        """a [m]."""
+        """Contact radius a [m]."""
         return self.state.radius
 
     @property
@@ -69,9 +70,9 @@ class ContactFields:
         return np.where((radius <= self.radius) & (share < 1.0), p, 0.0)
 
     def surface_displacement(self, radius: FloatArray) -> FloatArray:
-        """w(r) [m]: delta - f under the indenter, sums over all cells beyond the first cell outside.
+        """w(r) [m]: delta - f(r) inside the contact, sums over all cells from one cell size outside the edge on.
 
-        Within the first cell the gap grows like the root of the distance, or without adhesion like its power 3/2.
+        In between the gap grows like the root of the distance, or without adhesion like its power 3/2.
         """
         if self.radius == 0.0:
             return np.zeros_like(radius)
@@ -82,18 +83,18 @@ class ContactFields:
         w -= slope * np.minimum(beyond, s)
         outside = beyond > 0.0
         near = np.minimum(beyond[outside] / s, 1.0)
-        # The tangent at the edge, and what it lacks one cell further out.
+        # w by the tangent at the edge, one cell further out; its error there is distributed by the power.
         end = self.state.depth - float(indenter.height(a)) - slope * s
         summed = self._summed(np.maximum(radius[outside], a + s))
         w[outside] += near**power * (summed - end)
         return w
 
     def refuse_pulling(self, coarser: ContactFields) -> None:
-        """Refuse a contact without adhesion in which cells pull, here and at the same place of a coarser grid.
+        """Refuse a contact without adhesion with tension at the same radius on this grid and on a coarser one.
 
         Raises:
-            UnsupportedSceneError: With the place.
-            Unresolved: With the place, where the only such cells lie next to an edge or a kink.
+            UnsupportedSceneError: With the radius.
+            Unresolved: With the radius, if tension occurs near edges or kinks only.
         """
         rings, quotient = self._rings
         other_rings, other = coarser._rings
@@ -111,7 +112,7 @@ class ContactFields:
 
     @cached_property
     def cells(self) -> FloatArray:
-        """p/E* on the cells at the radius of the disc, shape (m, m), a quadrant.
+        """p/E* on the cells of a quadrant, at the radius of the solved disc, shape (m, m).
 
         p = (delta/s) p_1 - c p_f superposes a flat punch (p_1 at a depth of one cell size s) and the profile f (p_f at
         the displacement f). The factor c = M / sum(s^2 p_f/E*), over the whole disc, makes the force of the second term
@@ -124,30 +125,30 @@ class ContactFields:
 
     @cached_property
     def _scale(self) -> float:
-        """Ratio of F/a^2 of the contact to that of the disc, whose radius differs slightly: factor of pressures."""
+        """Factor of pressures from the solved disc to the contact: the ratio of F/a^2."""
         load = self.solved.load
         return self.state.load / load * (self.solved.radius / self.radius) ** 2 if self.edge == 0.0 < load else 1.0
 
     @cached_property
     def _rings(self) -> tuple[FloatArray, FloatArray]:
-        """r/a and the mean quotient [m] of rings one cell wide, but for those close to the edge."""
+        """r/a and mean quotient [m] of rings of cells, one cell wide, without those near the edge."""
         disc = self.punch.disc
         share = disc.centres[disc.contact]
         ring = (share * disc.radius).astype(np.intp)
-        kept = np.arange(max(1, int(disc.radius - EDGE_CELLS)))
-        count = np.bincount(ring)[kept]
-        means = [np.bincount(ring, of)[kept] / count for of in (share**2, disc.quotient(self.cells))]
+        inner = np.arange(max(1, int(disc.radius - EDGE_CELLS)))
+        count = np.bincount(ring)[inner]
+        means = [np.bincount(ring, of)[inner] / count for of in (share**2, disc.quotient(self.cells))]
         unit = self.radius / disc.radius * self._scale
         return np.sqrt(means[0]), unit * means[1]
 
     @cached_property
     def _quotient(self) -> PchipInterpolator:
-        """Pressure over that of the half-space under a unit depth, over r^2/a^2."""
+        """Pressure over that of the half-space under a unit depth [m], as a function of r^2/a^2."""
         share, values = self._rings
         return PchipInterpolator(np.append(share**2, 1.0), np.append(values, self.edge or 0.0), extrapolate=True)
 
     def _summed(self, radius: FloatArray) -> FloatArray:
-        """w [m] at r > a + s: cells act as point forces at their centres."""
+        """w [m] at r > a + s, with the pressure of cells as point forces at their centres."""
         s = self.radius / self.punch.disc.radius
         i, j = np.nonzero(self.cells)
         x, y, force = s * (i + 0.5), s * (j + 0.5), s**2 * self._scale * self.cells[i, j] / pi
@@ -158,7 +159,7 @@ class ContactFields:
         return w
 
     def _response(self, distance: FloatArray) -> FloatArray:
-        """1/r + V(r/h)/h [1/m]."""
+        """pi E* w per point force at a distance r [m]: 1/r + V(r/h)/h [1/m]."""
         layer = self.pressing.layer
         if layer.is_half_space:
             return 1.0 / distance
@@ -168,15 +169,15 @@ class ContactFields:
 
 
 def field_changes(fine: ContactFields, coarse: ContactFields) -> tuple[float, float]:
-    """Change of pressure and displacement between two grids; all of them where only one grid is in contact.
+    """Relative changes of pressure and displacement between two grids; 1 if only one of them is in contact.
 
-    Pressures at equal r/a in the norm weighted with r (a^2 - r^2); the largest change of displacements outside the
-    contact, relative to depth or height at the edge.
+    Pressures are compared at equal r/a in the norm weighted with r (a^2 - r^2). For displacements it is the largest
+    change outside the contact over the depth or the height at the edge.
     """
     if fine.radius == 0.0 or coarse.radius == 0.0:
         return (0.0, 0.0) if fine.radius == coarse.radius else (1.0, 1.0)
     p, q = (np.sqrt(1.0 - INSIDE**2) * of.pressure(INSIDE * of.radius) for of in (fine, coarse))
     r = OUTSIDE * max(fine.radius, coarse.radius)
-    apart = fine.surface_displacement(r) - coarse.surface_displacement(r)
+    change = fine.surface_displacement(r) - coarse.surface_displacement(r)
     scale = max(abs(fine.state.depth), float(fine.pressing.indenter.height(fine.radius)))
-    return float(np.linalg.norm(p - q) / np.linalg.norm(p)), float(np.abs(apart).max() / scale)
+    return float(np.linalg.norm(p - q) / np.linalg.norm(p)), float(np.abs(change).max() / scale)

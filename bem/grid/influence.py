@@ -35,16 +35,16 @@ SAMPLES: Final = 1024
 LEAST_Q, LARGEST_Q = 1e-9, 1e5
 # Exponent of the power of q that damps both ends of the samples: half and twice of it leave 1e-8 of V.
 BIAS: Final = -0.25
-# Least rho at which the smooth part of V is read: it is even in rho, so that 1e-6 of it is lost within.
+# Least rho of the smooth part of V, which is even in rho: below it the value at it has an error of 1e-6.
 NEAR: Final = 1e-3
-# Distance in thicknesses from which on a layer on a rigid base is at rest: exp(-0.739 * 48) = 4e-16.
+# r/h from which on displacements of a layer on a rigid base are zero: exp(-0.739 * 48) = 4e-16.
 REACH: Final = 48.0
-# Wave number of the mean mode over 1/`longest`: chi/k is off by its square, and half of it changes nothing.
+# k times `longest` at which chi/k is evaluated for k = 0: its error is the square, and half of it changes nothing.
 LEAST_SHARE: Final = 1e-12
 # Mean of ln r over a unit square about its centre.
 MEAN_LOGARITHM: Final = (pi / 2 - 3.0 - log(2.0)) / 2
-# Cells from the loaded one within which means over cells are taken by Gauss points, and half of the most of them across
-# a cell. Answers with cells wider than a layer is thick are refused.
+# Distance from the loaded cell, in cells, within which means over cells are computed by Gauss rules, and half the
+# largest number of their points across a cell.
 CLOSE: Final = 12
 MOST_POINTS: Final = 4.0
 
@@ -54,7 +54,7 @@ class PointResponse:
     """V(rho) of one layer, rho = r/h.
 
     Attributes:
-        smooth: Smooth part of V over ln rho, computed by FFTLog.
+        smooth: Smooth part of V as a function of ln rho, computed by FFTLog.
         limit: 1 - chi at q = 0, one on a rigid base.
         logarithm: c_1 in chi = 1 + c_1/q + ....
     """
@@ -66,13 +66,13 @@ class PointResponse:
     def __call__(self, rho: FloatArray) -> FloatArray:
         """V at rho > 0: the smooth part and closed forms of exp(-q) and (1 - exp(-q))/q."""
         near = np.log(np.clip(rho, NEAR, 1e5))
-        known = self.logarithm * np.arcsinh(1.0 / rho) if self.logarithm else 0.0
-        return np.asarray(self.smooth(near) - (self.limit + self.logarithm) / np.hypot(1.0, rho) + known)
+        logarithmic = self.logarithm * np.arcsinh(1.0 / rho) if self.logarithm else 0.0
+        return np.asarray(self.smooth(near) - (self.limit + self.logarithm) / np.hypot(1.0, rho) + logarithmic)
 
 
 @lru_cache(maxsize=32)
 def point_response(kernel: SurfaceKernel) -> PointResponse:
-    """V of a kernel."""
+    """The function V of a kernel, cached."""
     q = np.geomspace(LEAST_Q, LARGEST_Q, SAMPLES)
     step, less = log(q[1] / q[0]), kernel.one_minus_chi(q)
     limit = float(less[0])
@@ -86,7 +86,7 @@ def point_response(kernel: SurfaceKernel) -> PointResponse:
 
 @lru_cache(maxsize=8)
 def rectangle_influence(offsets: int) -> FloatArray:
-    """Half-space: displacement at cell offset (i, j), 0 <= i, j <= offsets, by a unit pressure on a unit cell.
+    """Displacements of a half-space at cell offsets 0 <= i, j <= `offsets` by a unit pressure on a unit cell.
 
     Love's solution is the second difference over the cell's corners of J = x asinh(y/x) + y asinh(x/y).
     """
@@ -97,7 +97,7 @@ def rectangle_influence(offsets: int) -> FloatArray:
 
 
 def layer_influence(offsets: int, layer: ElasticLayer, cell_size: float) -> FloatArray:
-    """Displacements at cell offsets on any layer by a unit pressure on one cell of `cell_size` [m]."""
+    """Displacements of any layer at cell offsets 0 <= i, j <= `offsets` by a unit pressure on one cell."""
     influence = rectangle_influence(offsets)
     if layer.is_half_space:
         return influence
@@ -146,10 +146,10 @@ def layer_symbol(wavenumber: FloatArray, layer: ElasticLayer, cell_size: float) 
 
 
 def band_limited_influence(offsets: int) -> FloatArray:
-    """Half-space: displacement at offset (i, j) by the trigonometric interpolant of a unit pressure at one point.
+    """Displacements of a half-space at offsets 0 <= i, j <= `offsets` by the trigonometric interpolant of a unit load.
 
-    It is the free-space partner of the periodic operator. The kernel 1/(pi r) is cut off at a radius R beyond the grid,
-    which makes its transform (2/k) int_0^(kR) J0(t) dt without changing a displacement on the grid (Vico, Greengard
+    It is the free-space counterpart of the periodic operator. The kernel 1/(pi r) is cut off at a radius R beyond the
+    grid, which changes no displacement on the grid and makes the transform (2/k) int_0^(kR) J0(t) dt (Vico, Greengard
     and Ferrando 2016, J. Comput. Phys. 323, 191).
     """
     # With half of the period twice the grid no image of the cut-off kernel reaches back to sqrt(2) offsets.

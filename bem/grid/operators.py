@@ -1,4 +1,4 @@
-"""Surface displacement by surface pressure, Eq. (26), on the quadrant of a square grid: free space or periodic.
+"""Operator from surface pressure to surface displacement, Eq. (26), on a square grid: free space or periodic.
 
 Lengths in cell sizes, pressures in units of E*; fields have shape (m, m), m half the cells across the grid.
 """
@@ -18,10 +18,10 @@ from contact.records.validation import BoolArray, FloatArray
 Boundary: TypeAlias = Literal["free", "periodic"]
 # A half-space with E* = 1.
 HALF_SPACE: Final = Layer.half_space(youngs_modulus=1.0, poissons_ratio=0.0)
-# Least response of the mean mode over that of the next mode. With a tenth of it conjugate gradients stall on nearly
-# incompressible layers; ten times as much changes nothing there.
+# Compliance of the mean mode over that of the next mode below which it is replaced in the preconditioner. At a tenth of
+# it conjugate gradients stall on nearly incompressible layers; ten times of it changes nothing there.
 LEAST_RESPONSE: Final = 0.1
-# Conjugate gradient steps. Discs of 64 to 1024 cells take 10 to 40 of them.
+# Largest number of conjugate gradient steps. Discs of 64 to 1024 cells take 10 to 40.
 MOST_STEPS: Final = 200
 
 
@@ -42,11 +42,11 @@ class GridOperator:
     inverse_symbol: FloatArray
 
     def displacement(self, pressure: FloatArray) -> FloatArray:
-        """u by p."""
+        """Displacement u in cell sizes by a pressure p/E*, shape (m, m)."""
         return self.forward(pressure, self.symbol)
 
     def precondition(self, displacement: FloatArray) -> FloatArray:
-        """A pressure that nearly causes this displacement."""
+        """Approximate pressure p/E* of a displacement in cell sizes, shape (m, m)."""
         return self.inverse(displacement, self.inverse_symbol)
 
 
@@ -62,9 +62,9 @@ def grid_operator(
     """The operator of a layer on `cells` x `cells` cells of `cell_size` [m].
 
     In free space pressures are constant over cells, and displacements exact at their centres. With periodic boundaries
-    fields are trigonometric polynomials, so that a sinusoidal load has its exact answer, Eq. (32); a half-space with
-    such pressures stands alone in free space, to measure discs of cells for periodic layers. Fields without the
-    symmetry of a quadrant need the `whole` grid.
+    fields are trigonometric polynomials, so that displacements of sinusoidal loads are exact, Eq. (32). A half-space
+    with periodic boundaries has such pressures too, but in free space: it calibrates discs for periodic layers. Fields
+    without the symmetry of a quadrant need the `whole` grid.
     """
 
     def filter_of(period: int) -> CosineFilter | FourierFilter:
@@ -82,10 +82,10 @@ def grid_operator(
 
 
 def _reciprocal(symbol: FloatArray) -> FloatArray:
-    """1/symbol; a mean mode that hardly responds counts as the most compliant one.
+    """1/symbol; a mean mode with a compliance near zero gets that of the most compliant mode.
 
-    It does not respond on a half-space or an incompressible bonded layer. A contact that fills part of the box has no
-    mean mode of its own, and its reciprocal would exceed all others.
+    The compliance of the mean mode is zero on a half-space (by convention) and on incompressible bonded layers. Its
+    reciprocal would exceed all others, although a contact in part of the box excites all modes.
     """
     damped = symbol.copy()
     if symbol[0, 0] <= LEAST_RESPONSE * symbol[0, 1]:
@@ -103,9 +103,9 @@ def pressed(
     """p with K p = displacement on `contact` and p = 0 elsewhere, by preconditioned conjugate gradients.
 
     Args:
-        operator: K.
+        operator: The operator K from pressure to displacement.
         contact: Cells in contact, shape (m, m).
-        displacement: Prescribed there.
+        displacement: Prescribed displacement on `contact`, in cell sizes.
         tolerance: Largest error of the displacement on the contact, relative to its largest value.
         start: First guess of p.
 

@@ -1,4 +1,4 @@
-"""Answers of boundary elements to shapes: discs for the mean profile, times ratios on cells of any outline."""
+"""Boundary elements for shapes: the answer for the mean profile on discs, times a ratio on cells of any outline."""
 
 from __future__ import annotations
 
@@ -19,15 +19,16 @@ from contact.records.validation import FloatArray
 from contact.scene.shapes import LARGEST_ORDER, Flat, Raised
 from contact.stated import SAFETY, stated_error
 
-# Relative step of depth of the derivative of the ratio; its error goes with the square. Half of it shows cells.
+# Relative step of the depth for the derivative of the ratio, whose error falls with its square. Half of it shows cells.
 STEP: Final = 0.1
-# Relative change of the ratio at which the depth under a force is found, and the most steps.
+# Tolerance of the relative change of the ratio under a prescribed force, and largest number of steps.
 CLOSE, MOST_STEPS = 1e-9, 12
-# Relative error of a ratio that two grids may share: times the cells across to the power -3/2, as they meet an edge.
+# Relative error of the ratio that two grids may share, times (cells across)^(3/2).
 SHARED: Final = 0.5
-# The same of the contact radius, whose cells are counted; half of it leaves one scene of twenty unstated.
+# Relative error of the contact radius, from the number of cells in contact, that two grids may share, times (cells
+# across)^(3/2). At half of it one scene of twenty is not covered.
 COUNTED: Final = 2.0
-# Points along the outline and share of it within which pressures of two grids are compared.
+# Number of angles, and radii over the outline, at which pressures of two grids are compared.
 ANGLES, INSIDE = 64, np.array([0.1, 0.3, 0.5, 0.7, 0.9])
 
 
@@ -36,11 +37,11 @@ class ShapeState:
     """A contact of a shape.
 
     Attributes:
-        cells: Cells in contact on the grid, at the same depth or at a unit depth of a flat punch.
-        cell_size: s [m].
-        depth: delta [m].
-        load: F/E* [m^2].
-        stiffness: k_N/E* [m].
+        cells: Contact on the grid, at this depth, or at unit depth of a flat punch.
+        cell_size: Side s of a cell [m].
+        depth: Indentation depth delta [m].
+        load: Force over E*, F/E* [m^2].
+        stiffness: Contact stiffness over E*, k_N/E* [m].
         square: Fourier coefficients of a(phi)^2 [m^2], of the orders 0, N, 2 N, ..
         shape: The indenter.
     """
@@ -54,7 +55,7 @@ class ShapeState:
     shape: Shape
 
     def outline(self, angle: ArrayLike) -> FloatArray:
-        """a(phi) [m]: of a flat punch its own."""
+        """a(phi) [m], for a flat punch the outline of the punch."""
         if isinstance(self.shape, Flat):
             return self.shape.outline(angle)
         cosines = np.cos(np.multiply.outer(np.asarray(angle), _cosines(self.shape)))
@@ -62,12 +63,12 @@ class ShapeState:
 
     @property
     def radius(self) -> float:
-        """Mean of the outline [m]."""
+        """Mean radius of the outline [m]."""
         angle, weight = self.shape.sector()
         return float(weight @ self.outline(angle))
 
     def pressure(self, radius: FloatArray, angle: FloatArray) -> FloatArray:
-        """p/E* between the centres of cells, scaled to the load."""
+        """p/E* at radii [m] and angles, interpolated between the centres of cells and scaled to the load."""
         scale, r = self.load / (self.cells.load * self.cell_size**2), radius / self.cell_size
         values = self.cells.pressure_at(r * np.cos(angle), r * np.sin(angle))
         return np.where(radius < self.outline(angle), scale * values, 0.0)
@@ -84,27 +85,27 @@ class OutlinedFields:
 
     Attributes:
         states: Contact of each step.
-        modulus: E* [Pa].
+        modulus: Contact modulus E* [Pa].
     """
 
     states: Sequence[ShapeState]
     modulus: float
 
     def outline(self, angle: FloatArray, step: int) -> FloatArray:
-        """a(phi) [m]."""
+        """Outline a(phi) of the contact at one step [m]."""
         return self.states[step].outline(angle)
 
     def pressure(self, radius: FloatArray, step: int, angle: FloatArray) -> FloatArray:
-        """p(r, phi) [Pa]."""
+        """Pressure p(r, phi) at one step [Pa]."""
         return self.modulus * self.states[step].pressure(radius, angle)
 
 
 @dataclass(frozen=True)
 class ShapeSolver:
-    """One scene on a grid and its coarser companion.
+    """Solver of one scene on two grids; the coarser one gives error estimates.
 
     Attributes:
-        scene: The problem.
+        scene: The scene.
         points: Cells across the mean contact.
         threads: Number of threads of the transforms.
         settings: Settings that the answer reports.
@@ -143,6 +144,7 @@ class ShapeSolver:
         )
 
     def _states(self, values: Sequence[float], points: int, *, by_depth: bool) -> list[ShapeState]:
+        """Contacts at depths [m] or forces over E* [m^2]."""
         shape = self.scene.indenter
         if isinstance(shape, Flat):
             stiffness, cells, s = self._flat(shape, points)
@@ -155,7 +157,8 @@ class ShapeSolver:
     def _flat(self, shape: Flat, points: int) -> tuple[float, CellContact, float]:
         """k_N/E* [m] of a flat punch, its cells at unit depth in units of E*/s, and s [m].
 
-        The ratio to the circle of the mean radius on the same cells, both corrected to their areas.
+        k_N is that of the circle of the mean radius times the ratio of both on the same cells, corrected for errors of
+        their areas.
         """
         layer, circle = self.scene.layer, shape.mean
         a, (angle, weight) = circle.radius, shape.sector()
@@ -171,6 +174,7 @@ class ShapeSolver:
         return 2.0 * a * punches.growth * loads[0] / loads[1], cells[0], s
 
     def _raised(self, shape: Raised, points: int, value: float, *, by_depth: bool) -> ShapeState:
+        """Contact of a raised shape at a depth [m] or a force over E* [m^2]."""
         pressing = Pressing(self.scene.layer, shape.mean, points, threads=self.threads)
         prescribed: Prescribed = "indentation_depth" if by_depth else "normal_force"
         s, ratio, near = 0.0, 1.0, None
@@ -195,11 +199,12 @@ class ShapeSolver:
         return ShapeState(shaped, s, mean.depth, load, stiffness, square, shape)
 
     def _pair(self, shape: Raised, cell_size: float, mean: PressedState) -> tuple[CellContact, CellContact]:
-        """The shape and its mean on the same cells."""
+        """Contacts of the shape and of its mean profile on the same cells."""
         shaped, round_ = (self._cells(indenter, mean.depth, cell_size, mean.radius) for indenter in (shape, shape.mean))
         return shaped, round_
 
     def _cells(self, indenter: Profile, depth: float, cell_size: float, radius: float) -> CellContact:
+        """Contact of an indenter on cells at a depth [m]; `radius` [m] is a first guess."""
         shape = self.scene.indenter
         assert isinstance(shape, Shape)
         whole, flat = shape.symmetry % 2 == 1, isinstance(shape, Flat)
@@ -210,7 +215,7 @@ class ShapeSolver:
     def _errors(
         self, rows: FloatArray, others: FloatArray, pairs: list[tuple[ShapeState, ShapeState]], *, by_depth: bool
     ) -> dict[str, FloatArray]:
-        """Stated errors of what is not prescribed."""
+        """Relative error estimates, zero of the prescribed quantity."""
         floors = self.points**-1.5 * np.array([COUNTED, SHARED, SHARED, SHARED])
         errors = {
             name: stated_error(row, other, scale=row, floor=floor, sequence=False)

@@ -1,8 +1,8 @@
-"""Indenters that are no bodies of revolution, pressed into cells of any outline.
+"""Indenters that are no bodies of revolution, pressed into square cells.
 
-Cells in contact are those that neither pull nor are penetrated (active set of linear solves). Their staircase changes
-force and stiffness of a shape and of its mean body of revolution alike, so that the *ratio* of both on one grid is more
-accurate than either: it multiplies the answer on discs (`bem.grid.pressed`), which has no staircase.
+The cells in contact follow from an active-set method: no tension inside, no penetration outside. The staircase outline
+changes force and stiffness of a shape and of its mean profile alike. So the *ratio* of both on one grid is more
+accurate than either. It multiplies the answer on discs (`bem.grid.pressed`), which has no such error.
 """
 
 from __future__ import annotations
@@ -19,26 +19,26 @@ from bem.grid.operators import GridOperator, grid_operator, pressed
 from contact import ElasticLayer, NotConvergedError, Profile, Shape
 from contact.records.validation import BoolArray, FloatArray
 
-# Half the grid over the radius of the mean contact, and its growth where a contact reaches the border. Twice of the
-# first takes twice as long and changes forces by 3e-10.
+# Half the grid over the radius of the mean contact, and factor on it if a contact reaches the border. Twice the first
+# takes twice as long and changes forces by 3e-10.
 MARGIN: Final = 1.5
 GROWTH: Final = 1.4
-# Largest error of the displacement on the contact over the depth. With a hundred times of it forces are 4e-6 off, with
-# a hundredth they change by 5e-9.
+# Largest error of the displacement on the contact over the depth. At a hundred times of it forces are 4e-6 off, at a
+# hundredth they change by 5e-9.
 TOLERANCE: Final = 1e-7
-# Changes of the active set; ten are usual.
+# Largest number of changes of the active set; ten are usual.
 MOST_SETS: Final = 60
 
 
 @dataclass(frozen=True, eq=False)
 class CellContact:
-    """Cells pressed by an indenter; lengths in cell sizes, pressures in units of E*.
+    """Contact of an indenter on cells of a quadrant or of the whole grid; lengths in cell sizes, pressures in E*.
 
     Attributes:
-        radius: r of the cell centres, of a quadrant or of the whole grid.
-        angle: phi of the cell centres.
-        contact: Cells in contact.
-        pressure: p.
+        radius: r of the cell centres, shape (m, m).
+        angle: phi of the cell centres, shape (m, m).
+        contact: Whether each cell is in contact, shape (m, m).
+        pressure: p on the cells, shape (m, m).
     """
 
     radius: FloatArray
@@ -53,7 +53,7 @@ class CellContact:
 
     @property
     def load(self) -> float:
-        """F/(E* s^2)."""
+        """Force over E* s^2, s the side of a cell."""
         return self.copies * float(self.pressure.sum())
 
     def moment(self, order: int) -> float:
@@ -81,15 +81,15 @@ def pressed_cells(
     threads: int = 1,
     flat: bool = False,
 ) -> CellContact:
-    """Contact at a depth [m], about as large as a circle of this radius [m].
+    """Contact at a depth [m].
 
     Args:
         layer: The layer.
         indenter: A shape, or a body of revolution on the same cells.
         depth: Depth [m].
-        radius: First guess of the contact [m].
-        cell_size: s [m].
-        whole: Whether the shape has no mirror symmetry in x.
+        radius: First guess of the contact radius [m].
+        cell_size: Side s of a cell [m].
+        whole: Whether the whole grid is needed, for shapes without mirror symmetry in x.
         threads: Number of threads of the transforms.
         flat: Whether all cells within the outline are in contact.
     """
@@ -114,7 +114,7 @@ def _operator(layer: ElasticLayer, cell_size: float, cells: int, threads: int, w
 def _active(
     operator: GridOperator, target: FloatArray, contact: BoolArray, *, flat: bool
 ) -> tuple[BoolArray, FloatArray]:
-    """Cells in contact and their pressure, for the displacement that contact would prescribe."""
+    """Cells in contact and their pressure, for the displacement `target` in contact, from a first guess `contact`."""
     p: FloatArray | None = None
     scale = float(target.max())
     for _ in range(MOST_SETS):

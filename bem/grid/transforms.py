@@ -1,9 +1,9 @@
-"""Cosine filters on quadrants of mirror-symmetric square grids, by FFTW: the only file that knows the library.
+"""Cosine filters on quadrants of mirror-symmetric square grids, by FFTW, which only this file uses.
 
-The quadrant x > 0, y > 0 of a grid of 2 m x 2 m cells, its first cell's centre half a cell from both axes, holds all
-of an even field. Extended by zeros to a lattice of `period` cells in both directions, its modes have the wavenumbers
-2 pi j/(period s), s the cell size. The forward transform is the DCT-II, the inverse the DCT-III; together they carry
-the factor period^2. Transforms of rows that are zero by padding are left out.
+An even field on a grid of 2 m x 2 m cells is given by its quadrant x > 0, y > 0, whose first cell centre is half a cell
+from both axes. Extended by zeros to a lattice of `period` cells in both directions, its modes have the wavenumbers
+2 pi j/(period s), s the cell size. The forward transform is the DCT-II, the inverse the DCT-III. Their product is
+period^2 times the identity. Transforms of rows that are zero by padding are omitted.
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ from scipy.fft import irfft2, rfft2
 from bem.compiled_files import compiled
 from contact.records.validation import FloatArray
 
-# Unused numbers after each row, one cache line: without them all rows of a power of two numbers begin at the same place
-# of the cache, and column transforms take 1.5 to 3.3 times as long; 4 or 16 numbers do as well.
+# Unused numbers after each row, one cache line. Without them rows of length 2^n begin at the same address of the cache,
+# and column transforms take 1.5 to 3.3 times as long. 4 or 16 are as good.
 BESIDE_ROWS: Final = 8
 
 
@@ -44,7 +44,7 @@ class CosineFilter:
         self._rows_back = cosine_plan(occupied, 3, (1,), threads)
 
     def __call__(self, field: FloatArray, symbol: FloatArray) -> FloatArray:
-        """The filtered field, shape (cells, cells); the symbol has a value per mode."""
+        """The filtered field, shape (cells, cells); `symbol` is the factor of each mode."""
         n, plane = self.cells, self._plane
         plane[:n, :n], plane[:n, n:] = field, 0.0
         self._rows.execute()
@@ -77,7 +77,7 @@ class FourierFilter:
         self.modes = self._offset[:, None], np.arange(period // 2 + 1)[None, :]
 
     def __call__(self, field: FloatArray, symbol: FloatArray) -> FloatArray:
-        """The filtered field, shape (cells, cells); the symbol has a value per mode."""
+        """The filtered field, shape (cells, cells); `symbol` is the factor of each mode."""
         whole = (self.period, self.period)
         spectrum = rfft2(field, whole, workers=self._threads) * symbol
         return np.asarray(irfft2(spectrum, whole, workers=self._threads)[: self.cells, : self.cells])
@@ -88,19 +88,19 @@ class FourierFilter:
 
 
 def cosine_filter(cells: int, period: int, threads: int = 1) -> CosineFilter:
-    """A `CosineFilter`; its plans are made once per thread, since it has a plane to work in."""
-    return _kept(cells, period, threads, get_ident())
+    """A cached `CosineFilter`, one per thread, since it has a work array."""
+    return _cached(cells, period, threads, get_ident())
 
 
 @lru_cache(maxsize=16)
-def _kept(cells: int, period: int, threads: int, _: int) -> CosineFilter:
+def _cached(cells: int, period: int, threads: int, thread: int) -> CosineFilter:
     return CosineFilter(cells, period, threads)
 
 
 def cosine_plan(field: FloatArray, kind: Literal[1, 2, 3], axes: tuple[int, ...], threads: int = 1) -> Any:
-    """FFTW's plan of DCT-I, DCT-II or DCT-III along some axes, in place and without a factor.
+    """FFTW's plan of DCT-I, DCT-II or DCT-III along some axes, in place and without normalisation.
 
-    FFTW_ESTIMATE measures no time, so that results repeat bit by bit.
+    FFTW_ESTIMATE selects the plan without measuring time, so that results repeat exactly.
     """
     kinds = ({1: "FFTW_REDFT00", 2: "FFTW_REDFT10", 3: "FFTW_REDFT01"}[kind],) * len(axes)
     return _fftw().FFTW(field, field, axes=axes, direction=kinds, flags=("FFTW_ESTIMATE",), threads=threads)

@@ -1,5 +1,5 @@
-"""Surface compliance of layers in Fourier space, Eqs. (27)-(31), and of stacks of layers.
+"""Surface compliance of layers, stacks and graded layers in Fourier space, Eqs. (27)-(31).
 
-Enters: a layer, and wavenumbers times the thickness of what touches the indenter. Leaves: chi, 1 - chi and the mean
-mode, to a few roundings. Read `protocol` first, then `layer`, `stack` and `of_layer`.
+Input: a layer, and wavenumbers times the thickness of the surface material. Output: chi and 1 - chi, accurate to
+rounding. Read `stack` first, then `graded` and `of_layer`.
 """

@@ -1,8 +1,8 @@
-"""A layer whose constants change with depth: Riccati's equation of its reflection, upwards and downwards.
+"""Layers whose constants change with depth: Riccati's equation of the reflection, integrated upwards and downwards.
 
-At every depth the field splits into waves of the local half-space that fade downwards, with tractions d, and waves that
-fade upwards, with tractions g = R d: t = d + g and 2 G k (U, W) = C_0 d - C_0~ g. C_0 is the half-space's compliance,
-C_0~ the same with the other sign off the diagonal; C_0 + C_0~ = 4 beta, beta = 1 - nu. So
+At every depth the field is the sum of waves of the local half-space that decay downwards, with tractions d, and waves
+that decay upwards, with tractions g = R d: t = d + g and 2 G k (U, W) = C_0 d - C_0~ g. C_0 is the compliance of the
+half-space, C_0~ has the other sign off the diagonal. C_0 + C_0~ = 4 beta, beta = 1 - nu. So
 
     C = C_0 - 4 beta S,   S = R (1 + R)^-1,   1 - chi = 2 S_WW at the surface.
 
@@ -11,10 +11,10 @@ F = [[f, h], [h, f]],
 
     R' = k (L R + R L^T) + (1 + R) F (1 + R) + (gamma + nu'/beta) (R + R^2)
 
-which is linear where nothing changes, bounded for every base (a frictionless one has R_UU = -1), and integrated
-upwards, where errors fade like exp(-2kz). R, and with it 1 - chi ~ c_1/k, keeps its relative accuracy for large k.
-Downwards d' = -k L^T d + (gamma (C_0 - C_0~ R) - 2 nu' J (1 + R)) d/(4 beta) + (nu'/beta) d, J = ones. Lengths count in
-thicknesses.
+which is linear where the material is uniform, bounded for every base (a frictionless one has R_UU = -1), and integrated
+upwards, where errors decay like exp(-2kz). R and 1 - chi ~ c_1/k are accurate relative to their size for large k.
+Downwards d' = -k L^T d + (gamma (C_0 - C_0~ R) - 2 nu' J (1 + R)) d/(4 beta) + (nu'/beta) d, J = ones. Lengths are over
+the thickness.
 """
 
 from __future__ import annotations
@@ -37,14 +37,14 @@ from contact.scene.layer import ElasticBase
 
 # Depth times |k| below which the layer has no influence: exp(-2 DEEP cos(15 degrees)) is 1e-17, with half of it 1e-9.
 DEEP = 21.0
-# Depth times k down to which the inside is integrated: exp(-43) is negligible, exp(-21) is not. With `DEEP` it is a
-# power of two, so that in an octave all waves reach the base or none does.
+# Depth times k down to which fields inside are integrated: exp(-43) is negligible, at half of it exp(-21) is not.
+# `_FADED` + `DEEP` is a power of two, so that in an octave all waves reach the base or none does.
 _FADED = 43.0
 # Relative and absolute tolerance of the integration; ten times as much costs a digit and saves a tenth of the time.
 TOLERANCE, ABSOLUTE = 1e-13, 1e-15
 # Chebyshev nodes over the depth between two breakpoints: exp(-61 z) is resolved by 64 to 1e-14, by 32 to 1e-5.
 _NODES = 64
-# Wave number from which the tail's coefficients are fitted. Half has ten times the error, twice more rounding.
+# Least wave number of the fit of c_2, c_3, ..: half has ten times the error, twice has larger rounding errors.
 _FAR = 80.0
 _SHARES = (1 - np.cos(np.pi * np.arange(1, 2 * _NODES, 2) / (2 * _NODES))) / 2
 _WEIGHTS = barycentric(_SHARES)
@@ -108,15 +108,15 @@ class GradedKernel:
         return np.asarray(1 - self.one_minus_chi(k))
 
     def one_minus_chi(self, k: NDArray[Any]) -> NDArray[Any]:
-        """1 - chi, with its relative accuracy for large k too."""
+        """1 - chi at wave numbers k, any shape, accurate relative to its size also for large k."""
         R = self.reflection(np.ravel(k), DEEP)[0](0.0)
         return np.asarray(2 * _unreflected(R)[1]).reshape(np.shape(k))
 
     def reflection(self, k: NDArray[Any], deep: float) -> list[_Followed]:
-        """R from the base, or from where k z = `deep`, upwards, shape (3, k.size) at each depth.
+        """R_UU, R_UW, R_WW, shape (3, k.size), integrated upwards from the base, or from k z = `deep`.
 
         Returns:
-            For each stretch between breakpoints, the top first, R as a function of the share of the depth.
+            For each stretch between breakpoints, the top first, R as a function of s, 0 at its top and 1 at its bottom.
         """
         start = np.minimum(1.0, deep / np.abs(k))
         R = np.where(start < 1.0, 0.0, self._at_base(k))
@@ -166,17 +166,17 @@ class GradedKernel:
         )
 
     def descent(self, k: FloatArray) -> GradedDescent:
-        """The inside at wave numbers k, shape (n,)."""
+        """Transfer functions to the inside at wave numbers k, shape (n,)."""
         return GradedDescent(self, k)
 
     @cached_property
     def transfers(self) -> Octaves:
-        """U, W, Q, P times exp(kz) at nodes of the depth, over octaves of k: shape (n, fields x stretches x nodes)."""
+        """Interpolation over octaves of k of U, W, Q, P times exp(kz), shape (n, fields x stretches x nodes of z)."""
         lowest = -2 - int(np.ceil(np.log2(self.longest)))
-        return Octaves(lambda k, _: self._followed(k), lowest, WAVES)
+        return Octaves(lambda k, _: self._transferred(k), lowest, WAVES)
 
-    def _followed(self, k: FloatArray) -> FloatArray:
-        """`transfers` at some wave numbers; zero on stretches below the reach of the waves."""
+    def _transferred(self, k: FloatArray) -> FloatArray:
+        """Values of `transfers` at wave numbers k, shape (n,); zero on stretches that the waves do not reach."""
         reflected = self.reflection(k, _FADED + DEEP)
         stretches = self.stretches(np.minimum(1.0, (_FADED + DEEP) / k))
         transfers = np.zeros((k.size, 4, len(self.layer.breakpoints) + 1, _NODES))
@@ -199,7 +199,7 @@ class GradedKernel:
 
 
 class GradedDescent:
-    """The inside of a graded layer under a unit pressure of wave numbers k > 0, shape (n,), on the surface."""
+    """Transfer functions from a unit pressure of wave numbers k > 0, shape (n,), on the surface into a graded layer."""
 
     def __init__(self, kernel: GradedKernel, k: FloatArray) -> None:
         self.kernel, self.k = kernel, k
@@ -209,7 +209,7 @@ class GradedDescent:
             self._rows[index] = kernel.transfers(k[index], octave).reshape(-1, *self._rows.shape[1:])
 
     def places(self, z: FloatArray) -> NDArray[np.intp]:
-        """Index of the layer at depths z: zero."""
+        """Number of the part of the layer at depths z, as in `StackDescent`: always zero."""
         return np.zeros(z.shape, dtype=np.intp)
 
     def material(self, place: int, z: FloatArray) -> Material:
@@ -255,7 +255,7 @@ def _integrated(rate: _Rate, start: NDArray[Any], begin: FloatArray, end: FloatA
     Raises:
         NotConvergedError: If the tolerance is not met.
     """
-    # Only graded layers pay for this import.
+    # The import is slow, and only graded layers need it.
     from scipy.integrate import solve_ivp  # noqa: PLC0415
 
     def slope(share: float, y: NDArray[Any]) -> NDArray[Any]:
@@ -266,4 +266,4 @@ def _integrated(rate: _Rate, start: NDArray[Any], begin: FloatArray, end: FloatA
     values = solution.sol
     if not solution.success or values is None:
         raise NotConvergedError(f"the graded layer was not integrated over its depth: {solution.message}")
-    return lambda way: np.asarray(values(way).reshape(start.shape))
+    return lambda s: np.asarray(values(s).reshape(start.shape))

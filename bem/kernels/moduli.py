@@ -1,4 +1,4 @@
-"""Moduli of a layer, as boundary elements and MDR derive them from what the user gave."""
+"""Contact modulus of a layer and relaxation function of a scene, for boundary elements and MDR."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ def contact_modulus(layer: ElasticLayer) -> float:
 
 
 def relaxation_of(scene: Scene) -> Relaxation:
-    """The scene's shear relaxation, constant for an elastic layer.
+    """Shear relaxation function of the scene, constant for an elastic layer.
 
-    Branches stand in the order of their relaxation times and each time stands once, so the order in which a user lists
-    them makes no difference.
+    Branches are sorted by relaxation time, and branches of equal times are added, so the order of the input has no
+    influence.
     """
     model = scene.effect(Viscoelasticity)
     if model is None:

@@ -1,7 +1,7 @@
-"""Kernels of all kinds of layers: of the surface, in units of its thickness, and 1 - chi for the equation of contact.
+"""Kernels of all kinds of layers: chi in units of the thickness, and 1 - chi in the units of the integral equation.
 
-Uniform layers and stacks: the unit is the thickness of the surface material; 1 - chi falls like exp(-2k), so it is
-rounding beyond k = 21. Graded layers: the unit is an eighth of the thickness; 1 - chi ~ c_1/k + c_2/k^2 + ..
+For uniform layers and stacks the unit of length is the thickness of the surface material. 1 - chi falls like exp(-2k)
+and is below rounding beyond k = 21. For graded layers it is an eighth of the thickness; 1 - chi ~ c_1/k + c_2/k^2 + ..
 """
 
 from __future__ import annotations
@@ -28,18 +28,18 @@ if TYPE_CHECKING:
     SurfaceKernel: TypeAlias = StackKernel | GradedKernel
 
 _R = TypeVar("_R", bound=Record)
-# A kernel that was made for a layer serves the same layer in other units, whose numbers are a rounding or two off: so
-# many decimal digits are kept. What the others would change is a twentieth of the kernel's own tolerance.
+# Decimal digits of the parameters of graded kernels, so that layers in different units, which differ by rounding, share
+# one kernel. Further digits change it by a twentieth of its tolerance.
 _DIGITS = 13
-# Units per thickness of a graded layer. With 4 wide contacts need more wave numbers, with 16 narrow ones do.
+# Units of length per thickness of a graded layer. With 4 wide contacts need more wave numbers, with 16 narrow ones.
 _GRADED_UNITS = 8.0
 
 
 def surface_kernel(layer: ElasticLayer) -> SurfaceKernel:
-    """The kernel of a layer.
+    """The kernel of a layer in units of the thickness of its surface material.
 
     Raises:
-        UnsupportedSceneError: If none is known of this kind of layer.
+        UnsupportedSceneError: If this kind of layer has no kernel.
     """
     if layer.is_half_space:
         return StackKernel((), Sheet(inf, 1.0, layer.surface.poissons_ratio, slips_below=False))
@@ -48,7 +48,7 @@ def surface_kernel(layer: ElasticLayer) -> SurfaceKernel:
     if isinstance(layer, LayerStack):
         return _of_stack(layer)
     if isinstance(layer, GradedLayer):
-        # Only graded layers pay for it.
+        # The import is slow, and only graded layers need it.
         from bem.kernels.graded import GradedKernel  # noqa: PLC0415
 
         return _shared(GradedKernel(_without_roundings(layer.in_own_units())))
@@ -83,12 +83,13 @@ def _shared(kernel: GradedKernel) -> GradedKernel:
 
 
 def _without_roundings(record: _R) -> _R:
-    """A record with its numbers, and those of records in it, to `_DIGITS`."""
+    """The record with all numbers, also in nested records, rounded to `_DIGITS` decimal digits."""
     names = [field.name for field in dataclasses.fields(record)]
     return record.replace(**{name: _to_digits(getattr(record, name)) for name in names})
 
 
 def _to_digits(value: object) -> object:
+    """The value with its numbers rounded to `_DIGITS` decimal digits."""
     if isinstance(value, float):
         return float(f"{value:.{_DIGITS}g}")
     if isinstance(value, np.ndarray):
@@ -97,10 +98,10 @@ def _to_digits(value: object) -> object:
 
 
 def stack_kernel(layer: ElasticLayer) -> StackKernel:
-    """The kernel of both tractions.
+    """The kernel of a uniform layer or stack, for normal and shear tractions.
 
     Raises:
-        UnsupportedSceneError: If the layer is neither of one material nor of several on top of each other.
+        UnsupportedSceneError: If the layer is neither uniform nor a stack.
     """
     kernel = surface_kernel(layer)
     if isinstance(kernel, StackKernel):
@@ -127,7 +128,7 @@ class ContactKernel:
 
     @property
     def is_single(self) -> bool:
-        """Whether it is a half-space or one layer on a rigid base: contacts of convex profiles never pull there."""
+        """Whether it is a half-space or one layer on a rigid base, where convex profiles need no tension."""
         surface = self.surface
         return surface is None or (isinstance(surface, StackKernel) and len(surface.sheets) == 1 and not surface.base)
 
@@ -138,12 +139,12 @@ class ContactKernel:
 
     @property
     def units(self) -> float:
-        """Units per thickness of the surface material."""
+        """Thickness of the surface material in units of this kernel."""
         return _GRADED_UNITS if self.is_graded else 1.0
 
     @property
     def longest(self) -> float:
-        """Length beyond which chi has its limit for small k."""
+        """Length L in units of this kernel: for k < 1/L chi has its limit for small k."""
         return 1.0 if self.surface is None else self.units * self.surface.longest
 
     @cached_property
@@ -165,6 +166,7 @@ class ContactKernel:
         return np.asarray(self.surface.one_minus_chi(k))
 
     def _tabulated(self, k: FloatArray) -> FloatArray:
+        """chi of a graded layer at k times thickness, interpolated, shape (n,)."""
         chi = np.empty_like(k)
         for octave, index in self._table.groups(k):
             chi[index] = k[index] ** self._power * self._table(k[index], octave)[:, 0]
@@ -172,19 +174,19 @@ class ContactKernel:
 
     @property
     def _power(self) -> int:
-        """The power of k by which chi vanishes with k: none on an elastic base."""
+        """Exponent of chi ~ k^n for small k: 0 on an elastic base, 1 on a rigid one."""
         return 0 if self.surface.layer.has_elastic_base else 1  # type: ignore[union-attr]
 
     @cached_property
     def _table(self) -> Octaves:
-        """chi/k, or chi where it does not vanish with k, over octaves of k times thickness."""
+        """Interpolation of chi/k^n, n = `_power`, over octaves of k times thickness."""
         surface = self.surface
         assert surface is not None
         lowest = -2 - int(np.ceil(np.log2(surface.longest)))
         return Octaves(lambda k, _: (surface.chi(k) / k**self._power)[:, None], lowest, WAVES)
 
     def __getstate__(self) -> dict[str, Any]:
-        """Without tables, which are made again where they are needed."""
+        """State without tables, which are computed again when needed."""
         return {"surface": self.surface}
 
 
@@ -194,18 +196,18 @@ def _kernel(surface: SurfaceKernel) -> ContactKernel:
 
 
 def contact_kernel(layer: ElasticLayer) -> ContactKernel:
-    """The kernel of a layer; equal layers share one, with its tables.
+    """The kernel of a layer for the integral equation; equal layers share one kernel and its tables.
 
     Raises:
-        UnsupportedSceneError: If none is known of this kind of layer.
+        UnsupportedSceneError: If this kind of layer has no kernel.
     """
     if layer.is_half_space:
         return ContactKernel(None)
-    # Poisson's ratio has no influence on one layer without bond.
+    # Poisson's ratio has no influence on chi of an unbonded layer.
     slides = layer.is_uniform and layer.support == "unbonded"
     return _kernel(StackKernel.single("unbonded", 0.0) if slides else surface_kernel(layer))
 
 
 def unit_of(layer: ElasticLayer) -> float:
-    """Length [m] in which the kernel of a layer counts; 1 m on the half-space."""
+    """Unit of length [m] of the kernel of a layer; 1 m on the half-space."""
     return 1.0 if layer.is_half_space else layer.surface.thickness / contact_kernel(layer).units

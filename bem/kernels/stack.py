@@ -1,15 +1,15 @@
-"""Layers on top of each other in wave number space: one recursion upwards for the surface, downwards for the inside.
+"""Stacks of layers in wave number space: a recursion upwards for the surface, and one downwards for the inside.
 
-With u_r = int U J1(kr) k dk, u_z = int W J0 k dk, sigma_rz = -int Q J1 k dk and sigma_zz = -int P J0 k dk all
-that lies below a plane is a compliance C: 2 G k (U, W) = C (Q, P), symmetric and positive. One layer with q = k h,
+With u_r = int U J1(kr) k dk, u_z = int W J0 k dk, sigma_rz = -int Q J1 k dk and sigma_zz = -int P J0 k dk, the material
+below a plane has a symmetric positive compliance C: 2 G k (U, W) = C (Q, P). One layer with q = k h obeys
 
     v_top = N t_top + A v_bottom,    t_bottom = A^T t_top - K v_bottom,        v = 2 G k (U, W), t = (Q, P)
 
-adds itself to what lies below by C_top = N + A M A^T, M = (C^-1 + K)^-1 (Redheffer's star product, as for waves in
-stratified media). Downwards b = A^T t_top, v_bottom = M b, t_bottom = b - K v_bottom. All are sums of positive terms
-that fade: nothing grows, nothing cancels. The surface answers with chi = C_WW/(2 (1 - nu)), of which Eqs. (29) and (31)
-are the cases of one layer. Matrices have the shape (2, 2, n), rows and columns in the order U, W. Kernels
-of all kinds of layers have `longest`, `tail`, `chi`, `one_minus_chi` and `descent`.
+On top of the compliance C it gives C_top = N + A M A^T, M = (C^-1 + K)^-1 (Redheffer's star product, as for waves in
+stratified media). Downwards b = A^T t_top, v_bottom = M b, t_bottom = b - K v_bottom. All are sums of positive decaying
+terms, so nothing overflows or cancels. For the surface chi = C_WW/(2 (1 - nu)), of which Eqs. (29) and (31) are the
+cases of one layer. Matrices have the shape (2, 2, n), rows and columns in the order U, W. Kernels of all kinds of
+layers have `longest`, `tail`, `chi`, `one_minus_chi` and `descent`.
 """
 
 from __future__ import annotations
@@ -25,17 +25,17 @@ from numpy.typing import NDArray
 from contact.records.validation import FloatArray
 
 Matrix: TypeAlias = NDArray[Any]
-# q up to which differences of hyperbolic functions are summed as series; with half of it they lose two digits, with
-# twice of it the series does.
+# q up to which differences of hyperbolic functions are computed by series; with half of it they lose two digits by
+# cancellation, with twice of it by truncation.
 _SERIES = 1.5
-# Their terms: 17 leave 1e-20 at `_SERIES`, half as many 1e-7.
+# Coefficients of these series: the error at `_SERIES` is 1e-20 with 17, 1e-7 with half as many.
 _ODD, _EVEN = ([1 / factorial(2 * k + first) for k in range(17)] for first in (3, 4))
-# Roundings of a depth within which it lies at an interface: one for each of some thicknesses, and two of the unit.
+# Relative distance within which a depth is at an interface: rounding errors of a sum of thicknesses, and of the unit.
 _ROUNDINGS = 32.0 * float(np.finfo(float).eps)
 
 
 class Transfer(NamedTuple):
-    """At one depth under a unit pressure of the surface: U and W times 2 G k of the material there, Q and P."""
+    """U and W times 2 G k, G at that depth, and Q and P, at m depths under a unit pressure on the surface, (m, n)."""
 
     radial: NDArray[Any]
     axial: NDArray[Any]
@@ -44,7 +44,7 @@ class Transfer(NamedTuple):
 
 
 class Material(NamedTuple):
-    """At some depths of one layer: G over the surface's, nu, d ln G/dz, d nu/dz, and whether it is the top one."""
+    """Material at depths of one layer: G over that of the surface, nu, d ln G/dz, d nu/dz, and whether it is on top."""
 
     shear_modulus: FloatArray | float
     poissons_ratio: FloatArray | float
@@ -54,19 +54,19 @@ class Material(NamedTuple):
 
 
 def symmetric(uu: Any, uw: Any, ww: Any) -> Matrix:
-    """A symmetric matrix by its entries."""
+    """Symmetric 2 x 2 matrix of its entries, shape (2, 2, ..)."""
     return np.array([[uu, uw], [uw, ww]])
 
 
 def half_space(nu: float, k: NDArray[Any]) -> Matrix:
-    """C of a half-space."""
+    """C of a half-space, shape (2, 2, n); the same for all k."""
     return np.asarray(np.multiply.outer(symmetric(2 * (1 - nu), 2 * nu - 1, 2 * (1 - nu)), np.ones_like(k)))
 
 
 def half_space_at(
     q: FloatArray, nu: float, shear: FloatArray | float = 0.0, normal: FloatArray | float = 1.0
 ) -> Transfer:
-    """The inside of a half-space under tractions of its surface, at q = k z."""
+    """Transfer functions in a half-space at q = k z under tractions `shear` (Q) and `normal` (P) of its surface."""
     Q = ((1 - q) * shear + q * normal) * np.exp(-q)
     P = ((1 + q) * normal - q * shear) * np.exp(-q)
     c, s = 2 * (1 - nu), 2 * nu - 1
@@ -74,14 +74,14 @@ def half_space_at(
 
 
 class Step(NamedTuple):
-    """One layer.
+    """Matrices of one layer for the recursion, each of shape (2, 2, n).
 
     Attributes:
-        glued: N, its compliance on a rigid base.
-        beyond: N less the compliance of the half-space, which falls exponentially.
-        free: K, the stiffness of its lower face under a free top.
-        free_determinant: det K.
-        through: A by row at the top and column at the bottom.
+        glued: N, compliance of the upper face if the lower one is bonded to a rigid base.
+        beyond: N minus the compliance of the half-space, which decreases exponentially with q.
+        free: K, stiffness of the lower face if the upper one is free of tractions.
+        free_determinant: det K, shape (n,).
+        through: A, rows at the upper, columns at the lower face.
     """
 
     glued: Matrix
@@ -92,7 +92,7 @@ class Step(NamedTuple):
 
     @classmethod
     def of(cls, q: NDArray[Any], nu: float) -> Step:
-        """The layer of nu at q = k h; numerators and denominators times exp(-2q), in A times exp(-q)."""
+        """Matrices of a layer at q = k h; numerators and denominators are multiplied by exp(-2q), in A by exp(-q)."""
         kap, eta, beta = 3 - 4 * nu, 1 - 2 * nu, 1 - nu
         root = np.exp(-q)
         e, qe = root**2, q * root
@@ -113,7 +113,7 @@ class Step(NamedTuple):
         return cls(glued / d, beyond / d, free / d, excess_of_squares / d, through)
 
     def joined(self, below: Matrix, *, slips: bool) -> Matrix:
-        """M = (C^-1 + K)^-1, compliance of the lower face; across a frictionless interface passes pressure only."""
+        """M = (C^-1 + K)^-1, compliance of the interface; with `slips` it transmits pressure only."""
         (uu, uw), (_, ww), K = *below, self.free
         adjoint = symmetric(K[1, 1], -K[0, 1], K[0, 0])
         if slips:
@@ -124,19 +124,19 @@ class Step(NamedTuple):
         return np.asarray((below + det * adjoint) / (1 + (K * below).sum(axis=(0, 1)) + self.free_determinant * det))
 
     def on_top(self, compliance: Matrix, below: Matrix, *, slips: bool) -> Matrix:
-        """C of the upper face: N, or what is asked of it instead, and A M A^T of the layers below."""
+        """C of the upper face: `compliance`, which is N or N minus that of the half-space, plus A M A^T."""
         M = self.joined(below, slips=slips)
         return np.asarray(compliance + np.einsum("ij...,jk...,lk...->il...", self.through, M, self.through))
 
     def down(self, below: Matrix, shear: FloatArray, normal: FloatArray, *, slips: bool) -> Transfer:
-        """The lower face under tractions of the upper one."""
+        """Transfer functions at the lower face from tractions Q and P of the upper face."""
         b = self.through[0] * shear + self.through[1] * normal
         v = np.einsum("ij...,j...->i...", self.joined(below, slips=slips), b)
         return Transfer(*v, *(b - np.einsum("ij...,j...->i...", self.free, v)))
 
 
 def _differences(q: NDArray[Any], e: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
-    """(sinh 2q - 2q)/2 and sinh^2 q - q^2, times e = exp(-2q): series of positive terms where they cancel."""
+    """(sinh 2q - 2q)/2 and sinh^2 q - q^2, both times e = exp(-2q), by series where they would cancel."""
     small = np.abs(q) < _SERIES
     t = np.where(small, 2 * q, 0)
     odd, even = (polyval(t * t, np.array(series)) for series in (_ODD, _EVEN))
@@ -155,7 +155,7 @@ class Sheet:
         thickness: h_i over the first layer's.
         shear_modulus: G_i over the first layer's.
         poissons_ratio: nu_i.
-        slips_below: Whether its lower face slides without friction.
+        slips_below: Whether the interface below is frictionless.
     """
 
     thickness: float
@@ -186,7 +186,7 @@ class StackKernel:
 
     @property
     def is_half_space(self) -> bool:
-        """Whether there is nothing but the base."""
+        """Whether there are no layers on the base."""
         return not self.sheets
 
     @property
@@ -196,7 +196,7 @@ class StackKernel:
 
     @property
     def longest(self) -> float:
-        """Length over h beyond which chi has its limit for small k: the total thickness; of stiff films (E1/E2) h."""
+        """Length L over h: for k < 1/L chi has its limit for small k. Total thickness times ratio of extreme moduli."""
         stiffness = [sheet.shear_modulus for sheet in (*self.sheets, *([self.base] if self.base else []))]
         total = sum(sheet.thickness for sheet in self.sheets)
         return total * max(stiffness) / min(stiffness) if self.sheets else 1.0
@@ -210,12 +210,12 @@ class StackKernel:
         return np.asarray(-self._surface(k, "beyond")[1, 1] / (2 * (1 - self.poissons_ratio)))
 
     def beyond_half_space(self, k: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any]]:
-        """C less that of the half-space of the surface material: its entries UU, UW, WW."""
+        """Entries UU, UW, WW of C minus that of the half-space of the surface material, each of the shape of k."""
         (uu, uw), (_, ww) = self._surface(k, "beyond")
         return uu, uw, ww
 
     def _surface(self, k: NDArray[Any], part: Literal["glued", "beyond"]) -> Matrix:
-        """C of the surface, or with "beyond" C less that of the half-space."""
+        """C of the surface, or with "beyond" C minus that of the half-space."""
         if not self.sheets:
             C = half_space(self.poissons_ratio, k)
             return C if part == "glued" else 0 * C
@@ -224,7 +224,7 @@ class StackKernel:
         return step.on_top(getattr(step, part), self.below(k)[0], slips=top.slips_below)
 
     def below(self, k: NDArray[Any]) -> list[Matrix]:
-        """C of all that lies below each layer, in units of that layer."""
+        """C of the material below each layer, from the top, made dimensionless with the modulus of that layer."""
         C = half_space(self.base.poissons_ratio, k) if self.base else np.zeros((2, 2, *np.shape(k)))
         unit, compliances = self.base.shear_modulus if self.base else 1.0, []
         for sheet in reversed(self.sheets):
@@ -237,14 +237,14 @@ class StackKernel:
         return compliances[::-1]
 
     def descent(self, k: FloatArray) -> StackDescent:
-        """The inside at wave numbers k, shape (n,)."""
+        """Transfer functions to the inside at wave numbers k, shape (n,)."""
         return StackDescent(self, k)
 
 
 class StackDescent:
-    """The inside of a stack under a unit pressure of wave numbers k > 0, shape (n,), on the surface.
+    """Transfer functions from a unit pressure of wave numbers k > 0, shape (n,), on the surface into a stack.
 
-    Depths count in thicknesses of the first layer. `places` numbers the parts: depths of one part are asked together.
+    Depths are over the thickness of the first layer. Depths with the same number `places` are evaluated together.
     """
 
     def __init__(self, kernel: StackKernel, k: FloatArray) -> None:
@@ -258,9 +258,9 @@ class StackDescent:
             self._loads.append(step.down(below, *self._loads[-1], slips=sheet.slips_below)[2:])
 
     def places(self, z: FloatArray) -> NDArray[np.intp]:
-        """Twice the number of the layer that holds each depth, and one more on its lower face.
+        """Twice the index of the layer that contains each depth, plus one on the lower face of that layer.
 
-        A depth that differs from a sum of thicknesses by roundings lies at the interface, which is the upper layer's.
+        Depths within rounding of an interface are at the interface, which belongs to the upper layer.
         """
         layer = np.searchsorted(self._faces * (1 + _ROUNDINGS), z)
         if self.kernel.base is None:
@@ -268,13 +268,13 @@ class StackDescent:
         return 2 * layer + (z >= np.append(self._faces, inf)[layer] * (1 - _ROUNDINGS))
 
     def material(self, place: int, z: FloatArray) -> Material:
-        """Material at depths z of one place."""
+        """Material at depths z with the number `place`."""
         sheet = (*self.kernel.sheets, self.kernel.base)[place // 2]
         assert sheet is not None
         return Material(sheet.shear_modulus, sheet.poissons_ratio, 0.0, 0.0, place < 2)
 
     def at(self, place: int, z: FloatArray) -> Transfer:
-        """Transfer functions at depths z of one place, shape (m, 1): arrays of shape (m, n)."""
+        """Transfer functions, arrays of shape (m, n), at depths z of shape (m, 1) with the number `place`."""
         number, on_face = divmod(place, 2)
         depth, load = self.k * (z - self._tops[number]), self._loads[number]
         if number == len(self.kernel.sheets):

@@ -25,19 +25,20 @@ from mdr.curves.force_curve import CurveShape, longest_curve
 from mdr.equilibria import solve_elastic
 from mdr.spring_bed import Springs
 
-# Radii of the table, evenly in the logarithm over three decades. The error of straight lines between them falls with
-# the square of their number, and is stated.
+# Number of radii of the table, equidistant in ln(a) over three decades. The error of linear interpolation falls with
+# the square of their number, and is estimated.
 _RADII: Final = 4001
 _DECADES: Final = 3.0
-# The table reaches this much deeper than the trial depths, for adhesion draws the contact out.
+# Largest depth of the table over the trial depths: adhesion reduces the depth at a given radius.
 _DEEPER: Final = 1.5
-# First guesses of the stretch over the way in contact. Half as many are 30 % apart, and some fits end elsewhere.
+# First guesses of the stretch over the range of depths in contact. With half as many, 30 % apart, some fits end at a
+# wrong minimum.
 _STRETCHES: Final = tuple(10.0 ** (k / 8) for k in range(-20, 11))
-# First guesses of ln E about that of an elastic contact, with a known work. Half as many are a factor of 1.6 apart.
+# First guesses of ln E minus that of an elastic contact, for a known work. Half as many are a factor of 1.6 apart.
 _LOG_MODULI: Final = tuple(k / 4 for k in range(-20, 13))
-# Trial depths of the deepest point beyond pull-off, over the way in contact. Half as many start 15 % off.
+# Trial depths of the deepest point from pull-off, over the range of depths in contact. Half as many start 15 % off.
 _DEPTHS: Final = tuple(0.9 * 1.12**k for k in range(-1, 12))
-# Least depth of a dip over the scatter of its neighbours. At half of it noise makes dips.
+# Least depth of the dip of the force at pull-off over the scatter of the force. Half of it accepts dips of noise.
 _DIP: Final = 6.0
 # Share of the dip from which on points are in contact. The force at pull-off is 5/9 of the dip under a paraboloid.
 # Half of it counts scatter before the jump as contact.
@@ -46,7 +47,7 @@ _ATTACHED: Final = 0.3
 _BEYOND: Final = 0.02
 # Share of the range of forces below which there is no pull-off. Twice passes dips of that size as scatter.
 _NO_PULL_OFF: Final = 1e-5
-# Relative difference of moduli in which two ends of least squares are the same one.
+# Relative difference of moduli below which two results of least squares are the same minimum.
 _SAME: Final = 1e-2
 # Range of adhesive forces [m] in the Tabor parameter: 0.2 to 0.5 nm in the literature.
 _RANGE_OF_FORCES: Final = 3e-10
@@ -78,7 +79,7 @@ class Table(NamedTuple):
 def table_of(scene: Scene) -> Table:
     """The table of an elastic scene up to its largest depth; the last 64 are cached."""
     assert isinstance(scene.loading, IndentationDepths)
-    # The elastic contact at the largest depth is the end of the table, and refuses what is no circle.
+    # The elastic contact at the largest depth ends the table; its solution refuses contacts that are no circle.
     largest = float(solve_elastic(scene, IntegralEquation(), {}).contact_radius[-1])
     springs, flat = Springs.of(scene.layer, scene.indenter), scene.indenter.flat_radius
     radius = flat + (largest - flat) * np.logspace(-_DECADES, 0.0, _RADII)
@@ -89,7 +90,7 @@ def table_of(scene: Scene) -> Table:
 
 
 def fit_adhesive(scene: Scene, data: Data) -> Fitted:
-    """Values of least squares of a curve of withdrawal.
+    """Result of least squares for a curve of withdrawal.
 
     Raises:
         InvalidInput: If the curve shows no contact.
@@ -97,26 +98,28 @@ def fit_adhesive(scene: Scene, data: Data) -> Fitted:
     """
     ends: list[Fitted] = []
     for attached in _hypotheses(data):
-        way = max(float(np.ptp(data.depth[attached])), 1e-3 * float(np.ptp(data.depth)))
-        reach = 4 * way if data.has_free_point else max(4 * way, 2 * data.deepest)
+        span = max(float(np.ptp(data.depth[attached])), 1e-3 * float(np.ptp(data.depth)))
+        reach = 4 * span if data.has_free_point else max(4 * span, 2 * data.deepest)
         curve = longest_curve(scene, _DEEPER * reach)
-        family = _family(scene, data, table_of(curve.scene), way, attached=attached, elastic_error=curve.error)
+        family = _family(scene, data, table_of(curve.scene), span, attached=attached, elastic_error=curve.error)
         trials = {u: np.array([data.deepest]) for u in family.starts}
         if data.has_free_point:
-            depths = {u: family.pull_off(u)[0] + way * np.array(_DEPTHS) for u in family.starts if family.pull_off}
+            depths = {u: family.pull_off(u)[0] + span * np.array(_DEPTHS) for u in family.starts if family.pull_off}
             trials = {u: trial[trial < 0.9 * curve.largest_depth / _DEEPER] for u, trial in depths.items()}
         ends += least_squares(data, family, {u: trial for u, trial in trials.items() if trial.size})
     return _best(data, ends)
 
 
-def _family(scene: Scene, data: Data, table: Table, way: float, *, attached: BoolArray, elastic_error: float) -> Family:
+def _family(
+    scene: Scene, data: Data, table: Table, span: float, *, attached: BoolArray, elastic_error: float
+) -> Family:
     """Curves over sqrt(w/E) with a free work of adhesion, over ln E with a known one.
 
     Args:
         scene: Scene with the known work of adhesion.
         data: The curve.
-        table: The elastic contact.
-        way: Range of depths in contact [m].
+        table: Table of the elastic contact.
+        span: Range of depths in contact [m].
         attached: Points in contact, shape (n,). The force is zero at all others, and constant beyond pull-off.
         elastic_error: Relative error of the force without adhesion.
     """
@@ -135,6 +138,7 @@ def _family(scene: Scene, data: Data, table: Table, way: float, *, attached: Boo
         return lambda depth: np.where(attached, np.interp(np.asarray(depth), *nodes), 0.0)
 
     def error(u: float, depth: FloatArray) -> float:
+        """Relative error of the force: of the elastic contact, and of linear interpolation in the table."""
         fine, coarse = shape(u)(depth), shape(u, Table(*(values[::2] for values in table)))(depth)
         return elastic_error + float(np.abs(coarse - fine).max()) / (3 * float(np.abs(fine).max(initial=1e-300)))
 
@@ -143,18 +147,18 @@ def _family(scene: Scene, data: Data, table: Table, way: float, *, attached: Boo
         return float(depths[0]), float(forces[0])
 
     family = Family(shape, error, attached=attached, pull_off=pull_off)
-    stretch, elastic = (float(np.interp(way, table.depth, values)) for values in (table.stretch, table.force))
+    stretch, elastic = (float(np.interp(span, table.depth, values)) for values in (table.stretch, table.force))
     if not has_free_work:
         starts = [math.log(float(np.ptp(data.force)) / elastic) + step for step in _LOG_MODULI]
         by_u = replace(family, parameter=lambda u, modulus: modulus_at(u), has_free_modulus=False)
         return replace(by_u, varied="youngs_modulus", starts=starts)
-    roots = [0.0, *(way * ratio / stretch for ratio in _STRETCHES)]
+    roots = [0.0, *(span * ratio / stretch for ratio in _STRETCHES)]
     by_root = replace(family, parameter=lambda u, modulus: max(u, 0.0) ** 2 * modulus, unit=roots[len(roots) // 2])
     return replace(by_root, varied="work_of_adhesion", starts=roots)
 
 
 def _hypotheses(data: Data) -> Iterator[BoolArray]:
-    """Which points are in contact: from the jump at pull-off on; and all, where the curve may end before it."""
+    """Yields masks of the points in contact, shape (n,): those from pull-off on, and all if pull-off may be missing."""
     order = np.argsort(data.depth, kind="stable")
     force = data.force[order]
     least = int(np.argmin(force))
@@ -177,7 +181,7 @@ def _hypotheses(data: Data) -> Iterator[BoolArray]:
 
 
 def points_beyond(data: Data, fitted: Fitted) -> int:
-    """Number of points in contact beyond the pull-off of the fit, where the force of pull-off stands above scatter."""
+    """Number of points in contact beyond the pull-off of the fit; zero if the pull-off force is within the scatter."""
     family = fitted.family
     assert family.attached is not None
     assert family.pull_off is not None
@@ -196,10 +200,10 @@ def hides_pull_off(fitted: Fitted) -> bool:
 
 
 def _best(data: Data, ends: Sequence[Fitted]) -> Fitted:
-    """The end of the smallest squares whose branch reaches the points in contact.
+    """The result with the smallest squares, of those whose branch covers the points in contact.
 
     Raises:
-        NotConvergedError: If there is none, or another modulus fits as well.
+        NotConvergedError: If there is none, or a result with another modulus fits equally well.
     """
     possible = sorted(
         (end for end in ends if points_beyond(data, end) <= 1 + _BEYOND * data.depth.size), key=lambda end: end.squares

@@ -19,21 +19,24 @@ from contact import InvalidInput
 from contact.records.validation import FloatArray
 from mdr.curves.families import Family
 
-# Trial depths of indentation, by equal factors. With half as many the search starts 25 % off, with twice 6 %.
+# Number of trial indentations, spaced by equal factors. With half as many the first guess is 25 % off, with twice 6 %.
 _TRIALS: Final = 60
-# Trial contact points reach this many travels back from the largest depth: 0.5 travels before the first depth.
+# Largest trial indentation over the travel (range of depths): the contact point is at most half a travel before the
+# first depth.
 FURTHEST: Final = 1.5
-# Trial points with the curve's own shape, in a factor of 3 about that of a power law. Half as many start 30 % off.
+# Number of trial indentations with the scene's force curve, within a factor of 3 of the power law's. With half as many
+# the first guess is 30 % off.
 _FINER: Final = 15
-# First guesses that go on to least squares. With two some curves of withdrawal end elsewhere; eight improve none.
+# First guesses from which least squares start. With two some curves of withdrawal end at a wrong minimum; eight improve
+# none.
 _STARTS: Final = 4
-# Power laws are tried on averages of the points, at most this many. Half as many blur contacts of few points.
+# Largest number of averages of points to which power laws are fitted. Half as many blur contacts of few points.
 _BINS: Final = 400
-# Standard errors that a contact stands above scatter. The best of 240 trials in noise reaches 4; at 5 one in 1e4 does.
+# Least contact signal in standard errors. In pure noise the best of 240 trials reaches 4, and 5 in one of 1e4 curves.
 _CONTACT: Final = 5.5
-# Share of the travel within which a depth rests. Half of it misses holds that creep, twice calls slow loadings holds.
+# Range of depths over the travel that counts as a hold. Half of it misses holds that creep, twice slow loading.
 _REST: Final = 0.05
-# Standard errors of the correlation of neighbours that white noise does not reach. At 2 one curve in 40 would.
+# Least correlation of neighbours, in standard errors, that is not white noise. Noise reaches 2 in one curve of 40.
 NOT_WHITE: Final = 3.0
 
 
@@ -45,8 +48,8 @@ class Data:
         depth: Depths [m], shape (n,).
         force: Forces [N], shape (n,).
         names: Names of the fitted parameters.
-        columns: Constant and straight line where they are fitted, orthonormal, shape (n, 0 to 2).
-        remaining: Force [N] without its projection on the columns, shape (n,).
+        columns: Orthonormal basis of the fitted background, constant and straight line, shape (n, 0 to 2).
+        remaining: Force [N] minus its projection on the columns, shape (n,).
     """
 
     depth: FloatArray
@@ -96,11 +99,11 @@ class Data:
 
 
 class Fitted(NamedTuple):
-    """Values of least squares.
+    """Result of least squares.
 
     Attributes:
-        indentation: Depth of indentation at the largest depth [m].
-        u: Number of the family of shapes.
+        indentation: Indentation d_max - d0 at the largest depth [m].
+        u: Fitted u of the family of shapes.
         family: Family of shapes.
         modulus: E [Pa], or 1 where the family has no free modulus.
         residual: Measured less fitted force [N], shape (n,).
@@ -124,7 +127,7 @@ class Fitted(NamedTuple):
 
 
 def rough_indentation(data: Data) -> float:
-    """Rough depth of indentation [m] by powers of the depth.
+    """First guess of the indentation d_max - d0 [m], from fits of F ~ (d - d0)^n, n = 1, 1.5, 2, 3.
 
     Raises:
         InvalidInput: For a curve whose force does not rise above scatter and drift.
@@ -143,12 +146,12 @@ def rough_indentation(data: Data) -> float:
 
 
 def check_contact(data: Data, residual: FloatArray, depth: FloatArray) -> None:
-    """Refuse contacts that decrease the sum of squares by no more than scatter does.
+    """Refuse a contact that decreases the sum of squares by no more than scatter would.
 
     Args:
         data: The curve, or averages of its points.
         residual: Residual of the fit with a contact [N], shape (n,).
-        depth: Measured depths [m] of all points, as they follow one another.
+        depth: Measured depths [m] of all points, in the order of measurement.
 
     Raises:
         InvalidInput: With the remedy.
@@ -167,7 +170,7 @@ def check_contact(data: Data, residual: FloatArray, depth: FloatArray) -> None:
 
 
 def refuse_hold(depth: FloatArray) -> None:
-    """Refuse depths [m] that rest at the largest one, or about one, for most of the time.
+    """Refuse depths [m] that are constant, at the largest depth or elsewhere, for most of the points.
 
     Raises:
         InvalidInput: With the remedy.
@@ -184,7 +187,7 @@ def refuse_hold(depth: FloatArray) -> None:
 
 
 def correlation_factor(residual: FloatArray) -> float:
-    """Factor of the variance of a mean by the correlation of neighbours, 1 + 2 (rho_1 + rho_2 + ..); 1 for white noise.
+    """Variance of a mean over that of white noise, 1 + 2 (rho_1 + rho_2 + ..), rho_k the correlation at lag k.
 
     The sum ends at the first correlation within scatter (initial positive sequence, Geyer 1992).
     """
@@ -215,7 +218,7 @@ def trial_indentations(data: Data, rough: float, reach: float) -> FloatArray:
 
 
 def least_squares(data: Data, family: Family, trials: Mapping[float, FloatArray]) -> list[Fitted]:
-    """Ends of least squares from the best trial contact points of each u, the smallest squares first."""
+    """Results of least squares started from the best trial indentations of each u, the smallest squares first."""
     starts = []
     for u, points in trials.items():
         phi = family.shape(u)(data.depth - data.deepest + points[:, None])
@@ -228,7 +231,7 @@ def least_squares(data: Data, family: Family, trials: Mapping[float, FloatArray]
 
 
 def _polished(data: Data, family: Family, indentation: float, u: float) -> Fitted:
-    """Levenberg and Marquardt over the depth of indentation and u, from first values."""
+    """Result of Levenberg and Marquardt over the indentation [m] and u, started from these values."""
     varies = bool(family.varied)
 
     def at(x: FloatArray) -> Fitted:

@@ -25,11 +25,11 @@ from mdr.curves.force_curve import CurveShape, curve_to, longest_curve, power_sp
 
 UNITS: Final = {"contact_point": "m", "baseline": "N", "tilt": "N/m", "thickness": "m", "work_of_adhesion": "J/m^2"}
 BACKGROUND: Final = ("contact_point", "baseline", "tilt")
-# Values of a named modulus and of a thickness whose curves are solved, over the first guess. A fitted value stays
-# between the outermost ones. With factors of 9 the splines between them err by 1e-2, with 2 the solutions double.
+# Values of a varied modulus and of a thickness whose curves are solved, over the first guess. A fitted value lies
+# between the outermost ones. With factors of 9 the error of the splines is 1e-2, with 2 there are twice the solutions.
 _MODULI: Final = tuple(3.0**k for k in range(-5, 6))
 _THICKNESSES: Final = tuple(10 ** (k / 4) for k in range(-4, 5))
-# Spread of the second family of curves about the first result. Its splines err by less than 1e-7.
+# Values of the second family over the result of the first fit. The error of its splines is below 1e-7.
 _SECOND: Final = tuple(1.1**k for k in range(-3, 4))
 
 
@@ -40,7 +40,7 @@ class Family:
     Attributes:
         shape: Returns phi(.; u), [m^2] with a free modulus E, else the force of the contact [N] with E = 1.
         error: Returns the relative error of the force by the computation at u and at depths [m].
-        varied: Name of the parameter that u stands for, empty where there is none.
+        varied: Name of the fitted parameter of which u is a function, see the table above; empty where there is none.
         parameter: Returns this parameter in SI from u and E.
         has_free_modulus: Whether E is fitted.
         starts: First values of u.
@@ -66,9 +66,10 @@ def fixed_family(shape: CurveShape, error: float = 0.0) -> Family:
 
 
 def elastic_family(scene: Scene, names: Sequence[str], reach: float, center: float | None = None) -> Family:
-    """Curves without adhesion up to a depth [m], of values of the varied parameter about a fitted one or the scene's.
+    """Force curves without adhesion, as functions of the one varied parameter among `names`, if there is one.
 
-    Between the values ln F is a cubic spline of their logarithm.
+    Curves are solved at values about `center`, by default the scene's, and up to the depth `reach` [m]. Between them
+    ln F is a cubic spline over the logarithm of the parameter.
     """
     varied = next((name for name in names if name == "thickness" or "." in name), "")
     if not varied:
@@ -111,7 +112,7 @@ def is_modulus(name: str) -> bool:
 
 
 def check_parameters(scene: Scene, parameters: Sequence[str]) -> None:
-    """Refuse names that the scene does not have, and effects that a fit would leave out.
+    """Refuse parameters that the scene does not have, and effects that a fit does not model.
 
     Raises:
         InvalidInput: With the remedy.
@@ -141,6 +142,7 @@ def check_parameters(scene: Scene, parameters: Sequence[str]) -> None:
 
 
 def _check_moduli(scene: Scene, names: Sequence[str]) -> None:
+    """Refuse names of moduli that the layer of the scene does not have."""
     layer = scene.layer
     several = isinstance(layer, LayerStack | CoatedPair) or layer.has_elastic_base
     known = ["youngs_modulus"] if not several else []
@@ -165,18 +167,19 @@ def changed(scene: Scene, name: str, value: float) -> Scene:
     if name == "base.youngs_modulus":
         return scene.replace(layer=layer.replace(support=layer.support.replace(youngs_modulus=value)))
     sublayers = list(layer.sublayers)
-    sublayers[_place(name)] = sublayers[_place(name)].replace(youngs_modulus=value)
+    sublayers[_sublayer_index(name)] = sublayers[_sublayer_index(name)].replace(youngs_modulus=value)
     return scene.replace(layer=layer.replace(sublayers=sublayers))
 
 
 def _number(scene: Scene, name: str) -> float:
-    """The thickness [m], or the modulus [Pa] of that name in the scene."""
+    """Value of the parameter in the scene: the thickness [m], or the modulus of that name [Pa]."""
     layer: Any = scene.layer
     if name == "thickness":
         return float(layer.thickness)
-    return float((layer.support if name.startswith("base") else layer.sublayers[_place(name)]).youngs_modulus)
+    part = layer.support if name.startswith("base") else layer.sublayers[_sublayer_index(name)]
+    return float(part.youngs_modulus)
 
 
-def _place(name: str) -> int:
+def _sublayer_index(name: str) -> int:
     """Index of the sublayer in a name like layer[0].youngs_modulus."""
     return int(name.partition("[")[2].partition("]")[0])

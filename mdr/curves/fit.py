@@ -33,7 +33,7 @@ from mdr.curves.formulas import formulas_for
 from mdr.curves.result import CurveFit, FormulaFit, MapFit, derivatives, with_intervals
 
 DEFAULT_PARAMETERS: Final = ("youngs_modulus", "contact_point", "baseline", "tilt")
-# Relative step of central differences. Errors grow as its square; at a tenth of it rounding shows.
+# Relative step of central differences, whose error is proportional to its square; a tenth of it amplifies rounding.
 _STEP: Final = 1e-3
 # Least points in contact minus parameters of the contact. With one less the interval of E may be ten times too narrow.
 _SPARE_POINTS: Final = 2
@@ -62,11 +62,11 @@ def fit_curve(
     limit: Limit | None = None,
     formulas: bool = True,
 ) -> CurveFit:
-    """Fit Young's modulus, and what else is asked for, to one curve.
+    """Fit Young's modulus and further parameters to one force curve.
 
     Args:
-        scene: Tip and layer. A modulus that is fitted is a first guess, the others are kept. The loading is not used.
-            With Adhesion among its effects the curve is that of withdrawal.
+        scene: Tip and layer. Its value of a fitted modulus is the first guess. The loading is not used. With Adhesion
+            among its effects the curve is that of withdrawal.
         depth: Measured depths [m] from any zero if the contact point is fitted, shape (n,). A baseline before contact
             of any length may be among them.
         force: Measured forces [N], shape (n,).
@@ -78,8 +78,8 @@ def fit_curve(
 
     Raises:
         InvalidInput: For data that are no curve or show no contact, parameters that the scene does not have, and
-            effects that a fit would leave out.
-        NotConvergedError: If the least squares end in several places, or at no value.
+            effects that a fit does not model.
+        NotConvergedError: If several minima fit equally well, or the best value is at the end of the searched range.
     """
     check_parameters(scene, parameters)
     data = _checked(depth, force, parameters)
@@ -88,7 +88,7 @@ def fit_curve(
         fit = _limited(fit, limit, data)
     if not formulas or scene.effects or "youngs_modulus" not in parameters:
         return fit
-    # A formula that does not suit the curve would take its misfit for tilt: it has the background of this fit.
+    # Formulas are fitted with the tilt of this fit: with a free tilt their misfit would appear as tilt.
     names = [name for name in parameters if name in ("youngs_modulus", *BACKGROUND) and name != "tilt"]
     bare = Data.of(fit.depth, fit.force - fit.background, names)
     return replace(fit, formulas=_by_formulas(scene, bare, fit.youngs_modulus))
@@ -105,7 +105,7 @@ def fit_map(
     positions: FloatArray | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> MapFit:
-    """Fit every curve of a map as `fit_curve` does, as if it were alone.
+    """Fit every curve of a map by itself, as `fit_curve` does.
 
     Args:
         scene: As for `fit_curve`.
@@ -146,6 +146,7 @@ def fit_map(
 def _checked(
     depth: Sequence[float] | FloatArray, force: Sequence[float] | FloatArray, parameters: Sequence[str]
 ) -> Data:
+    """Data of a curve, after checks of shapes, number of points, finite values and depths."""
     d, f = (np.asarray(values, dtype=np.float64) for values in (depth, force))
     if d.ndim != 1 or d.shape != f.shape or d.size <= len(parameters):
         raise InvalidInput(
@@ -166,10 +167,10 @@ def _fitted(scene: Scene, data: Data, confidence: float) -> CurveFit:
 
 
 def _fit_elastic(scene: Scene, data: Data) -> Fitted:
-    """Values of least squares without adhesion; the curve is solved deeper until it reaches the contact point."""
+    """Result of least squares without adhesion, on a force curve that is extended until it covers the indentation."""
     rough = rough_indentation(data)
-    wanted = 2.0 ** math.ceil(math.log2(4 * rough))
-    reach = longest_curve(scene, wanted).largest_depth
+    first_reach = 2.0 ** math.ceil(math.log2(4 * rough))
+    reach = longest_curve(scene, first_reach).largest_depth
     while True:
         best = _search(data, elastic_family(scene, data.names, reach), min(rough, reach), reach)
         if best.family.varied:
@@ -182,12 +183,13 @@ def _fit_elastic(scene: Scene, data: Data) -> Fitted:
                 "no contact point within half a travel before the first depth: the curve is almost straight; measure "
                 "a baseline before contact, or fit without tilt (--with contact_point)"
             )
-        if reach < wanted:
-            curve_to(scene, 2 * reach)  # says in words why the indenter is not that long
+        if reach < first_reach:
+            curve_to(scene, 2 * reach)  # raises the error of an indenter that ends before this depth
         rough, reach = best.indentation, 2.0 ** math.ceil(math.log2(1.5 * best.indentation))
 
 
 def _search(data: Data, family: Family, rough: float, reach: float) -> Fitted:
+    """Best result of least squares, from trial indentations about `rough` [m] and all first values of u."""
     points = trial_indentations(data, rough, reach)
     return least_squares(data, family, dict.fromkeys(family.starts, points))[0]
 
@@ -196,7 +198,7 @@ def _inner_value(fitted: Fitted) -> float:
     """Fitted value of the varied parameter.
 
     Raises:
-        NotConvergedError: If it is at an end of what is tried.
+        NotConvergedError: If it is at an end of the searched range.
     """
     family, u = fitted.family, fitted.u
     value, low, high = family.parameter(u, 1.0), family.starts[0], family.starts[-1]
@@ -210,7 +212,7 @@ def _inner_value(fitted: Fitted) -> float:
 
 
 def _stated(scene: Scene, data: Data, fitted: Fitted, confidence: float) -> CurveFit:
-    """Covariance, intervals, band and warnings of the values of least squares."""
+    """The fit with covariance, intervals, band and warnings, from the result of least squares."""
     family, names = fitted.family, data.names
     point = data.deepest - fitted.indentation
     shifted = data.depth - point
@@ -235,7 +237,7 @@ def _stated(scene: Scene, data: Data, fitted: Fitted, confidence: float) -> Curv
         return np.asarray(modulus * family.shape(u)(d) + baseline + tilt * d)
 
     def parameters(x: FloatArray) -> FloatArray:
-        """The numbers in SI, with the varied parameter in place of u, shape (5,)."""
+        """E, varied parameter, contact point, baseline and tilt in SI units from x, which has u instead, shape (5,)."""
         return np.array([x[0], family.parameter(float(x[1]), float(x[0])), *x[2:]])
 
     values = dict(zip(names, parameters(x)[rows].tolist(), strict=True))
@@ -288,7 +290,7 @@ def _words(scene: Scene, data: Data, fitted: Fitted, values: dict[str, float]) -
 
 
 def _limited(fit: CurveFit, limit: Limit, data: Data) -> CurveFit:
-    """The fit up to the limit; twice, for the first contact point is that of all points."""
+    """The fit of points up to the limit, repeated once, since the limit depends on the fitted contact point."""
     largest = math.nan
     for _ in range(2):
         deepest = fit.values.get("contact_point", 0.0) + limit.value
@@ -298,13 +300,13 @@ def _limited(fit: CurveFit, limit: Limit, data: Data) -> CurveFit:
             largest = contact[-1] if math.isnan(largest) else largest
             share = limit.value if limit.kind == "force" else limit.value * largest
             deepest = float(np.interp(share, contact, fit.depth[order]))
-        kept = data.depth <= deepest
-        fit = _fitted(fit.scene, _checked(data.depth[kept], data.force[kept], data.names), fit.confidence)
+        within = data.depth <= deepest
+        fit = _fitted(fit.scene, _checked(data.depth[within], data.force[within], data.names), fit.confidence)
     return fit
 
 
 def _by_formulas(scene: Scene, data: Data, modulus: float) -> tuple[FormulaFit, ...]:
-    """Each formula fitted to a curve without tilt, with its bias against the modulus [Pa] of the scene's own curve."""
+    """Fits of each formula to a curve without tilt, with the bias of E against the modulus [Pa] of the scene's fit."""
     rough, fits = rough_indentation(data), []
     for formula in formulas_for(scene):
         by_formula = _search(data, fixed_family(formula.per_modulus), rough, math.inf).modulus

@@ -18,15 +18,16 @@ from contact import IndentationDepths, InvalidInput, Scene, UnsupportedSceneErro
 from contact.records.validation import FloatArray
 from mdr.method import Mdr
 
-# Decades of depth between the first and the last solved one. With half as many the power law below errs by 1e-3.
+# Decades of depth between the first and the last solved one. With half as many the error of the power law below the
+# first one is 1e-3.
 _DECADES = 5.0
 # Solved depths. The error of the cubics falls with the fourth power of their number, and is stated.
 _DEPTHS = 257
-# Halving the spacing divides the error of cubics by 16. Half of that is claimed.
+# Assumed ratio of the errors of cubics with twice and with the same spacing; 16 in theory, 8 is on the safe side.
 _CLAIMED_GAIN = 8.0
-# Halvings of the reach until an indenter is long enough for it: from a travel of a million times its length.
+# Largest number of halvings of the reach, for indenters that end at a millionth of the first one.
 _HALVINGS = 20
-# Logarithm of the ratio by which power laws continue beyond the solved depths. Twice as much costs a digit there.
+# Logarithm of the range of power laws beyond the solved depths. Twice as much costs a digit there.
 _BEYOND = 1e3
 
 # A force [N], or phi = F/E [m^2], at depths [m] of any size and shape, zero where nothing touches.
@@ -38,7 +39,7 @@ class ForceCurve:
 
     Attributes:
         scene: Layer, indenter, and a loading by depths whose largest is the reach of the curve.
-        error: Stated relative error of the force: of the method and of the interpolation.
+        error: Relative error estimate of the force, of the method plus the interpolation.
         nodes: Logarithms of the solved depths [m] and of phi [m^2], and slopes of the latter, each of shape (n,).
         extended: phi [m^2] at depths [m], beyond the reach as a power of the depth.
         depth_of: Depth [m] at phi = F/E [m^2], zero where that is at most zero.
@@ -54,7 +55,7 @@ class ForceCurve:
             raise InvalidInput("scene: a force curve is elastic and prescribes indentation depths; leave effects out")
         deepest = float(scene.loading.values.max())
         if not deepest > 0.0:
-            raise InvalidInput(f"loading.values = {deepest:g}: give the largest depth that the curve shall reach")
+            raise InvalidInput(f"loading.values = {deepest:g}: give the largest depth of the curve, above zero")
         self.scene = scene
         depths = deepest * np.logspace(-_DECADES, 0.0, _DEPTHS)
         depths[-1] = deepest
@@ -73,7 +74,7 @@ class ForceCurve:
 
     @property
     def largest_depth(self) -> float:
-        """Reach of the curve [m]."""
+        """Largest depth of the curve [m]."""
         return float(np.exp(self.nodes[0][-1]))
 
     def __call__(self, depth: ArrayLike, youngs_modulus: float | None = None) -> FloatArray:

@@ -49,9 +49,9 @@ HERTZ = "Hertz 1882"
 SNEDDON = "Sneddon 1965"
 DIMITRIADIS = "Dimitriadis et al. 2002, Biophys. J. 82, 2798"
 GARCIA = "Garcia, Garcia 2018, Biophys. J. 114, 2923"
-# Coefficients of 1, x, x^2, .. at nu = 1/2, Garcia's on bonded layers. The originals were not at hand: the numbers are
-# those of public programs that cite them, which agree with one another. x is sqrt(R d)/h of a paraboloid, a/h of a flat
-# punch, d tan(alpha)/h of a cone of half angle alpha.
+# Coefficients of 1, x, x^2, .. at nu = 1/2, Garcia's for bonded layers, as in public programs that cite the papers and
+# agree with each other; not compared with the papers. x is sqrt(R d)/h for a paraboloid, a/h for a flat punch,
+# d tan(alpha)/h for a cone of half angle alpha.
 DIMITRIADIS_BONDED = (1.0, 1.133, 1.283, 0.769, 0.0975)
 DIMITRIADIS_NOT_BONDED = (1.0, 0.884, 0.781, 0.386, 0.0048)
 GARCIA_PARABOLOID = (1.0, 1.133, 1.497, 1.469, 0.755)
@@ -60,7 +60,7 @@ GARCIA_PUNCH = (1.0, 1.133, 1.283, 0.598, -0.291)
 
 
 def dimitriadis(nu: float, *, bonded: bool) -> tuple[float, ...]:
-    """Coefficients of Dimitriadis et al. 2002 for any Poisson's ratio, alpha_0 and beta_0 as AtomicJ has them.
+    """Coefficients of Dimitriadis et al. 2002 for any Poisson's ratio, with alpha_0 and beta_0 as in AtomicJ.
 
     For a bonded layer at nu = 1/2 its last coefficient is -0.0975, where `DIMITRIADIS_BONDED` has +0.0975.
     """
@@ -92,7 +92,7 @@ def formulas_for(scene: Scene) -> tuple[Formula, ...]:
             factor, length = 4 / (3 * compliance) * math.sqrt(radius), h**2 / radius
             formulas = [Formula("Hertz", HERTZ, factor, 1.5)]
             if not layer.is_half_space:
-                # Where the last coefficient is in question, the one in use is taken.
+                # At nu = 1/2 the sources differ in the sign of the last coefficient; here it is the common one.
                 in_use = DIMITRIADIS_BONDED if garcia else dimitriadis(nu, bonded=bonded)
                 formulas += [Formula("Dimitriadis", DIMITRIADIS, factor, 1.5, length, 0.5, in_use)]
             if garcia:

@@ -33,26 +33,26 @@ from mdr.curves.result import CurveFit, with_intervals
 from mdr.history.spring_law import SpringLaw
 
 HISTORY_PARAMETERS: Final = ("moduli", "times", "contact_point", "baseline")
-# Relaxation times that are tried, by equal factors over the time that was measured. With half as many pairs of times a
-# factor of three apart end as one.
+# Number of trial relaxation times, spaced by equal factors over the measured time. With half as many two times that
+# differ by a factor of three are fitted as equal.
 _TRIAL_TIMES: Final = 10
 # Trial depths of indentation over the travel. With half as many the contact point of flat punches is missed.
 _TRIAL_POINTS: Final = tuple(np.geomspace(0.3, 1.4, 14).tolist())
-# First values that go on to least squares. With one some pairs of times end elsewhere; six improve none.
+# First guesses from which least squares start. With one some pairs of times end at a wrong minimum; six improve none.
 _STARTS: Final = 3
 # Steps between neighbouring points in which phi is linear in time. Twice as many change the force by less than 1e-4.
 _STEPS: Final = 4
-# Share of the largest depth (force) by which it falls before this is a withdrawal. Half of it is noise of some curves.
+# Decrease of depth (force) over its range that counts as a withdrawal. Half of it is within the noise of some curves.
 _FALLS: Final = 0.05
-# Least modulus over that of the data: a tenth changes no other parameter.
+# Lower bound of moduli over the modulus of the elastic fit: a tenth changes no other parameter.
 _LEAST: Final = 1e-9
 # Halvings of the search for t1. With 30 the rounding of t1 shows in derivatives.
 _HALVINGS: Final = 42
-# Evaluations of a search. Twenty are usual; a curve that needs more than this has a flat minimum.
+# Largest number of evaluations of least squares. Twenty are usual; a curve that needs more has a flat minimum.
 _EVALUATIONS: Final = 80
-# Name of the factor of a relaxation function whose shape is kept.
+# Name of the fitted factor of a relaxation function of given shape.
 _SCALE: Final = "instantaneous_shear_modulus"
-# Relative step of derivatives by the parameters. A hundredth of it is lost in that rounding.
+# Relative step of derivatives by the parameters. A hundredth of it amplifies the rounding of t1.
 _STEP: Final = 1e-5
 
 
@@ -65,11 +65,11 @@ def convolved(time: FloatArray, values: FloatArray, tau: float) -> FloatArray:
 
 
 def force_of_depth(curve: ForceCurve, solid: Relaxation, time: FloatArray, depth: FloatArray) -> FloatArray:
-    """F [N] at the instants, shape (n,), of depths [m] that grow, rest, and fall once.
+    """F [N] at the instants, shape (n,), for depths [m] that increase, are held, and decrease once.
 
     Args:
-        curve: phi of the layer.
-        solid: G(t).
+        curve: Elastic force curve phi of the layer.
+        solid: Shear relaxation function G(t).
         time: Instants [s], shape (n,), increasing.
         depth: Depths [m], shape (n,).
     """
@@ -104,9 +104,10 @@ def force_of_depth(curve: ForceCurve, solid: Relaxation, time: FloatArray, depth
 
 
 def depth_of_force(curve: ForceCurve, solid: Relaxation, time: FloatArray, force: FloatArray) -> FloatArray:
-    """Depth [m] at the instants, shape (n,), under forces [N] that do not fall.
+    """Depth [m] at the instants, shape (n,), under forces [N] that do not decrease.
 
-    Elastic springs are as deep under F + sum_k r_k int_0^t exp(-lambda_k (t - s)) F(s) ds, without F beside a dashpot.
+    It is that of an elastic layer under F_e = F + sum_k r_k int_0^t exp(-lambda_k (t - s)) F(s) ds; with a dashpot in
+    parallel F_e has no first term.
     """
     order = np.argsort(solid.times)
     modes = SpringLaw.of(replace(solid, moduli=solid.moduli[order], times=solid.times[order])).modes
@@ -117,6 +118,7 @@ def depth_of_force(curve: ForceCurve, solid: Relaxation, time: FloatArray, force
 
 
 def _refined(time: FloatArray) -> FloatArray:
+    """Instants [s] with each interval divided into `_STEPS` equal ones."""
     return np.interp(np.arange((time.size - 1) * _STEPS + 1) / _STEPS, np.arange(time.size), time)
 
 
@@ -148,10 +150,10 @@ class Parameter(NamedTuple):
 
 @dataclass(frozen=True)
 class History:
-    """Measured data and what is fitted.
+    """Measured data and fitted parameters.
 
     Attributes:
-        scene: Scene with the relaxation function whose fixed numbers are kept.
+        scene: Scene with the relaxation function, from which parameters that are not fitted are taken.
         curve: Elastic force curve of its layer.
         time: Instants [s], shape (n,).
         depth: Depths [m], shape (n,).
@@ -181,12 +183,12 @@ class History:
         return any(parameter.scale is None for parameter in self.parameters)
 
     def values(self, x: FloatArray) -> dict[str, float]:
-        """Each parameter in SI."""
+        """Value of each parameter in SI units, by name, from the variables x of least squares."""
         pairs = zip(self.parameters, x.tolist(), strict=True)
         return {p.name: math.exp(number) if p.scale is None else p.scale * number for p, number in pairs}
 
     def solid(self, values: dict[str, float]) -> Relaxation:
-        """The relaxation function of the values."""
+        """Relaxation function with these values of the fitted parameters, the others as in the scene."""
         given, numbers = self.given, np.array(list(values.values()))
         if _SCALE in values:
             share = numbers[0] / given.instantaneous_modulus
@@ -220,17 +222,17 @@ def fit_history(
 
     Args:
         scene: Tip, layer, and one of KelvinVoigt, StandardSolid, PronySeries among the effects, with as many branches
-            as are fitted. Its moduli are not used, and its times where they are not fitted. A loading by forces over
-            time says that depths are the response, any other that forces are.
+            as are fitted. Its moduli are not used, its times only where they are not fitted. With a loading by forces
+            over time depths are the fitted response, with any other forces.
         time: Instants [s], shape (n,), increasing.
-        depth: Depths [m], shape (n,): they grow, rest, and may fall once.
+        depth: Depths [m], shape (n,): they increase, are held, and may decrease once.
         force: Forces [N], shape (n,), positive where the indenter presses.
-        parameters: "moduli", or "scale" for one factor of all of them (a normalised table G(t)/G_0 is kept), and any of
+        parameters: "moduli", or "scale" for one common factor of them (of a normalised table G(t)/G_0), and any of
             "times", "contact_point", "baseline".
         confidence: Confidence of the intervals.
 
     Raises:
-        InvalidInput: For other scenes, and for histories that press again after a withdrawal.
+        InvalidInput: For scenes that cannot be fitted, and for histories that load again after a withdrawal.
         NotConvergedError: If the least squares do not converge.
     """
     t, d, f = (np.asarray(values, dtype=np.float64) for values in (time, depth, force))
@@ -274,10 +276,10 @@ def fit_history(
 
 
 def _history(scene: Scene, t: FloatArray, d: FloatArray, f: FloatArray, names: tuple[str, ...]) -> History:
-    """The problem of a scene that can be fitted.
+    """Measured data and parameters to be fitted.
 
     Raises:
-        InvalidInput: With the remedy.
+        InvalidInput: If the scene cannot be fitted, with the remedy.
     """
     effect = scene.effect(Viscoelasticity)
     if effect is None or len(scene.effects) > 1:
@@ -313,7 +315,7 @@ def _history(scene: Scene, t: FloatArray, d: FloatArray, f: FloatArray, names: t
 
 
 def _of_solid(effect: Viscoelasticity, names: Sequence[str], modulus: float, t: FloatArray) -> list[Parameter]:
-    """Moduli and times of the effect, of the size of a modulus [Pa] and of the times [s] that were measured."""
+    """Fitted moduli and relaxation times of the effect, scaled by a modulus [Pa] and bounded by the instants t [s]."""
     if "scale" in names:
         return [Parameter(_SCALE, modulus, _LEAST)]
     span = float(np.ptp(t))
@@ -329,6 +331,7 @@ def _of_solid(effect: Viscoelasticity, names: Sequence[str], modulus: float, t: 
 
 
 def _check_course(prescribed: FloatArray, *, may_fall: bool) -> None:
+    """Refuse depths or forces that increase after a withdrawal, and withdrawals unless `may_fall`."""
     turn = _turn(prescribed)
     if turn < prescribed.size - 1 and not may_fall:
         raise InvalidInput(
@@ -341,7 +344,7 @@ def _check_course(prescribed: FloatArray, *, may_fall: bool) -> None:
 
 
 def _starts(history: History) -> list[FloatArray]:
-    """First values: non-negative moduli by linear least squares, of sets of trial times and contact points the best."""
+    """First guesses of x: non-negative moduli by linear least squares, for the best trial times and contact points."""
     names, given = [number.name for number in history.parameters], history.given
     turn = _turn(history.depth) + 1 if history.response == "force" else history.time.size
     time, depth, force = history.time[:turn], history.depth[:turn], history.force[:turn]

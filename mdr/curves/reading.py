@@ -1,4 +1,4 @@
-"""Force curves from tables and from files of microscopes, as depth [m] and force [N], and time [s] where it is there.
+"""Force curves from tables and from files of microscopes, as depth [m], force [N], and time [s] where the file has it.
 
 A quantity is read from the head of its column: depth, or height, and force, or deflection. Height and deflection become
 depth and force by the spring constant and the sensitivity of the cantilever. Binary files are read by afmformats.
@@ -25,7 +25,7 @@ Direction: TypeAlias = Literal["loading", "withdrawal", "history"]
 # Endings that afmformats reads; .csv and .txt are tables unless they begin as those of AFM Workshop do.
 ENDINGS: Final = (".h5", ".ibw", ".jpk-force", ".jpk-force-map", ".jpk-qi-data", ".jpk-qi-series", ".tab", ".zip")
 _WORKSHOP: Final = "Force-Distance Curve"
-# Beginnings of the heads of columns, in lower case. Depths and separations hold no bending of the cantilever.
+# Beginnings of the heads of columns, in lower case. Depths and separations exclude the bending of the cantilever.
 _NAMES: Final = {
     "depth": ("depth", "indentation", "delta", "penetration", "h ", "extension"),
     "separation": ("verticaltipposition", "tip", "separation", "distance", "tss"),
@@ -42,7 +42,7 @@ _SIDES: Final = {
     "loading": re.compile(r"(?i)(?:^|[\s_(-])(extend|approach|loading|ex|trace)(?=$|[\s_).-])"),
     "withdrawal": re.compile(r"(?i)(?:^|[\s_(-])(retract|withdraw(?:al)?|unloading|rt|retrace)(?=$|[\s_).-])"),
 }
-# Share of the travel by which a depth goes back before it is another direction. Noise of a tenth of it turns nothing.
+# Least reversal of the depth over the travel that is a turning point. Noise of a tenth of it makes none.
 _TURN: Final = 0.2
 
 
@@ -66,7 +66,7 @@ class Measured:
     Attributes:
         depth: Depths [m] from any zero, shape (n,).
         force: Forces [N], shape (n,).
-        notes: Sentences on what was recognised and converted.
+        notes: Sentences on recognised columns and conversions.
         time: Instants [s], shape (n,), or empty.
         position: Position x and y in the map [m], not a number where unknown.
     """
@@ -78,7 +78,7 @@ class Measured:
     position: tuple[float, float] = (np.nan, np.nan)
 
     def at_rows(self, rows: Any) -> Measured:
-        """The curve with some of its points."""
+        """The curve reduced to some of its points."""
         time = self.time[rows] if self.time.size else self.time
         return replace(self, depth=self.depth[rows], force=self.force[rows], time=time)
 
@@ -121,29 +121,29 @@ def load_curves(
     direction: Direction = "loading",
     is_map: bool = False,
 ) -> list[Measured]:
-    """The curves of a file in one direction, with what was recognised.
+    """The curves of a file in one direction, with notes on recognised columns.
 
     Args:
         file: Table, perhaps with a column that numbers the curves, and columns x and y; or a microscope's file.
         units: Units of the columns of a table, "nm,nN", where their heads have none.
         cantilever: Spring constant and sensitivity for columns of height and deflection.
-        direction: Which part of a curve with loading and withdrawal; "history" is all of it.
-        is_map: Whether a table that numbers no curves has depths in its first column, and forces of a curve in each
-            other one.
+        direction: The part of a curve with loading and withdrawal that is returned; "history" returns all of it.
+        is_map: Whether a table without numbers of curves has depths in its first column, and the forces of one curve in
+            each further column.
 
     Raises:
         InvalidInput: If the file cannot be read, has no such columns, no units, or more than two directions.
     """
-    path, known = Path(file), cantilever or Cantilever()
-    if _is_of_microscope(path) or (known.sensitivity and known.spring_constant and _is_of_nova(path)):
-        return _read_measured(path, known, direction)
+    path, calibration = Path(file), cantilever or Cantilever()
+    if _is_of_microscope(path) or (calibration.sensitivity and calibration.spring_constant and _is_of_nova(path)):
+        return _read_measured(path, calibration, direction)
     table = _with_units(path, units)
     numbers = _named(table.columns, "curve")
     if numbers is not None:
         rows = [np.flatnonzero(numbers.values == number) for number in np.unique(numbers.values)]
-        return [_one_curve(table.at_rows(index), known, direction, str(file)) for index in rows]
+        return [_one_curve(table.at_rows(index), calibration, direction, str(file)) for index in rows]
     if not is_map:
-        return [_one_curve(table, known, direction, str(file))]
+        return [_one_curve(table, calibration, direction, str(file))]
     if len(table.columns) < 2:
         raise InvalidInput(f"{file}: a map has depths in its first column, and forces of a curve in each other one")
     depth, forces = _si(table.columns[0], "m", file), table.columns[1:]
@@ -154,10 +154,10 @@ def load_curves(
 
 
 def _with_units(file: Path, given: str) -> Table:
-    """The table in units that are given, "nm,nN", the last one for all further columns, or else in those of its heads.
+    """The table with given units, "nm,nN", the last one for all further columns, or else with those of its heads.
 
     Raises:
-        InvalidInput: If there are none.
+        InvalidInput: If there are no units.
     """
     table = read_table(file)
     if given:
@@ -175,11 +175,11 @@ def _with_units(file: Path, given: str) -> Table:
 
 
 def _one_curve(table: Table, cantilever: Cantilever, direction: Direction, place: str) -> Measured:
-    """The curve of all rows of a table."""
+    """The curve of a table that contains one curve only."""
     notes = [f"{len(table.gaps)} rows with gaps are left out (first: line {table.gaps[0]})"] if table.gaps else []
-    beside = _columns_of("withdrawal" if direction == "withdrawal" else "loading", table)
-    if beside:
-        table, notes = replace(table, columns=beside), [*notes, f"columns of {direction} are used"]
+    columns = _columns_of("withdrawal" if direction == "withdrawal" else "loading", table)
+    if columns:
+        table, notes = replace(table, columns=columns), [*notes, f"columns of {direction} are used"]
     cantilever = replace(cantilever, spring_constant=cantilever.spring_constant or table.spring_constant)
     depth, force, conversions = _converted(table, cantilever, place)
     further = [_named(table.columns, name) for name in ("time", "x", "y")]
@@ -192,7 +192,7 @@ def _one_curve(table: Table, cantilever: Cantilever, direction: Direction, place
 
 
 def _columns_of(side: str, table: Table) -> tuple[Column, ...]:
-    """Columns of one direction without the word for it in their heads; none where heads do not name both directions."""
+    """Columns of one direction, the word for it removed from their heads; none if heads do not name both directions."""
     if min(sum(bool(words.search(column.name)) for column in table.columns) for words in _SIDES.values()) < 2:
         return ()
     columns = []
@@ -253,7 +253,7 @@ def _force_of_deflection(signal: Column, cantilever: Cantilever, file: str) -> F
 
 
 def _named(columns: Sequence[Column], kind: str) -> Column | None:
-    """The column whose head is, or begins with, a name of that kind; short names have to be the whole head."""
+    """The column whose head is, or begins with, a name of that kind; names of two letters have to be the whole head."""
     for name in _NAMES[kind]:
         for column in columns:
             head = column.name.lower().replace("_", " ").strip()
@@ -263,6 +263,7 @@ def _named(columns: Sequence[Column], kind: str) -> Column | None:
 
 
 def _si(column: Column, unit: str, file: str | Path) -> FloatArray:
+    """Values of a column in an SI unit; errors name file and column."""
     if not column.unit:
         raise InvalidInput(f"{file}, column {column.name!r}: has no unit; write it in the head, as in depth [nm]")
     try:
@@ -272,7 +273,7 @@ def _si(column: Column, unit: str, file: str | Path) -> FloatArray:
 
 
 def _one_direction(curve: Measured, direction: Direction, place: str) -> Measured:
-    """The part of a curve in one direction; a curve of one direction, and a history, as it is.
+    """The part of a curve in one direction; curves of one direction, and histories, are returned unchanged.
 
     Raises:
         InvalidInput: If the depth turns more than once.
@@ -319,7 +320,7 @@ def _is_of_nova(file: Path) -> bool:
 
 
 def _read_measured(file: Path, cantilever: Cantilever, direction: Direction) -> list[Measured]:
-    """Curves of a microscope's file; the depth is the piezo's way less the bending of the cantilever.
+    """Curves of a microscope's file; the depth is the displacement of the piezo minus the bending of the cantilever.
 
     Raises:
         InvalidInput: If afmformats is missing or cannot read the file, or it has no curve.
@@ -336,7 +337,7 @@ def _read_measured(file: Path, cantilever: Cantilever, direction: Direction) -> 
     given = {"spring constant": cantilever.spring_constant, "sensitivity": cantilever.sensitivity}
     override = {name: value for name, value in given.items() if value is not None}
     try:
-        # It would print a traceback of what is refused here in one line.
+        # Its log would print a traceback of errors that are reported here in one line.
         logging.getLogger("afmformats.formats").disabled = True
         measured: Sequence[Any] = afmformats.load_data(file, meta_override=override)
         curves = [_segment(curve, direction) for curve in measured if curve.modality != "unknown"]
@@ -347,7 +348,7 @@ def _read_measured(file: Path, cantilever: Cantilever, direction: Direction) -> 
             f'{file}: holds no calibration; give --spring-constant "0.05 N/m" and --sensitivity "50 nm/V"'
         ) from None
     except (Exception, afmformats.errors.AFMFileFormatError, afmformats.meta.MetaDataMissingError) as error:
-        # Each format fails in its own way, and some by what is no Exception.
+        # Each format raises other errors, and some raise errors that are not derived from Exception.
         raise InvalidInput(f"{file}: afmformats cannot read it ({type(error).__name__}: {error!s:.120})") from None
     if not curves:
         raise InvalidInput(f"{file}: has no force-distance curve")

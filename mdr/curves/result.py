@@ -16,13 +16,13 @@ from mdr.curves.contact_point import NOT_WHITE, correlation_factor
 from mdr.curves.families import is_modulus
 from mdr.curves.formulas import Formula
 
-# Correlation beyond which data hardly tell two parameters apart: the interval of each is then 7 times that with the
-# other one known, 1/sqrt(1 - 0.99^2).
+# Correlation of two parameters with a warning: the interval of each is then 7 = 1/sqrt(1 - 0.99^2) times that with the
+# other one known.
 _CONFOUNDED: Final = 0.99
-# Residuals below this share of the largest force have no warning: rounding of files. At 1e-3 some misfits are silent.
+# Residuals over the range of forces without a warning: rounding of files. At 1e-3 some misfits are silent.
 _ROUNDING: Final = 1e-4
-# A baseline is too short if a quadratic background would widen the interval of E by more than this factor.
-# At twice that shifts of several intervals are silent; at half of it curves with a baseline of half the travel warn.
+# Factor on the interval of E by a quadratic background, above which a warning calls the baseline too short. At twice of
+# it errors of several intervals have no warning; at half of it a baseline of half the travel has one.
 _TOO_WIDE: Final = 3.0
 
 
@@ -46,7 +46,7 @@ class CurveFit:
     """A fitted curve.
 
     Attributes:
-        scene: Scene as given; the fitted numbers are in `values`.
+        scene: Scene as given; the fitted parameters are in `values`.
         depth: Measured depths [m], shape (n,).
         force: Measured forces [N], shape (n,).
         fitted: Force [N] of the fit at these depths, shape (n,), or depth [m] where depths over time were fitted.
@@ -56,14 +56,13 @@ class CurveFit:
         covariance: Covariance of the parameters in the order of `values`, shape (p, p).
         quantile: Student's quantile, for intervals of `confidence`.
         confidence: Confidence of intervals and bands.
-        band: Half width of the band in which the fitted curve lies with that confidence, shape (n,).
-        numerical_error: Relative error of E by the computation itself; no part of `standard_error`.
-        warnings: Sentences to read before relying on the numbers.
+        band: Half width of the confidence band of the fitted curve, in the unit of `fitted`, shape (n,).
+        numerical_error: Relative error of E by the computation itself, not included in `standard_error`.
+        warnings: Sentences on doubtful results.
         notes: Sentences on the meaning of the fit.
         time: Instants [s], shape (n,), of histories; else empty.
         response: Name of the fitted quantity, "force" or "depth".
-        input_error: Standard uncertainty of each parameter by uncertain numbers of the scene, where they were asked
-            for (`cases.uncertain_fit`).
+        input_error: Standard uncertainty of each parameter by uncertain inputs of the scene (`cases.uncertain_fit`).
         formulas: Fits of the same curve by formulas in use.
     """
 
@@ -112,14 +111,14 @@ class CurveFit:
 
     @property
     def r_squared(self) -> float:
-        """1 less the variance of the residuals over that of the data in contact; 1 for a perfect fit."""
+        """1 - (variance of the residuals)/(variance of the data), of points in contact."""
         pressed = self.indentation > 0.0
         measured, residual = self.measured[pressed], (self.measured - self.fitted)[pressed]
         return 1.0 - float(residual @ residual) / max(float(np.sum((measured - measured.mean()) ** 2)), 1e-300)
 
     @property
     def modulus_at_depth(self) -> FloatArray:
-        """E [Pa] from each point alone, the fitted E times measured over fitted force; nan outside contact, (n,)."""
+        """Pointwise E [Pa]: the fitted E times measured over fitted force; nan outside the contact, shape (n,)."""
         contact = self.fitted - self.background
         if self.time.size:
             return np.full(self.depth.shape, np.nan)
@@ -128,7 +127,7 @@ class CurveFit:
         return np.where(contact > 0.0, moduli, np.nan)
 
     def interval(self, parameter: str) -> tuple[float, float]:
-        """Lower and upper end of a parameter with `confidence`, uncertain inputs and numerical error included."""
+        """Lower and upper end of the interval of a parameter, uncertain inputs and numerical error included."""
         half = self.quantile * float(np.hypot(self.standard_error[parameter], self.input_error.get(parameter, 0.0)))
         if is_modulus(parameter):
             half += self.numerical_error * self.values[parameter]
@@ -150,7 +149,7 @@ class MapFit:
     positions: FloatArray
 
     def of(self, quantity: Callable[[CurveFit], float]) -> FloatArray:
-        """A number of each curve, not a number where it has no fit, shape (n,)."""
+        """A quantity of each fit, nan for curves without a fit, shape (n,)."""
         return np.array([np.nan if fit is None else quantity(fit) for fit in self.curves])
 
     @property
@@ -183,7 +182,7 @@ class MapFit:
 def derivatives(
     function: Callable[[FloatArray], FloatArray], x: FloatArray, steps: FloatArray, rows: Sequence[int]
 ) -> FloatArray:
-    """Derivatives of a function of shape (n,) by some numbers x[rows], shape (n, p), by central differences."""
+    """Central differences of a function of shape (n,) by its arguments x[rows], shape (n, p)."""
     shifts = zip(np.diag(steps)[rows], 2 * steps[rows], strict=True)
     return np.stack([(function(x + shift) - function(x - shift)) / width for shift, width in shifts], axis=1)
 
@@ -202,12 +201,12 @@ def with_intervals(
     """The fit with covariance, intervals and band, widened where residuals are correlated or larger in contact.
 
     Args:
-        jacobian: Derivatives of the fitted curve by the numbers that least squares vary, shape (n, p).
-        changes: Derivatives of the parameters by the numbers that least squares vary, shape (p, p).
+        jacobian: Derivatives of the fitted curve by the variables of least squares, shape (n, p).
+        changes: Derivatives of the parameters by the variables of least squares, shape (p, p).
         pressed: Which points are in contact, shape (n,).
         values: Value of each parameter.
         confidence: Confidence of the intervals.
-        curvature: Half the second derivative of each parameter by its number, where the first one may vanish.
+        curvature: Half the second derivative of each parameter by its variable, where the first one may vanish.
         warnings: Warnings on the fit.
         fields: Further fields of `CurveFit`.
     """
@@ -237,7 +236,7 @@ def with_intervals(
 
 
 def _inverse(jacobian: FloatArray) -> FloatArray:
-    """(J^T J)^-1, shape (p, p); columns of zeros count as undetermined by nothing."""
+    """(J^T J)^-1, shape (p, p), a pseudo-inverse: rows and columns of zero columns of J are zero."""
     length = np.linalg.norm(jacobian, axis=0)
     length[length == 0.0] = 1.0
     unit = jacobian / length
@@ -245,7 +244,7 @@ def _inverse(jacobian: FloatArray) -> FloatArray:
 
 
 def _widening(residual: FloatArray, pressed: BoolArray, variance: float) -> tuple[float, list[str]]:
-    """Factor of the covariance, and warnings, where the residuals are not white noise."""
+    """Factor of the covariance, above 1 where the residuals are not white noise, and warnings on it."""
     correlated = max(correlation_factor(residual), correlation_factor(residual[pressed]))
     n, larger, warnings = max(int(pressed.sum()), 1), 1.0, []
     ratio = float(residual[pressed] @ residual[pressed]) / n / (variance or 1.0)
@@ -283,7 +282,7 @@ def _bent_background(
 
 
 def _confounded(values: Mapping[str, float], covariance: FloatArray, quantile: float) -> tuple[str, ...]:
-    """Warnings on pairs of parameters that the curve hardly tells apart, and on those that it does not determine."""
+    """Warnings on strongly correlated pairs of parameters, and on parameters that the curve does not determine."""
     names = list(values)
     error = np.sqrt(np.maximum(np.diag(covariance), np.finfo(float).tiny))
     correlation = covariance / np.outer(error, error)

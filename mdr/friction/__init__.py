@@ -1,4 +1,4 @@
 """Contact that sticks: the layer's surface may not slide under the indenter.
 
-A scene with ``Friction(coefficient=inf)`` enters, a contact path leaves. Read ``growth`` first.
+Input: a scene with ``Friction(coefficient=inf)``. Output: a contact path. Read ``growth`` first.
 """

@@ -1,12 +1,13 @@
-"""A flat punch that lets nothing slide, pressed into a layer or a stack.
+"""A flat punch under full stick, pressed into a layer or a stack.
 
-Phi = phi + i psi are the Abel densities of pressure and shear, in 4 G/pi for a depth of one, lengths over the radius:
+The unknown is Phi = phi + i psi, the Abel densities of pressure and shear, in 4 G/pi for a unit depth, lengths over the
+radius. It is a series in rho(t) times Jacobi polynomials,
 
-    p = int_s^1 ..phi.., q likewise;   kap^(1/2) of the half-space's part is diagonal in rho times Jacobi polynomials,
     rho = ((1 + t)/(1 - t))^(i eps),   eps = ln(3 - 4 nu)/(2 pi),
 
-whose transforms are Coulomb wave functions F_n(+-eps, k) (Spence 1968 for the half-space). The layer adds the smooth
-symmetric matrix (4/pi) int [D_WW P P + D_UU Q Q + D_UW (P Q + Q P)] dk, D = C - C_half-space of `bem.kernels.stack`.
+in which the operator of the half-space is the diagonal matrix kap^(1/2), kap = 3 - 4 nu (Spence 1968). Their transforms
+P (cosine, of phi) and Q (sine, of psi) are Coulomb wave functions F_n(+-eps, k). The layer adds the smooth symmetric
+matrix (4/pi) int [D_WW P P + D_UU Q Q + D_UW (P Q + Q P)] dk, D = C - C_half-space of `bem.kernels.stack`.
 """
 
 from __future__ import annotations
@@ -27,13 +28,13 @@ from mdr.inside import wave_rule
 
 # Wave number beyond which layers add nothing, exp(-2k); with half of it 1e-9.
 REACH = 21.5
-# Panels shrink towards an end by this ratio, so many times: exp(i eps ln(1 - t)) is integrated to 1e-16; with half as
-# many to 1e-8.
+# Ratio of neighbouring panels towards an end, and their number: integrals of exp(i eps ln(1 - t)) have errors of 1e-16;
+# with half as many panels of 1e-8.
 _RATIO, _LEVELS = 0.15, 17
-# Share of a punch's radius within which shear goes with the radius: half of it loses digits, twice leaves 4e-5.
+# r/a below which shear is taken as linear in r: half of it loses digits, twice leaves 4e-5.
 _NEAR_AXIS = 3e-3
-# r/a up to which polynomials of the density are used outside the edge. With 1.005 the error is 1e-6 at a/h = 50.
-_BESIDE = 1 + 1e-6
+# x/a up to which G is computed by the polynomials of the density. With 1.005 the error is 1e-6 at a/h = 50.
+_POLYNOMIAL_END = 1 + 1e-6
 
 ComplexArray: TypeAlias = NDArray[np.complex128]
 Rule: TypeAlias = tuple[FloatArray, FloatArray, FloatArray]
@@ -91,13 +92,13 @@ def coulomb(eps: float, x: FloatArray, count: int) -> FloatArray:
 
 
 class Adhered:
-    """The punch of radius a.
+    """Solution of the equation of the adhered punch of radius a.
 
     Args:
         kernel: Kernel of the layer.
         a: Radius in units of the kernel.
-        extra: Increase of the sizes of the discretisation.
-        far: Largest radius over a at which `beside` is evaluated.
+        extra: Number of further polynomials and nodes.
+        far: Largest x/a at which `beside` is evaluated.
     """
 
     def __init__(self, kernel: StackKernel, a: float, extra: int = 0, far: float = 1.0) -> None:
@@ -119,11 +120,12 @@ class Adhered:
         self.condition = float(np.linalg.cond(matrix))
 
     def _waves(self, far: float) -> tuple[FloatArray, FloatArray]:
+        """Wave numbers k a and weights, shape (m,), for fields up to x/a = far."""
         k, w = wave_rule(REACH, self.a * (1 + far), self.kernel.longest, self.nodes)
         return k * self.a, w * self.a
 
     def _basis(self, k: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Cosine transforms of the even part of each basis function and sine transforms of the odd one."""
+        """Cosine transforms of the even and sine transforms of the odd part of each basis function, shape (n, m)."""
         n = np.arange(self.count)[:, None]
         plus, minus = coulomb(self.eps, k, self.count), coulomb(-self.eps, k, self.count) * (-1.0) ** n
         size = np.sqrt((2 * n + 1) / 8)
@@ -140,12 +142,12 @@ class Adhered:
 
     @property
     def stiffness(self) -> float:
-        """k_stick/(2 E*)."""
+        """Stiffness over 2 E*, k_stick/(2 E*), a length in units of the kernel."""
         return float(self.a * self.beta * self.first * self.c[0])
 
     @property
     def spring(self) -> float:
-        """c_stick/E*, half of dk_stick/da over E*."""
+        """c_stick/E* = (dk_stick/da)/(2 E*)."""
         n = np.arange(self.count)
         phase = 1j ** (n % 4) * np.exp(-1j * _turns(self.eps, self.count))
         edge = (self.c * np.sqrt(2 * n + 1) * phase).sum() / self.first
@@ -153,6 +155,7 @@ class Adhered:
 
     @cached_property
     def _factors(self) -> ComplexArray:
+        """Coefficients of g in the polynomials of the recurrence in `polynomial`, shape (n,)."""
         n = np.arange(self.count)
         size = 2 / (2 * n + 1) * self.first**2 / 2 * np.cumprod(np.concatenate([[1.0], 1 + (self.eps / n[1:]) ** 2]))
         return np.asarray(self.c * 1j ** (n % 4) / np.sqrt(size))
@@ -178,7 +181,7 @@ class Adhered:
         return rho * g, rho * (2j * self.eps * g + rest * (1 + t) * slope)
 
     def tractions(self, s: FloatArray) -> FloatArray:
-        """p and q over E*, shape (2, n), at radii s < 1 over a; q pushes the layer outwards."""
+        """p/E* and q/E*, shape (2, n), at s = r/a < 1 for a unit depth; q > 0 pushes the layer outwards."""
         return 2 * self.beta / np.pi / self.a * abel(s, (1 - s) * (1 + s), self.rule, self.density)
 
     def displacement(self, s: FloatArray) -> FloatArray:
@@ -189,6 +192,7 @@ class Adhered:
         return 2 / np.pi * (2 * self.beta * near + self._added(s))
 
     def _added(self, s: FloatArray) -> FloatArray | float:
+        """Part of (pi/2) u_z/depth at s = r/a that the layer adds to the half-space."""
         if self.kernel.is_half_space:
             return 0.0
         k, w = self._waves(float(s.max()))
@@ -197,13 +201,13 @@ class Adhered:
         return np.asarray(j0(np.multiply.outer(s, k)) @ (w * (ww * (self.c @ cosine) + uw * (self.c @ sine))))
 
     def beside(self, s: FloatArray) -> ComplexArray:
-        """G at places s = x/a > 0: analytic across s = 1.
+        """G at s = x/a > 0, shape (n,), analytic across s = 1, for a unit depth.
 
-        Outside the punch the depth less the transform of the surface is Re[((s + 1)/(s - 1))^(i eps) G]. Within it
-        G = sqrt(kap) g.
+        Outside the punch depth minus Abel transform of the surface is Re[((s + 1)/(s - 1))^(i eps) G]. Inside
+        G = sqrt(kap) g, g of `polynomial`.
         """
         G: ComplexArray = np.asarray(np.sqrt(self.kap) * self.polynomial(s)[0])
-        out = s > _BESIDE
+        out = s > _POLYNOMIAL_END
         far, (t, rest, w) = s[out][:, None], self.rule
         phi, nearness = self.density(t, rest)[0] * w, 1 / ((far - 1 + rest) * (far + t))
         hilbert = -(far[:, 0] * (nearness @ phi.real) + 1j * (nearness @ (t * phi.imag)))

@@ -1,10 +1,10 @@
-"""A convex tip that sticks where it touches: contact that grows by adhered punches of all radii.
+"""Growing contact of a convex tip under full stick, a superposition of adhered punches of all radii.
 
     g_hs(x) = int_0^x M(x; a) d delta(a),   F = int k_stick d delta,   M = Re[((x + a)/(x - a))^(i eps) G(x; a)]
 
 with G of `Adhered.beside`, a polynomial of x and a. Between radii where the profile is not analytic, d delta/du is
-u^(lead - 1) times a polynomial of u, a = start + length u^power, by least squares. Lengths in units of the
-kernel.
+u^(lead - 1) times a polynomial of u, a = start + length u^power. Its coefficients follow by least squares. Lengths are
+in units of the kernel.
 """
 
 from __future__ import annotations
@@ -24,12 +24,12 @@ from mdr.friction.adhered_punch import REACH, Adhered, ComplexArray, Density, Ru
 from mdr.inside import wave_rule
 from mdr.profiles import Tip
 
-# Numbers of radii a and of x in the table: at a/h = 0, and per a/h. With a fifth less three digits are lost.
+# Numbers of nodes in a and in x of the table of G: at a/h = 0, and per a/h. With a fifth less three digits are lost.
 _PUNCHES, _PLACES = (26, 4.5), (28, 5.5)
 # Least number of both per `Punches.root`. With 6 the error over a base a hundred times as soft is 1e-7.
 _PER_ROOT = 9.0
-# Unknowns of a stretch: at a/h = 0 and per a/h, per `Punches.root`, and their largest number. With 70 rounding errors
-# are 5e-8.
+# Number of coefficients on a stretch: at a/h = 0 and per a/h, per `Punches.root`, and the largest number by the latter.
+# With 70 rounding errors are 5e-8.
 _UNKNOWNS, _UNKNOWNS_PER_ROOT, _MOST = (20, 5.0), 2.5, 46.0
 
 
@@ -56,14 +56,15 @@ class Punches:
         self.largest = punches[-1]
 
     def _fitted(self, x: FloatArray, values: NDArray[np.inexact]) -> NDArray[np.inexact]:
+        """Chebyshev coefficients on [0, end] of values at x, first axis."""
         return np.asarray(chebyshev.chebfit(2 * x / self.end - 1, values, x.size - 1))
 
     def at(self, a: FloatArray) -> ComplexArray:
-        """Coefficients in x of G(x; a), first axis."""
+        """Chebyshev coefficients of G(x; a) in x, first axis, at radii a."""
         return np.asarray(chebyshev.chebval(2 * a / self.end - 1, self._table))
 
     def stiffness(self, a: FloatArray) -> FloatArray:
-        """k_stick/E*."""
+        """k_stick/E* at radii a, shape (n,)."""
         return np.asarray(2 * a * chebyshev.chebval(2 * a / self.end - 1, self._stiffness))
 
 
@@ -80,7 +81,7 @@ class Stretch:
     Attributes:
         start: First radius.
         end: Last radius.
-        power: Power of u.
+        power: Exponent of u.
         lead: Exponent of the depth at the first radius.
         count: Number of coefficients of the polynomial.
     """
@@ -92,7 +93,11 @@ class Stretch:
     count: int
 
     def steps(self, low: float, high: float, rule: Rule, *, to_high: bool) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Quadrature from low to high: radii a, exact distances from high (or low), d delta per coefficient."""
+        """Quadrature of d delta over radii from low to high.
+
+        Returns radii a, shape (q,), their distances from high (or low) without cancellation, and weights of d delta per
+        coefficient of the polynomial, shape (q, count).
+        """
         length, (v, rest, w) = self.end - self.start, rule
         first, last = (np.clip((x - self.start) / length, 0, 1) ** (1 / self.power) for x in (low, high))
         u = first + (last - first) * (v if to_high else rest)
@@ -115,15 +120,15 @@ class Growth:
 
     def __init__(self, kernel: StackKernel, tip: Tip, unit: float, end: float, extra: int) -> None:
         self.kernel, self.tip, self.unit, self.end = kernel, tip, unit, end
-        # Rounded up by a fifth at most, so that scenes share tables.
-        above = end if kernel.is_half_space else float(1.2 ** np.ceil(np.log(end) / np.log(1.2) - 1e-9))
-        self.punches = punches_of(kernel, above, extra)
+        # The largest radius of the table is a power of 1.2, so that scenes share tables.
+        table_end = end if kernel.is_half_space else float(1.2 ** np.ceil(np.log(end) / np.log(1.2) - 1e-9))
+        self.punches = punches_of(kernel, table_end, extra)
         self.rule = towards_one(16 + extra, 0 if tip.exponent % 1 == 0 else 6)
         usual = _UNKNOWNS[0] + _UNKNOWNS[1] * self.punches.size
         count = int(max(usual, min(usual + _UNKNOWNS_PER_ROOT * self.punches.root, _MOST)))
-        self._follow(tip.exponent, count + extra)
+        self._solve(tip.exponent, count + extra)
 
-    def _follow(self, lead: float, count: int) -> None:
+    def _solve(self, lead: float, count: int) -> None:
         """Solve g_hs(x) = int_0^x M d delta for d delta on each stretch in turn, by least squares.
 
         The number of equations is 1.25 times that of the unknowns; `lead` is the exponent of delta at the tip.
@@ -135,21 +140,21 @@ class Growth:
             stretch = Stretch(low, high, 2 if low else 1, 1.0 if low else lead, count)
             u = _nodes(int(1.25 * count))
             x = low + (high - low) * u**stretch.power
-            known = np.array([sum(self._followed(part, y) @ c for part, c in self.parts) for y in x.tolist()])
+            earlier = np.array([sum(self._integral(part, y) @ c for part, c in self.parts) for y in x.tolist()])
             scale = u**-stretch.lead
-            rows = scale[:, None] * np.array([self._followed(stretch, y) for y in x.tolist()])
-            height = self.tip.transform(x * unit) / unit
-            self.parts.append((stretch, np.linalg.lstsq(rows, scale * (height - known), rcond=None)[0]))
+            rows = scale[:, None] * np.array([self._integral(stretch, y) for y in x.tolist()])
+            g_hs = self.tip.transform(x * unit) / unit
+            self.parts.append((stretch, np.linalg.lstsq(rows, scale * (g_hs - earlier), rcond=None)[0]))
 
-    def _followed(self, stretch: Stretch, x: float) -> FloatArray:
+    def _integral(self, stretch: Stretch, x: float) -> FloatArray:
         """int M(x; a) d delta over the radii of one stretch up to x, per coefficient of d delta."""
         a, gap, rows = stretch.steps(0.0, x, self.rule, to_high=True)
         G = chebyshev.chebval(2 * x / self.punches.end - 1, self.punches.at(a))
-        turned = np.exp(1j * self.punches.largest.eps * np.log((x + a) / gap)) * G
-        return np.asarray(turned.real @ rows)
+        M = np.exp(1j * self.punches.largest.eps * np.log((x + a) / gap)) * G
+        return np.asarray(M.real @ rows)
 
     def states(self, radii: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Depth, F/E* and k_stick/E* at contact radii."""
+        """Depth, F/E* and k_stick/E* at contact radii, each of shape (n,)."""
         depth, force = np.zeros(radii.size), np.zeros(radii.size)
         for i, x in enumerate(radii.tolist()):
             for stretch, c in self.parts:
@@ -160,7 +165,7 @@ class Growth:
         return depth, force, self.punches.stiffness(radii)
 
     def _beyond(self, x: float, a: float, rule: Rule) -> list[tuple[FloatArray, FloatArray, FloatArray]]:
-        """Quadrature from x to a on each stretch: radii, their distances from x, and d delta."""
+        """Quadrature from x to a on each stretch: radii, their distances from x, and weights d delta, shape (q,)."""
         reached = [(stretch, c) for stretch, c in self.parts if stretch.end > x and stretch.start < a]
         nodes = [(stretch.steps(x, a, rule, to_high=False), c) for stretch, c in reached]
         return [(size, gap, rows @ c) for (size, gap, rows), c in nodes]
@@ -176,7 +181,10 @@ class Growth:
         return 2 * self.punches.largest.beta / np.pi * tractions
 
     def _unit_densities(self, size: FloatArray, columns: ComplexArray) -> Density:
-        """Phi and (1 - t^2) Phi' of unit punches of these sizes at t = 1 - rest, from their columns of the table."""
+        """Function of t and rest = 1 - t: Phi and (1 - t^2) Phi' of punches of radii `size` at unit depth.
+
+        `columns` are their coefficients of G in x.
+        """
         eps, end = self.punches.largest.eps, self.punches.end
         slopes = chebyshev.chebder(columns) * 2 / end
 

@@ -36,18 +36,18 @@ from mdr.friction.growth import Growth
 from mdr.profiles import Tip, tip_of
 from mdr.spring_bed import State
 
-# Unknowns of the answer less those of its companion: with half as many two resolutions agree by accident.
+# Number of unknowns of the answer minus that of the coarser solution: with half of it both agree by accident.
 _MORE = 6
 # Ratio of the next trial radius to one that does not reach the prescribed depth or force.
 _FURTHER = 1.3
-# Roundings of growth, of a punch, and of both per condition of the punch's matrix; half of them are exceeded at times.
+# Rounding errors over eps, of growth, of a punch, and of both per condition number; half of them is exceeded at times.
 _OF_GROWTH, _OF_PUNCH, _PER_CONDITION = 50.0, 20.0, 10.0
-# Largest relative error of depth and force that is answered; beyond, the growth is refused.
+# Largest relative error estimate of depth and force; beyond it the solution raises an error.
 _LARGEST_ERROR = 1e-3
 
 
 def solve_stick(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[str, Setting]) -> ContactPath:
-    """Contact radius, depth, force and stiffness where nothing slides from the first touch on.
+    """Contact radius, depth, force and stiffness under full stick from the first touch on.
 
     Raises:
         UnsupportedSceneError: A flat end that grows, on a compressible layer.
@@ -92,20 +92,20 @@ def _errors(scene: Scene, answer: Stuck, coarser: Stuck) -> dict[str, FloatArray
 
 
 def _values(scene: Scene) -> FloatArray:
-    """The radii, depths or forces asked for, shape (n,)."""
+    """Prescribed radii [m], depths [m] or forces [N], shape (n,)."""
     values: FloatArray = scene.loading.values  # type: ignore[attr-defined]  # the dispatch sends equilibria only
     return values
 
 
 @dataclass(frozen=True)
 class Stuck:
-    """States of a stuck contact, and its surface fields at every step.
+    """States of a contact under full stick, and its surface fields at every step.
 
     Attributes:
         state: Radius, depth, force and stiffness at every step.
-        modulus: E* [Pa].
-        unit: Length of the kernel [m].
-        contact: Flat punch under a depth of one, or a growth, lengths in units of the kernel.
+        modulus: Contact modulus E* [Pa].
+        unit: Unit of length of the kernel [m].
+        contact: Flat punch at unit depth, or a growing contact, lengths in units of the kernel.
         tip: Profile of the indenter.
         floor: Relative rounding error.
         unknowns: Number of unknowns of all systems.
@@ -120,11 +120,11 @@ class Stuck:
     unknowns: int
 
     def pressure(self, radius: FloatArray, step: int) -> FloatArray:
-        """p(r) [Pa], zero outside."""
+        """Pressure p(r) at one step [Pa], zero outside the contact."""
         return np.asarray(self._tractions(radius, step)[0])
 
     def tangential_traction(self, radius: FloatArray, step: int) -> FloatArray:
-        """q(r) [Pa], positive where the layer is pushed outward, zero outside."""
+        """Shear traction q(r) at one step [Pa], positive if it pushes the layer outwards, zero outside the contact."""
         return np.asarray(self._tractions(radius, step)[1])
 
     def _tractions(self, radius: FloatArray, step: int) -> FloatArray:
@@ -138,7 +138,7 @@ class Stuck:
         return tractions
 
     def surface_displacement(self, radius: FloatArray, step: int) -> FloatArray:
-        """w(r) [m]: the indenter's shape inside, Eq. (1)."""
+        """u_z(r) [m]: depth - f(r) inside the contact, Eq. (1)."""
         a, depth = self.state.radius[step], self.state.depth[step]
         inside = radius <= a
         displacement, r = np.asarray(depth - self.tip.height(np.where(inside, radius, 0.0))), radius[~inside]
@@ -152,7 +152,7 @@ class Stuck:
 
 
 def _pressed(scene: Scene, extra: int) -> Stuck:
-    """States of a flat punch."""
+    """States and fields of a flat punch at the prescribed values."""
     layer, tip, values = scene.layer, tip_of(scene.indenter), _values(scene)
     modulus, unit = contact_modulus(layer), tip.flat if layer.is_half_space else layer.surface.thickness
     punch = Adhered(stack_kernel(layer), tip.flat / unit, extra)
@@ -201,13 +201,13 @@ def _grown(scene: Scene, extra: int) -> Stuck:
 
 
 def _radii(growth: Growth, which: int, targets: FloatArray) -> FloatArray:
-    """Radii at which the depth (0) or the force (1) is reached."""
+    """Radii at which the depth (which = 0) or F/E* (which = 1) equals each target, in units of the kernel."""
 
-    def missing(a: float, value: float) -> float:
+    def excess(a: float, value: float) -> float:
         return float(growth.states(np.array([a]))[which][0]) - value
 
     ends = growth.parts[0][0].start, growth.end
-    return np.array([brentq(missing, *ends, (value,), xtol=1e-300, rtol=4 * EPS) for value in targets.tolist()])
+    return np.array([brentq(excess, *ends, (value,), xtol=1e-300, rtol=4 * EPS) for value in targets.tolist()])
 
 
 def _first_reach(scene: Scene, tip: Tip) -> float:
@@ -215,14 +215,14 @@ def _first_reach(scene: Scene, tip: Tip) -> float:
     largest = float(_values(scene).max())
     if isinstance(scene.loading, ContactRadii):
         return largest
-    room, modulus = min(tip.end, 1e12) - tip.flat, contact_modulus(scene.layer)
+    widest, modulus = min(tip.end, 1e12) - tip.flat, contact_modulus(scene.layer)
 
-    def missing(log_excess: float) -> float:
+    def residual(log_excess: float) -> float:
         a = tip.flat + math.exp(log_excess)
         depth = float(tip.transform(np.array([a]))[0])
         return depth - largest if isinstance(scene.loading, IndentationDepths) else modulus * a * depth - largest
 
-    # Stop a share of 1e-12 before the indenter's end: at a sphere's equator the slope is infinite.
-    low, high = math.log(1e-15 * min(room, 1.0)), math.log(room) - 1e-12
-    excess = brentq(missing, low, high, xtol=1e-3) if missing(high) > 0.0 > missing(low) else high
+    # The search ends a share of 1e-12 before the indenter's end: at a sphere's equator the slope is infinite.
+    low, high = math.log(1e-15 * min(widest, 1.0)), math.log(widest) - 1e-12
+    excess = brentq(residual, low, high, xtol=1e-3) if residual(high) > 0.0 > residual(low) else high
     return min(tip.flat + math.exp(excess), tip.end)

@@ -1,11 +1,11 @@
-"""The change of a frictionless answer by friction: a bound, and the first order in its coefficient.
+"""Change of a frictionless force by friction: a bound, and the first order in the coefficient mu.
 
 Reciprocity with the frictionless punch of the same radius a gives F = F_0(delta, a) - int q u_1 dA exactly, u_1 being
 the radial displacement of the surface under that punch for a depth of one, and |q| <= mu p. Hence
 |F - F_0(delta, a)| <= mu U(a) F with U = max |u_1|, at the true contact radius. F_0(delta, .) is largest at the
-frictionless radius a_0, so the upper bound needs no other. The lower one takes the least of it at radii around a_0 that
-include those of full stick: measured there, not proved. u_1 at the surface is that of `mdr.inside`, a polynomial of
-arcsin(r/a). Its maximum is at an end or a root of its derivative. Samples miss it.
+frictionless radius a_0, so the upper bound needs no other radius. The lower bound uses its least value at radii around
+a_0 that include those of full stick, which is tested, not proved. u_1 follows from `mdr.inside` as a polynomial of
+arcsin(r/a). Its largest magnitude is at an end or a root of its derivative.
 """
 
 from __future__ import annotations
@@ -28,10 +28,10 @@ from mdr.equilibria import is_singular
 from mdr.inside import Body, field_sizes
 from mdr.spring_bed import Springs
 
-# Largest relative change of the radius by friction over min(1, mu U). Full stick changes it by up to 0.14 of min(1, U),
-# most under a cone on a thick layer of nu = 0. Half of it excludes such radii.
+# Assumed largest relative change of the radius by friction over min(1, mu U). Under full stick it is 0.14 at most, for
+# a cone on a thick layer of nu = 0. Half of it excludes such radii.
 _RADIUS_SHARE = 0.2
-# Slip of less than this share of the largest has no direction; ten times as much would call small reversals one way.
+# Slip over the largest slip below which its direction is ignored; ten times of it ignores small reversals.
 _NO_DIRECTION = 1e-3
 
 

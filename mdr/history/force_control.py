@@ -81,7 +81,7 @@ def steps_of(law: SpringLaw, loading: ForceHistory, substeps: int, degree: int) 
     Args:
         law: Law of the springs.
         loading: Forces in time.
-        substeps: Their number. Half are distributed by duration, half equally: short intervals may be steep.
+        substeps: Total number. Half are distributed by duration, half equally: short intervals may be steep.
         degree: Degree of the depth in each substep.
     """
     ends = np.sort(np.append(loading.time, turns(law, loading)))
@@ -134,10 +134,10 @@ class March(NamedTuple):
     """Depths under a force on one layout of springs.
 
     Attributes:
-        path: Depths between all ends of substeps.
-        instants: Those of `Steps` [s], shape (1 + n q,).
-        depth: Depths there [m].
-        front: Radii [m] at which contact ends there, -1 where nothing touches.
+        path: Depth as a polynomial of time in each substep.
+        instants: `Steps.instants` [s], shape (1 + n q,).
+        depth: Depth at `instants` [m].
+        front: Contact radius at `instants` [m], -1 without contact.
         load_error: Largest error of F_e over the largest F_e.
     """
 
@@ -148,12 +148,12 @@ class March(NamedTuple):
     load_error: float
 
     def panel_ends(self, law: SpringLaw) -> FloatArray:
-        """Radii [m] at which panels of the next march end."""
+        """Radii [m] at which the panels of springs end in the next march, shape (n,)."""
         return panel_ends(law, self.instants, self.front)
 
 
 def march(law: SpringLaw, springs: Layout, steps: Steps, closed: FloatArray, guess: FloatArray) -> March:
-    """Depths that balance F_e in all substeps.
+    """Depths that balance F_e, computed in one substep after the other.
 
     Args:
         law: Law of the springs.
@@ -161,10 +161,10 @@ def march(law: SpringLaw, springs: Layout, steps: Steps, closed: FloatArray, gue
         steps: Substeps.
         closed: Depths [m] of the elastic layer under F_e at `Steps.instants`. They are inserted in substeps in which
             F_e has never been larger.
-        guess: First guess of the depths there.
+        guess: First guess of the depths at `Steps.instants` [m].
 
     Raises:
-        NotConvergedError: If no depth is found for a force.
+        NotConvergedError: If the depths of a substep do not converge.
     """
     count, q = steps.time.size - 1, steps.nodes.size
     is_known = np.asarray(never_larger(law, steps.load)[1:].reshape(count, q).all(axis=1))
@@ -210,15 +210,15 @@ class Balance(NamedTuple):
     scale: float
 
     def after(self, depth: FloatArray) -> tuple[SpringBed, Passage, FloatArray]:
-        """Springs at the end, springs at the nodes, and errors of F_e [N] there, from depths [m] at the nodes."""
+        """Springs at the end of the substep, springs and errors of F_e [N] at its nodes, from depths [m] at these."""
         bed = self.bed.copy()
         passage = bed.advance(self.steps.polynomials(self.start, depth[None])[0], self.span, self.steps.nodes)
         return bed, passage, passage.surface @ self.stiffness - self.load
 
     def solved(self, depth: FloatArray) -> tuple[FloatArray, SpringBed, Passage, float]:
-        """Depths [m] at the nodes from a guess, springs after and at them, and the error of F_e over the largest.
+        """Depths [m] at the nodes from a guess, springs at the end and at the nodes, and the error of F_e over `scale`.
 
-        Broyden's method: the sum of displacements changes at first by the stiffness of the springs in contact.
+        Broyden's method: the first Jacobian is the stiffness of the springs in contact.
         """
         bed, passage, errors = self.after(depth)
         stiffness = passage.touching @ self.stiffness
@@ -244,7 +244,7 @@ class Balance(NamedTuple):
 
 
 def _fronts(radius: FloatArray, passage: Passage) -> FloatArray:
-    """Radii [m] at which contact ends at the nodes, linear in `Passage.edge` between two springs, shape (q,)."""
+    """Contact radii [m] at the nodes, -1 without contact, linear in `Passage.edge` between two springs, shape (q,)."""
     touching, edge = passage.touching, passage.edge
     free = np.argmin(np.column_stack([touching, np.zeros(len(touching), dtype=np.bool_)]), axis=1)
     i, row = np.clip(free, 1, radius.size - 1), np.arange(free.size)

@@ -27,17 +27,18 @@ from mdr.history.spring_law import SpringLaw
 from mdr.radius_search import Quantity, RadiusSearch, refuse_too_wide, roots
 from mdr.spring_bed import Springs
 
-# Springs among which fronts are bracketed, besides one between all depths of the history, and how far they reach over
-# the largest depth. With half as many the root search takes one step more.
+# Springs that bracket the fronts, besides one between all depths of the history, and their largest g over the largest
+# depth. With half as many the root search takes one step more.
 _SPREAD, _BEYOND = 33, 1.001
-# Ratio of the widths of neighbouring panels near a front, and their largest number. With 2 springs double.
+# Ratio of the widths of neighbouring panels near a front, and their largest number. At a ratio of 2 the number of
+# springs doubles.
 _GROWTH, _MOST_PANELS = 4.0, 12
-# Share of a stretch between kinks below which two ends of panels are one.
+# Distance over that between two kinks below which two ends of panels coincide.
 _APART = 1e-9
-# Power of the distance from a kink, or from the axis, in which springs are smooth: g goes with roots of the former, and
-# tips like r^1.7 are not analytic at the latter.
+# Exponents of the substitution x - b = v^p at a kink b, near which g varies like a root, and at the axis, where tips
+# like r^1.7 are not analytic.
 KINK_POWER, _AXIS_POWER = 2.0, 4.0
-# What messages name where the indenter ends before a depth or force.
+# Name of the input in messages where the indenter ends before a depth or force.
 _PRESCRIBED = {"depth": "loading.depth", "force": "loading.force, as an elastic layer must bear it to be as deep"}
 
 
@@ -45,12 +46,12 @@ class Response(NamedTuple):
     """Answer of the springs to a history.
 
     Attributes:
-        path: Depths between all instants.
+        path: Depth as a polynomial of time in each interval.
         given: Indices in the path of the instants of the history, shape (n,).
-        depth: delta [m] at these, shape (n,).
-        force: F_N [N], shape (n,).
-        radius: a [m], zero without contact, shape (n,).
-        known: Where the depth is known in closed form, shape (n,).
+        depth: Indentation depth delta [m] at the instants of the history, shape (n,).
+        force: Normal force F_N [N], shape (n,).
+        radius: Contact radius a [m], zero without contact, shape (n,).
+        known: Whether the depth has a closed form at each instant, shape (n,).
         springs: Number of springs.
         depth_error: Last correction of the depth [m].
     """
@@ -80,7 +81,7 @@ class Problem(NamedTuple):
 
     @property
     def finer(self) -> Problem:
-        """The same problem on finer springs."""
+        """The same problem with springs at a finer resolution."""
         return self._replace(springs=self.springs.finer)
 
     @property
@@ -89,10 +90,10 @@ class Problem(NamedTuple):
         return self.scene.indenter.radius if isinstance(self.scene.indenter, FlatPunch) else None
 
     def elastic_radii(self, quantity: Quantity, values: FloatArray) -> FloatArray:
-        """Contact radii [m] under depths [m] or forces [N] > 0 of the elastic layer.
+        """Contact radii [m] of the elastic layer at depths [m] or forces [N] > 0, shape (n,).
 
         Raises:
-            InvalidInput: If the indenter ends before.
+            InvalidInput: If the indenter ends at a smaller radius.
         """
         if self.punch is not None:
             refuse_too_wide(self.springs, self.punch)
@@ -104,6 +105,7 @@ class Problem(NamedTuple):
 
     @property
     def _search(self) -> RadiusSearch:
+        """Search of elastic contact radii."""
         return RadiusSearch(self.springs, may_fall=not is_simple(self.scene))
 
     def radii(self, gamma: FloatArray) -> FloatArray:
@@ -114,7 +116,7 @@ class Problem(NamedTuple):
         return radius
 
     def depths(self, load: FloatArray) -> FloatArray:
-        """Depths [m] of the elastic layer under forces [N], zero where these are."""
+        """Depths [m] of the elastic layer under forces [N] >= 0, shape (n,)."""
         depth, some = np.zeros(load.size), load > 0
         radius = self.elastic_radii("force", load[some])
         depth[some] = self.springs.depth_of(load[some], self.springs.at(radius))
@@ -124,7 +126,7 @@ class Problem(NamedTuple):
         """Refuse an elastic contact of a radius [m], under a flat punch at a depth [m], that is no disc.
 
         Raises:
-            UnsupportedSceneError: Also if g falls within it, so that springs would be touched from outside.
+            UnsupportedSceneError: If it is no disc, or g decreases within it, so that springs touch from outside.
         """
         if self.punch is None:
             self._search.refuse_falls(radius)
@@ -133,7 +135,14 @@ class Problem(NamedTuple):
 
 
 def fronts(law: SpringLaw, path: Path, instants: NDArray[np.intp], deepest: float) -> FloatArray:
-    """Fronts gamma [m] at instants of a path whose largest depth [m] is known, -1 where nothing touches, shape (n,)."""
+    """Fronts gamma [m], values of g at the edge of contact, -1 without contact, shape (n,).
+
+    Args:
+        law: Law of the springs.
+        path: Depth in time.
+        instants: Indices of instants of the path, shape (n,).
+        deepest: Largest depth [m].
+    """
     gamma = np.full(instants.size, -1.0)
     if not instants.size:
         return gamma
@@ -145,13 +154,14 @@ def fronts(law: SpringLaw, path: Path, instants: NDArray[np.intp], deepest: floa
     some = np.flatnonzero(first_free)
     high, low = g[first_free[some]], g[first_free[some] - 1]
 
-    def sunk(share: FloatArray, at: BoolArray) -> FloatArray:
+    def negative(share: FloatArray, at: BoolArray) -> FloatArray:
+        """-`Passage.edge` over the largest depth, of springs g = share times that depth."""
         edge_of_springs = _edges(law, deepest * share, path)
         return np.asarray(-edge_of_springs[instants[some[at]], np.arange(share.size)] / deepest)
 
     if some.size:
         first = -edge[some, first_free[some] - 1] / deepest
-        gamma[some] = deepest * roots(sunk, low / deepest, first, (high - low) / deepest)
+        gamma[some] = deepest * roots(negative, low / deepest, first, (high - low) / deepest)
     return gamma
 
 
@@ -161,7 +171,7 @@ def _edges(law: SpringLaw, g: FloatArray, path: Path) -> FloatArray:
 
 
 def panel_ends(law: SpringLaw, time: FloatArray, front: FloatArray) -> FloatArray:
-    """Radii [m] or values of g at which panels end: fronts at instants [s], and next to them; those > 0, increasing."""
+    """Positive ends of panels, increasing: fronts (radii [m] or values of g) at instants [s], and values near them."""
     shortest = float(law.times[-1]) if law.times.size else np.inf
     before, after, steps, ends = np.maximum(front[:-1], 0), np.maximum(front[1:], 0), np.diff(time), [front]
     for number in range(_MOST_PANELS):
@@ -181,7 +191,7 @@ class Layout(NamedTuple):
 
     Attributes:
         g: MDR profile [m], increasing, shape (n,); the first is the axis, or the whole flat end.
-        weight: Part of K of each spring [m], shape (n,).
+        weight: Quadrature weight times y_1^2 [m], whose sum is K, shape (n,).
         radius: Distance from the axis [m], shape (n,).
     """
 
@@ -191,7 +201,10 @@ class Layout(NamedTuple):
 
 
 def layout(springs: Springs, radii: FloatArray, nodes: int) -> Layout:
-    """Gauss rules of so many nodes between flat end, radii [m], kinks of the profile and octaves of the thickness."""
+    """Gauss rules on panels that end at the flat radius, radii [m], kinks of the profile and octaves of the thickness.
+
+    `nodes` is the number of nodes per panel.
+    """
     tip, flat = springs.tip, springs.tip.flat
     core = springs.at([flat]).K if flat else np.zeros(1)
     top = float(radii.max(initial=flat))

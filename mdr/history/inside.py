@@ -1,8 +1,8 @@
-"""The body at one instant of a history: stresses from what the springs carry then, displacements from how far they are.
+"""Fields at one instant of a history: stresses from the forces of the springs, displacements from those of their ends.
 
-The whole body relaxes alike at constant volume, so it is in equilibrium with the pressure of that instant as an elastic
-one is, whatever went before: stresses follow from the spring forces f(x) alone. Displacements are those of an elastic
-body of the instantaneous modulus whose springs stand as far out as the bed's do, pressed or creeping back.
+The whole layer relaxes alike at constant volume. So its stresses are those of an elastic layer under the pressure of
+that instant, and follow from the spring forces f(x) alone. Its displacements are those of an elastic layer of the
+instantaneous modulus whose springs have the displacements u(x) of the bed, in contact or free.
 
 Springs q(x) up to b are flat punches on top of each other. With the density phi_1(t; x) under a unit one, and its
 derivative by the radius, y_1(x) r_x(t), where r_x is the resolvent of the equation of contact,
@@ -32,11 +32,12 @@ from mdr.spring_bed import Springs
 _NODES = 16
 # Widest panel over the layer's unit: densities are analytic within two of these.
 _WIDEST = 1.0
-# Shares of the first panel at which more panels end towards a pointed tip.
+# Ends of further panels towards a pointed tip, over the width of the first panel.
 _TOWARDS_AXIS = 0.3 ** np.arange(1, 5)
-# Shares of the distance from a front at which panels end; with half as many displacements err by 1e-6 next to it.
+# Distances from a front at which panels end, over the largest one; with half as many the error of displacements next
+# to it is 1e-6.
 _BESIDE_FRONT = 0.2 ** np.arange(1, 7)
-# Share of the widest radius below which two ends of panels are one.
+# Distance over the largest radius below which two ends of panels coincide.
 _APART = 1e-9
 
 
@@ -61,7 +62,7 @@ class Panels(NamedTuple):
 
 
 class SpringDensity:
-    """phi of springs whose displacements or forces are given on panels; it stands for a `Surface` and for its profile.
+    """phi of springs whose displacements or forces are given on panels; it replaces a `Surface` and its profile.
 
     Args:
         springs: Springs of the scene.
@@ -134,11 +135,11 @@ class SpringDensity:
         return np.asarray(-2 * rise / panels.slope(s))
 
     def smooth_slope(self, t: FloatArray) -> FloatArray:
-        """Derivative of the part of phi besides the profile: none."""
+        """Zero: `transform_slope` is the derivative of all of phi."""
         return np.zeros_like(t)
 
     def moments(self, a: FloatArray, count: int, _: int) -> FloatArray:
-        """Moments of the profile: none, since the transform of the density is that of all of it."""
+        """Zeros, shape (n, count): `smooth_transform` is the transform of all of phi."""
         return np.zeros((a.size, count))
 
     def smooth_transform(self, k: FloatArray) -> FloatArray:
@@ -157,8 +158,8 @@ class HistoryInterior:
     """Fields at one instant.
 
     Attributes:
-        stressed: The body under the pressure.
-        displaced: The body under springs as far out as they are.
+        stressed: Elastic fields of the pressure, from the forces of the springs.
+        displaced: Elastic fields of the displacements of the springs.
     """
 
     stressed: Interior
@@ -170,7 +171,7 @@ class HistoryInterior:
         return self.stressed.pair[0].edge > 0.0
 
     def at(self, radius: FloatArray, depth: FloatArray) -> InsideFields:
-        """At points [m] of shape (n,)."""
+        """Fields at radii and depths [m] of shape (n,): stresses of `stressed`, displacements of `displaced`."""
         stress, displaced = self.stressed.at(radius, depth), self.displaced.at(radius, depth)
         error = {**stress.error_estimate, "displacement": displaced.error_estimate["displacement"]}
         return replace(
@@ -196,7 +197,7 @@ class HistoryFields:
     density_error: FloatArray
 
     def inside(self, step: int) -> HistoryInterior:
-        """The body at one instant of contact."""
+        """Fields at one instant of contact."""
         known = KnownContact(float(self.answer.radius[step]), 0.0, float(self.density_error[step]))
         bodies = []
         for is_displaced in (False, True):

@@ -1,8 +1,8 @@
 """Layers that relax under a prescribed depth or force, Eqs. (47), (51) and (52).
 
-Loading, unloading with a receding front, and reloading over a surface that has not yet recovered: one bed of springs.
-A prescribed depth is followed as it is (`fronts`), a prescribed force by the depth that balances it (`force_control`).
-Errors: the same history on finer springs with more of them, and with other steps in time.
+One bed of springs describes loading, unloading with a receding front, and reloading before the surface has recovered.
+A prescribed depth moves the springs directly (`fronts`), a prescribed force by the depth that balances it
+(`force_control`). Errors are estimated from the same history with more springs and other steps in time.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ _NODES_OF_DEPTHS, _NODES = 14, 5
 # doubles them, at most twice; one digit less halves them, at most once.
 _SUBSTEPS = 10
 _FEWEST, _MOST = -1, 2
-# Degrees of the depth in a substep, of the answer and of its companion.
+# Degrees of the depth in a substep, of the answer and of the coarser solution for error estimates.
 _DEGREES = (6, 5)
 # Panels of the first march, marches at most, and the share of the largest depth by which the last one may differ.
 _FIRST_PANELS, _MOST_MARCHES, _CHANGE = 32, 4, 1e-9
@@ -54,9 +54,9 @@ def solve_history(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
     """Force under a prescribed depth, or depth under a prescribed force.
 
     Raises:
-        InvalidInput: If a force is negative, nothing is ever pressed, or the indenter ends before.
+        InvalidInput: If a force is negative, no depth or force is positive, or the contact exceeds the indenter.
         UnsupportedSceneError: If the MDR profile falls within the contact, or the indenter would touch outside it.
-        NotConvergedError: If a spring is touched and released without end, or no depth carries a force.
+        NotConvergedError: If a spring is touched and released without end, or no depth balances a force.
     """
     loading, log = scene.loading, StageLog()
     if not isinstance(loading, DepthHistory | ForceHistory):
@@ -92,8 +92,8 @@ def solve_history(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
 
 
 def _errors(springs: Springs, answer: Response, other: Response) -> dict[str, FloatArray]:
-    """Errors relative to the largest value: one for all instants known in closed form, one for all others."""
-    floor, errors = sum(float(one[0]) for one in springs.floor(answer.radius.max(keepdims=True))), {}
+    """Error estimates over the largest value: one for all instants with a closed form, one for all others."""
+    floor, errors = sum(float(noise[0]) for noise in springs.floor(answer.radius.max(keepdims=True))), {}
     for name, short in (("indentation_depth", "depth"), ("normal_force", "force"), ("contact_radius", "radius")):
         values, known = getattr(answer, short), answer.known
         scale = max(float(np.abs(values).max()), np.finfo(float).tiny)
@@ -110,6 +110,7 @@ def _substeps(settings: Mapping[str, Setting]) -> int:
 
 
 def _refuse_idle(loading: DepthHistory | ForceHistory) -> None:
+    """Refuse negative forces, and histories without a positive depth or force."""
     prescribed = loading.depth if isinstance(loading, DepthHistory) else loading.force
     if isinstance(loading, ForceHistory) and prescribed.min() < 0:
         worst = int(prescribed.argmin())
@@ -121,11 +122,11 @@ def _refuse_idle(loading: DepthHistory | ForceHistory) -> None:
 
 
 def _by_depth(problem: Problem, loading: DepthHistory) -> list[Response]:
-    """The answer to depths, and the same on finer springs with fronts a rounding further out."""
+    """Responses to prescribed depths on two sets of springs; the finer one has fronts that are larger by rounding."""
     law, path, every = problem.law, Path.linear(loading.time, loading.depth), np.arange(loading.time.size)
     peaks, gamma = np.maximum.accumulate(path.depth), path.depth.copy()
     if problem.punch is None:
-        # Deeper than ever, the indenter touches all springs up to its depth.
+        # At its largest depth so far the indenter touches all springs up to g = depth.
         others = np.flatnonzero((path.depth < peaks * (1 - EPS)) & (peaks > 0))
         gamma[others] = fronts(law, path, others, float(peaks[-1]))
     answers = []
@@ -145,7 +146,7 @@ def _by_depth(problem: Problem, loading: DepthHistory) -> list[Response]:
 
 
 def _by_force(problem: Problem, loading: ForceHistory, substeps: int) -> list[Response]:
-    """The answer to forces that are balanced at the nodes of substeps, and before it the same on coarser ones."""
+    """Responses to prescribed forces, which are balanced at the nodes of substeps: the answer, and a coarser one."""
     answers, law = [], problem.law
     is_elastic, before = not law.times.size and not law.viscosity, None
     for resolved, degree in ((problem, _DEGREES[1]), (problem.finer, _DEGREES[0])):
@@ -167,9 +168,10 @@ def _by_force(problem: Problem, loading: ForceHistory, substeps: int) -> list[Re
 
 
 def _marched(problem: Problem, steps: Steps, closed: FloatArray, before: March | None) -> tuple[March, int, float]:
-    """March on panels that end at the fronts of the march before, number of springs, and error of a depth [m].
+    """Last of several marches, number of springs, and error of the depth [m].
 
-    The first panels end at the fronts of a march at another resolution, if there is one.
+    Panels of springs end at the fronts of the previous march, at first at those of a march `before` at another
+    resolution, if there is one.
     """
     deepest = float(closed.max())
     widest = problem.radii(np.array([deepest]))

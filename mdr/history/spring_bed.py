@@ -8,12 +8,12 @@ time both the force f of a spring in contact and the gap u - (delta - g) of a fr
     c + C(t) + sum_k c_k exp(-r_k (t - theta))
 
 with the instant theta of the last touch or release, and one polynomial C(t) for all springs: -delta(t), or the force of
-a spring g = 0 whose strains are polynomials. Signs of these functions are taken at times that crowd towards theta,
-where exponentials change fastest, and the first root is computed within a bracket.
+a spring g = 0 whose strains are polynomials. The first root is bracketed by signs at times that are densest near theta,
+where exponentials change fastest.
 
-Surfaces stay in the order of their profile: u + g never decreases with g. For let the surfaces of springs g_1 < g_2
-meet. Then u_2 - u_1 has never been less, so that f_2 < f_1 under a relaxation that fades: spring 1 is in contact, and
-they stay together. Hence springs touch up to one front, f decreases outwards, and the spring g = 0 has the highest end.
+Surfaces keep the order of their profile: u + g never decreases with g. Proof: let the surfaces of springs g_1 < g_2
+meet. Then u_2 - u_1 has never been smaller, so f_2 < f_1 for a decreasing relaxation function. Hence spring 1 is in
+contact, and both surfaces move together. So springs touch up to one front, and f decreases outwards.
 """
 
 from __future__ import annotations
@@ -35,8 +35,8 @@ from mdr.radius_search import roots
 _MOST_EVENTS = 40
 # Rounding error of a force or a gap over its largest terms. It doubles with each touch and release.
 _ROUNDING = 8 * EPS
-# Signs are taken at sixteenths of the rest of an interval, and at halves of it down to 2^-6 of the fastest relaxation
-# time. With eighths some springs are touched and released unseen that carry 1e-9 of the largest force.
+# The sign of f or of the gap is computed at sixteenths of the rest of an interval, and at halves of it down to 2^-6 of
+# the fastest relaxation time. With eighths some events are missed of springs with 1e-9 of the largest force.
 _PARTS, _HALVES_MORE, _MOST_HALVES = 16, 6, 40
 # Interval over relaxation time above which strains follow the indenter by a finite polynomial, and terms of the power
 # series below. At half of it rounding errors are 64 times as large, at twice of it the series takes six terms more.
@@ -88,11 +88,11 @@ class Course(NamedTuple):
     """Forces or gaps c + C(s) + sum_k c_k exp(-r_k (s - theta)) of n springs at shares s of an interval.
 
     Attributes:
-        constant: c, shape (n,).
-        amplitudes: c_k, shape (k, n).
+        constant: Constants c, shape (n,).
+        amplitudes: Amplitudes c_k, shape (k, n).
         rates: r_k times the interval, shape (k,).
         start: theta of each spring, or of all, shape (n,) or (1,).
-        shared: Coefficients of C.
+        shared: Coefficients of the polynomial C, by rising powers.
         rounding: Rounding errors of the values, shape (n,).
     """
 
@@ -128,7 +128,7 @@ def first_fall(course: Course) -> FloatArray:
     halves = int(np.clip(np.ceil(np.log2(fastest)) + _HALVES_MORE, 4, _MOST_HALVES))
     shares = np.unique(np.concatenate([[0.0], 0.5 ** np.arange(halves), np.arange(1, _PARTS) / _PARTS]))
     s = course.start + (1 - course.start) * shares[:, None]
-    # Exponentials fade, so that no value is less than all terms at their least.
+    # Lower bound of the course: every exponential is monotonic, so its least value is at one end.
     least = (
         course.fading(s[[0, -1]]).min(axis=1).sum(axis=0) + course.constant + _polynomial(course.shared, s).min(axis=0)
     )
@@ -141,19 +141,19 @@ def first_fall(course: Course) -> FloatArray:
     course, s = course.among(ends), np.broadcast_to(s, falls.shape)
     low, high = s[np.maximum(first[ends] - 1, 0), ends], s[first[ends], ends]
 
-    def sunk(share: FloatArray, at: BoolArray) -> FloatArray:
-        """Negative value in units in which the root search stops at the rounding error."""
+    def negative(share: FloatArray, at: BoolArray) -> FloatArray:
+        """The negative course, scaled so that the tolerance of the root search is its rounding error."""
         part = course.among(at)
         return np.asarray(-1e-14 * part.values((low[at] + share * (high - low)[at])[None])[0] / part.rounding)
 
     zero, one = np.zeros(ends.size), np.ones(ends.size)
-    share = roots(sunk, zero, np.minimum(sunk(zero, one > 0), 0.0), one)
+    share = roots(negative, zero, np.minimum(negative(zero, one > 0), 0.0), one)
     event[some[ends]] = low + share * (high - low)
     return event
 
 
 class Path(NamedTuple):
-    """Depths that are polynomials between instants.
+    """Depth in time, a polynomial between neighbouring instants.
 
     Attributes:
         time: Instants [s], shape (n,).
@@ -190,8 +190,8 @@ class Passage(NamedTuple):
     Attributes:
         surface: Displacements u [m].
         touching: Whether each spring is in contact.
-        edge: Positive in contact, negative outside, and smooth across the front. It is the force f in contact and the
-            gap with its sign outside; of springs touched or released in this interval, f or gap without that event.
+        edge: The force f [m] in contact, minus the gap [m] outside, so smooth across the front. For springs touched or
+            released in this interval it is f or the gap continued as if the event had not happened.
     """
 
     surface: FloatArray
@@ -219,7 +219,7 @@ class SpringBed:
 
     @classmethod
     def undeformed(cls, law: SpringLaw, g: FloatArray, depth: float) -> SpringBed:
-        """The bed at first touch; a depth [m] that is there from the start has been reached at once."""
+        """The bed at the first instant; a depth [m] > 0 at that instant is applied as a step."""
         surface = np.maximum(depth - g, 0.0)
         return cls(law, g, surface > 0, surface, np.repeat(surface[None], law.weights.size, axis=0))
 
@@ -233,12 +233,12 @@ class SpringBed:
         self.touching = np.zeros(self.g.size, dtype=np.bool_)
 
     def advance(self, coefficients: FloatArray, span: float, nodes: FloatArray = _AT_END) -> Passage:
-        """Advance by a time [s] under an indenter.
+        """Advance by a time [s] under an indenter, and return the springs at the nodes.
 
         Args:
-            coefficients: Coefficients of the depth over the share of that time [m].
-            span: The time [s].
-            nodes: Shares, increasing, the last one 1, shape (q,).
+            coefficients: Coefficients of the depth [m] as a polynomial of the share s of the interval, 0 <= s <= 1.
+            span: Duration of the interval [s].
+            nodes: Shares s, increasing, the last one 1, shape (q,).
 
         Raises:
             NotConvergedError: If a spring is touched and released without end.
@@ -252,7 +252,7 @@ class SpringBed:
                 if group.size:
                     start = events[group] if number else np.zeros(1)
                     course = self._course(group, motion, span, start)
-                    # A spring that is touched and released at one instant is so by rounding.
+                    # Touch and release at the same instant are caused by rounding, so its bound is doubled.
                     course = course._replace(rounding=course.rounding * 2.0**number)
                     events[group] = self._stretch(group, course, motion, nodes, passage)
             moving = moving[events[moving] < np.inf]
@@ -266,7 +266,10 @@ class SpringBed:
     def _stretch(
         self, i: NDArray[np.intp], course: Course, motion: Motion, nodes: FloatArray, passage: Passage
     ) -> FloatArray:
-        """Advance springs i, all in contact or all free, to their next event or the end; shares of events, or inf."""
+        """Advance springs i, all in contact or all free, to their next event or the end of the interval.
+
+        Returns the shares of these events, inf without one, shape of i.
+        """
         is_pressed, event = bool(self.touching[i[0]]), first_fall(course)
         s = np.maximum(nodes[:, None], course.start)
         values, is_later = course.values(s), nodes[:, None] >= course.start
@@ -295,7 +298,7 @@ class SpringBed:
         return Course(constant, fading, span * rates, start, shared, rounding)
 
     def _move(self, i: NDArray[np.intp], motion: Motion, course: Course, end: FloatArray) -> None:
-        """Set springs i to their state at shares `end`, at which they are touched or released unless these are 1."""
+        """Set springs i to their state at shares `end`: those of their next events, or `_AT_END` without an event."""
         fading = course.fading(end[None])[:, 0]
         is_pressed, is_event = bool(self.touching[i[0]]), end is not _AT_END
         if is_pressed:
@@ -307,14 +310,14 @@ class SpringBed:
         self.touching[i] = is_pressed != is_event
 
     def forces(self, speed: float) -> FloatArray:
-        """f at an indenter's speed [m/s], zero where free, shape (n,)."""
+        """Forces f over the instantaneous modulus [m], zero of free springs, at a speed of the indenter [m/s], (n,)."""
         law = self.law
         pressed = law.long_term * self.surface + law.viscosity * speed + law.weights @ self.strains
         return np.where(self.touching, pressed, 0.0)
 
 
 def followed(law: SpringLaw, g: FloatArray, path: Path) -> Iterator[tuple[SpringBed, FloatArray]]:
-    """The bed at each instant of a path, one object that is advanced, and `Passage.edge` there, shape (n,)."""
+    """Yields at each instant of a path the bed, always the same advanced object, and `Passage.edge`, shape (n,)."""
     bed = SpringBed.undeformed(law, g, float(path.depth[0]))
     yield bed, path.depth[0] - g
     for k, span in enumerate(np.diff(path.time).tolist()):

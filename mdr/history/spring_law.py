@@ -1,4 +1,4 @@
-"""One relaxing spring: its law in contact, its creep when it is free, and its creep under a force.
+"""One viscoelastic spring: its force in contact, its recovery when it is free, and its creep under a force.
 
 In units of the instantaneous modulus a spring in contact with the indenter, displaced by w, carries
 
@@ -38,10 +38,10 @@ class Modes(NamedTuple):
 
     Attributes:
         rates: lambda [1/s], shape (k,).
-        of_surface: Amplitudes that a unit surface displacement has, shape (k, 1).
-        of_dashpots: Amplitudes that unit stretches q_j of the dashpots have, shape (k, m).
-        of_force: Rates [1/s] at which amplitudes grow under a unit force, shape (k,). Without eta the surface is
-            displaced by the force over the instantaneous modulus besides.
+        of_surface: Amplitudes of the modes per surface displacement u, shape (k, 1).
+        of_dashpots: Amplitudes of the modes per stretch q_j of each dashpot, shape (k, m).
+        of_force: Rates of the amplitudes [1/s] per force, shape (k,). Without eta the surface has the displacement
+            force over instantaneous modulus in addition.
         strains: Elastic strains u - q_j of the branches in each mode of unit surface displacement, shape (m, k).
     """
 
@@ -61,7 +61,7 @@ class SpringLaw:
     """A relaxation function in units of its instantaneous modulus.
 
     Attributes:
-        long_term: g_inf.
+        long_term: Long-term modulus g_inf.
         viscosity: eta over the modulus [s].
         weights: g_j, shape (m,).
         times: tau_j [s], decreasing and no two of them equal, shape (m,).
@@ -86,7 +86,7 @@ class SpringLaw:
 
     @cached_property
     def modes(self) -> Modes:
-        """Modes in which a free spring creeps back."""
+        """Modes of the recovery of a free spring."""
         rates = 1 / self.times
         origin, offset = self._roots(rates)
         distances = (rates[:, None] - origin) - offset
@@ -101,7 +101,7 @@ class SpringLaw:
         )
 
     def _roots(self, rates: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Rates of the modes as nearest d_j, or zero, and distance from it, each of shape (k,)."""
+        """Rates lambda of the modes as the nearest d_j (or zero), and lambda minus it, each of shape (k,)."""
         fastest = [2 / self.viscosity + 2 * rates.max(initial=0.0)] if self.viscosity > 0 else []
         low, high = np.append(0.0, rates)[: rates.size + len(fastest)], np.append(rates, fastest)
 
@@ -142,5 +142,5 @@ class SpringLaw:
         for k, (decay, gain) in enumerate(zip(np.exp(-z), self.modes.of_force * span * mean, strict=True)):
             amplitudes[k + 1] = amplitudes[k] * decay + gain
         crept = amplitudes.sum(axis=1)
-        # A dashpot beside the springs holds them where they are: a force that is there at first does not move it.
+        # A dashpot in parallel (eta > 0) prevents an instantaneous displacement under the first force.
         return np.asarray(crept if self.viscosity > 0 else force + crept)

@@ -149,7 +149,7 @@ def test_a_dent_in_which_cells_would_pull_is_refused_with_its_place():
 def test_every_answer_is_transformed_by_fftw(monkeypatch):
     monkeypatch.setattr("bem.grid.transforms._fftw", lambda: sys.modules["absent"])
     monkeypatch.setattr("bem.grid.discs.disc_of", disc_of.__wrapped__)
-    monkeypatch.setattr("bem.grid.transforms._kept", lambda *given: (_ for _ in ()).throw(KeyError("absent")))
+    monkeypatch.setattr("bem.grid.transforms._cached", lambda *given: (_ for _ in ()).throw(KeyError("absent")))
     scene = Scene(layer=layer(), indenter=FlatPunch(radius=0.123), loading=IndentationDepths([0.01]))
     with pytest.raises(KeyError, match="absent"):
         Bem(points=96).solve(scene)

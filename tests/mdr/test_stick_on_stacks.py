@@ -61,7 +61,7 @@ def test_the_surface_below_a_punch_neither_sinks_unevenly_nor_slides(name, ratio
     """Then what the surface beside the punch leaves of its depth goes on analytically from the density below it."""
     punch, places = Adhered(stack_kernel(STACKS[name]), ratio, far=1.01), np.array([1.001, 1.003])
     beside = punch.beside(places)
-    monkeypatch.setattr(adhered_punch, "_BESIDE", 1.1)
+    monkeypatch.setattr(adhered_punch, "_POLYNOMIAL_END", 1.1)
     assert beside == pytest.approx(punch.beside(places), rel=0.0, abs=1e-11 * np.abs(beside).max())
 
 
