@@ -38,12 +38,12 @@ from contact import (
 from contact.records.validation import FloatArray, IntArray
 from fem_reference.profiles import cubics
 
-# Largest change of ln E between two mesh lines of a graded layer. Twice of it errs ten times as much, half of it makes
-# twice as many lines.
+# Largest change of ln E between two mesh lines of a graded layer. With twice of it errors are ten times as large, with
+# half of it there are twice as many lines.
 LARGEST_CHANGE = 1.0
 # Depths between two breakpoints at which the change of ln E is summed. With half of them mesh lines shift by 1 %.
 SAMPLES = 400
-# More parts than this are refused: each adds a mesh line through the whole section.
+# Largest number of parts; more are refused, since each adds a mesh line through the whole section.
 MOST_PARTS = 60
 # The thickness of an elastic base below a layer is that of a half-space to this power. With 1 the fields at its end are
 # below roundings under films that slide, with 0.6 depths err by 3e-6.
@@ -81,7 +81,7 @@ class Part:
 
     Attributes:
         top: depth of its upper face / a.
-        thickness: distance from there to its lower face / a.
+        thickness: distance from its upper to its lower face / a.
         youngs_modulus: E / E* as a function of z / a, z from the surface of the layer.
         poissons_ratio: nu as a function of z / a.
         slips: whether its lower face slides on the part below.
@@ -101,7 +101,7 @@ class Parts:
     Attributes:
         parts: from the surface down; an elastic base or a half-space is the last one, with its meshed thickness.
         bonded: whether u_r = 0 at the bottom of the lowest part; u_z = 0 there always.
-        has_base: whether the last part stands for a half-space, be it an elastic base or the layer itself.
+        has_base: whether the last part represents a half-space: an elastic base or the layer itself.
     """
 
     parts: tuple[Part, ...]
@@ -140,12 +140,12 @@ class Parts:
         return float(self.parts[0].poissons_ratio(np.zeros(1))[0])
 
     def at(self, part: IntArray, depth: FloatArray) -> PointModuli:
-        """Moduli at depths z / a, shape (n, ...), in the parts of these indices, shape (n,)."""
-        found = np.empty((2, *depth.shape))
+        """Moduli at depths z / a, shape (n, ...), in the parts with indices ``part``, shape (n,)."""
+        values = np.empty((2, *depth.shape))
         for index, each in enumerate(self.parts):
             here = part == index
-            found[:, here] = moduli(each.youngs_modulus(depth[here]), each.poissons_ratio(depth[here]))
-        return PointModuli(*found)
+            values[:, here] = moduli(each.youngs_modulus(depth[here]), each.poissons_ratio(depth[here]))
+        return PointModuli(*values)
 
 
 def uniform(poissons_ratio: float, thickness: float = 1.0, *, bonded: bool = True, has_base: bool = False) -> Parts:
@@ -155,7 +155,7 @@ def uniform(poissons_ratio: float, thickness: float = 1.0, *, bonded: bool = Tru
 
 
 def parts_of(layer: ElasticLayer, contact_radius: float, half_space_thickness: float) -> Parts:
-    """A layer, stack or graded layer in units of a contact radius [m].
+    """Parts of a layer, stack or graded layer in units of a contact radius.
 
     Args:
         layer: layer of the scene.
@@ -164,7 +164,7 @@ def parts_of(layer: ElasticLayer, contact_radius: float, half_space_thickness: f
             the thickness of the layer above it where that exceeds a.
 
     Raises:
-        UnsupportedSceneError: another kind of layer, or more than `MOST_PARTS` parts.
+        UnsupportedSceneError: an unknown kind of layer, or more than `MOST_PARTS` parts.
     """
     a, unit = contact_radius, contact_modulus(layer)
     match layer:
@@ -180,7 +180,7 @@ def parts_of(layer: ElasticLayer, contact_radius: float, half_space_thickness: f
             raise UnsupportedSceneError(f"finite elements know no {type(layer).__name__}")
     if len(parts) > MOST_PARTS:
         raise UnsupportedSceneError(
-            f"fem cuts this {layer.title} into {len(parts)} parts, and takes up to {MOST_PARTS}; ask mdr"
+            f"fem cuts this {layer.title} into {len(parts)} parts, and takes up to {MOST_PARTS}; use mdr"
         )
     base = layer.support
     if isinstance(base, ElasticBase):
@@ -269,7 +269,7 @@ class ShearRelaxation:
     viscosity: float = 0.0
 
     @property
-    def at_once(self) -> float:
+    def instantaneous_modulus(self) -> float:
         """Instantaneous modulus ``G(0) = G_inf + sum_j G_j`` without the dashpot [Pa]."""
         return self.long_term_modulus + math.fsum(self.moduli)
 

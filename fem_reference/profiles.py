@@ -1,6 +1,6 @@
 """Heights and slopes of indenters, derived from the parameters of the scene, and an indenter scaled by its contact.
 
-These formulas are typed independently of `contact.scene.profiles`, which the other methods use: a mistake in a shared
+These formulas are written independently of `contact.scene.profiles`, which the other methods use: a mistake in a shared
 formula would not appear as a difference between two methods. Hence `pchip_slopes` instead of scipy's PchipInterpolator.
 """
 
@@ -136,10 +136,10 @@ def height(profile: Profile, radius: float) -> float:
 
 @dataclass(frozen=True)
 class ScaledIndenter:
-    """A profile within one contact radius; lengths by that radius.
+    """A profile within a contact radius, lengths in units of that radius.
 
     Attributes:
-        profile: the indenter.
+        profile: the indenter in SI units.
         contact_radius: a [m].
     """
 
@@ -147,7 +147,7 @@ class ScaledIndenter:
     contact_radius: float
 
     def height(self, radius: FloatArray) -> FloatArray:
-        """Height f / a at r / a; nodes at the edge of a punch may exceed it by rounding."""
+        """Height f / a at r / a; radii that exceed the edge by rounding count as at the edge."""
         return np.asarray(shape(self.profile, self._inside(radius)).height / self.contact_radius)
 
     def slope(self, radius: FloatArray) -> FloatArray:
@@ -176,7 +176,7 @@ class ScaledIndenter:
         return max(self.kinks, default=0.0)
 
     @property
-    def left_to_upright_end(self) -> float:
+    def distance_to_upright_end(self) -> float:
         """(end - a) / a where the profile ends upright, like a sphere at its equator; else infinite."""
         end = self.profile.max_radius
         is_upright = np.isfinite(end) and np.isinf(shape(self.profile, np.asarray(end)).slope)

@@ -87,7 +87,7 @@ def test_relaxation_is_that_which_other_methods_use(effect):
     assert own.viscosity == other.viscosity
     np.testing.assert_array_equal(own.moduli, other.moduli)
     np.testing.assert_array_equal(own.times, other.times)
-    assert own.at_once == other.instantaneous_modulus
+    assert own.instantaneous_modulus == other.instantaneous_modulus
 
 
 GRADINGS = (
