@@ -26,7 +26,7 @@ from contact import (
     Scene,
     StageLog,
 )
-from contact.answer.friction import told_of_friction
+from contact.answer.friction import friction_notes
 from contact.answer.one_circle import Circle, no_single_circle, refuse_touching
 from contact.answer.solution import Setting
 from contact.records.validation import FloatArray
@@ -367,7 +367,7 @@ def contact_path(
         },
         cost=log.cost(unknowns=max(state.contact.unknowns for state in states)),
         stages=log.records,
-        notes=() if scene.effects else told_of_friction(scene.layer, radius),
+        notes=() if scene.effects else friction_notes(scene.layer, radius),
         contact_radius=radius,
         indentation_depth=mesh_radius * np.array([state.depth for state in states]),
         normal_force=modulus * mesh_radius**2 * np.array([state.force for state in states]),

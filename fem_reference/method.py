@@ -33,7 +33,7 @@ from contact import (
     Viscoelasticity,
     other_layer,
 )
-from contact.answer.accuracy import told_where_less
+from contact.answer.accuracy import with_accuracy_note
 from contact.answer.method import not_round
 from contact.answer.no_contact import without_contact
 from contact.answer.one_thread import one_thread
@@ -152,7 +152,7 @@ class Fem:
             raise UnsupportedSceneError(
                 "the mesh does not fit into memory: give fem a less strict accuracy or a larger growth"
             ) from None
-        return answer if self.accuracy is None else told_where_less(answer, self.accuracy, self.pressure_accuracy)
+        return answer if self.accuracy is None else with_accuracy_note(answer, self.accuracy, self.pressure_accuracy)
 
     def _solve(self, scene: Scene, log: StageLog) -> Answer:
         attempt = self._attempt(scene, log)
