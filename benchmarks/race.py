@@ -126,6 +126,7 @@ numbers = lambda found: found.youngs_modulus.tolist()
 
 
 def _with_loading(loading: str) -> str:
+    """Line of a program that replaces the loading of its scene."""
     return f"scene = scene.replace(loading={loading})\n"
 
 
@@ -288,6 +289,7 @@ def main(arguments: Sequence[str]) -> int:
 
 
 def _rows(words: Sequence[str]) -> list[str]:
+    """Names of the rows that contain one of the words; all rows without words."""
     rows = [row for row in ROWS if not words or any(word in row for word in words)]
     if not rows:
         raise InvalidInput(f"no row is named {' or '.join(words)}; rows are: {'; '.join(ROWS)}")
@@ -295,6 +297,7 @@ def _rows(words: Sequence[str]) -> list[str]:
 
 
 def _run(rows: Sequence[str], base: Path, rounds: int) -> int:
+    """Measure the rows, print their lines and return the exit code."""
     sys.stdout.write("row | before | now | ratio | limit | answers changed | MB before | MB now\n")
     slower = False
     for row in rows:

@@ -36,7 +36,7 @@ class ElementPair:
     """Displacement and pressure elements of one formulation.
 
     Attributes:
-        name: e.g. "P3P2".
+        name: name of the pair, such as "P3P2".
         degree: polynomial degree of the displacement.
         displacement: scalar element of each displacement component.
         pressure: element of the pressure, None for a displacement formulation.

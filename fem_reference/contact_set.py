@@ -28,11 +28,11 @@ EDGE_POLYNOMIAL = (0.11, 1.0, 0.04)
 
 
 class Complementary(NamedTuple):
-    """A checked solution, arrays of shape (n,).
+    """Solution whose conditions are checked, arrays of shape (n,).
 
     Attributes:
-        pressure: p.
-        gap: g.
+        pressure: nodal pressures p.
+        gap: moments g of the gap.
         active: True at vertices where p > 0 is allowed and g = 0 is required.
     """
 
@@ -47,8 +47,8 @@ def solve_complementarity(
     """Solution p, g of the complementarity problem.
 
     Args:
-        compliance: C, shape (n, n), symmetric positive definite.
-        approach: b, moments of the overlap of the indenter with the unloaded surface, shape (n,).
+        compliance: compliance C, shape (n, n), symmetric positive definite.
+        approach: moments b of the overlap of the indenter with the unloaded surface, shape (n,).
         start: first guess of the active set, shape (n,); by default the vertices with b > 0.
 
     Raises:

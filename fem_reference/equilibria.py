@@ -62,8 +62,8 @@ class FemEquilibrium:
     """One state of a path at one resolution, in units of the mesh's contact radius and of E*.
 
     Attributes:
-        contact: the solved contact.
-        depth: delta / a.
+        contact: solved contact on the mesh.
+        depth: indentation depth delta / a.
         radius_factor: contact radius over that of the mesh; one, except after a correction and for `narrowed` rings.
     """
 
@@ -176,18 +176,22 @@ def state_at_load(
     """
     radius, flat, by_depth = start, scene.indenter.flat_radius, targets_of(scene)[1]
     narrowest = narrowest_radius(scene.layer, scene.indenter, coarsening)
-    most_left = LARGEST_DEFECT if coarsening == 1.0 else np.inf
+    largest_defect = LARGEST_DEFECT if coarsening == 1.0 else np.inf
     for attempt in range(ATTEMPTS):
         contact = solve(max(radius, narrowest))
-        scaled = target / contact.contact_radius ** (1 if by_depth else 2)
-        defect = _load(contact, by_depth) / scaled
+        scaled_target = target / contact.contact_radius ** (1 if by_depth else 2)
+        defect = _load(contact, by_depth) / scaled_target
         if radius <= narrowest and defect > 1:
             contact = contact.narrowed(1 / defect)  # load ~ delta_0 to leading order
-            defect = _load(contact, by_depth) / scaled
-        exponent = grows_like(contact, flat / contact.contact_radius, by_depth=by_depth)
+            defect = _load(contact, by_depth) / scaled_target
+        exponent = load_exponent(contact, flat / contact.contact_radius, by_depth=by_depth)
         corrected = flat + (contact.radius * contact.contact_radius - flat) * defect ** (-1 / exponent)
-        if abs(defect - 1) <= (SMALL_DEFECT if attempt < ATTEMPTS - 1 else most_left):
-            depth = scaled if by_depth else contact.smooth_depth + (scaled - contact.smooth_force) / contact.stiffness
+        if abs(defect - 1) <= (SMALL_DEFECT if attempt < ATTEMPTS - 1 else largest_defect):
+            depth = (
+                scaled_target
+                if by_depth
+                else contact.smooth_depth + (scaled_target - contact.smooth_force) / contact.stiffness
+            )
             return FemEquilibrium(contact=contact, depth=depth, radius_factor=corrected / contact.contact_radius)
         radius = min(corrected, scene.indenter.max_radius)
     raise NotConvergedError("the contact radius does not settle", {"load_defect": abs(defect - 1)})
@@ -207,7 +211,7 @@ def searched_radius(scene: Scene, log: StageLog, target: float) -> float:
         """Load over the target at a radius [m], and d ln(load) / d ln(a - flat)."""
         contact = solve(radius)
         load = _load(contact, by_depth) * radius ** (1 if by_depth else 2)
-        return load / target, grows_like(contact, flat / radius, by_depth=by_depth)
+        return load / target, load_exponent(contact, flat / radius, by_depth=by_depth)
 
     # Estimates f(r) for the depth and 4 E* r f(r) for the force. The search starts at half the load, so that of several
     # contacts at one load it finds the narrowest, which a growing load reaches first.
@@ -220,7 +224,7 @@ def _load(contact: PrescribedContact, by_depth: bool) -> float:
     return contact.smooth_depth if by_depth else contact.smooth_force
 
 
-def grows_like(contact: PrescribedContact, flat: float, *, by_depth: bool) -> float:
+def load_exponent(contact: PrescribedContact, flat: float, *, by_depth: bool) -> float:
     """Exponent d ln(load) / d ln(a - flat) from one solution, lengths by the radius of its mesh, clipped to [0.2, 1e6].
 
     Along smooth contacts d(depth)/da = delta_0' and dF/da = k_N delta_0'. Differences of two solutions at neighbouring
@@ -329,9 +333,10 @@ def outside_change(state: FemEquilibrium, other: FemEquilibrium) -> float:
 
 
 def circle_of(state: FemEquilibrium, error: float) -> Circle:
-    """The contact as a circle in SI units, with the error of its surface.
+    """Contact circle in SI units, with an error [m] of the surface displacement outside it.
 
-    The last correction may press it deeper than smooth contact. The overlap at its edge is then no second contact.
+    The correction in `state_at_load` may press deeper than smooth contact. The tolerance includes the resulting overlap
+    at the edge, which is no second contact.
     """
     a, deeper = state.contact.contact_radius, max(state.depth - state.contact.smooth_depth, 0.0)
     return Circle(a, a * state.depth, state.surface_displacement, error + a * deeper)

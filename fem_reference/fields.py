@@ -63,7 +63,7 @@ class MeridianSection:
 
     Attributes:
         contact: finite element solution at contact radius one.
-        depth: delta / a.
+        depth: indentation depth delta / a.
     """
 
     contact: PrescribedContact

@@ -247,6 +247,7 @@ def _channels(setup: HistorySetup, strip: Strip, motion: Motion, written: Mappin
 
 
 def _impact_in_si(setup: HistorySetup, strip: Strip, motion: Motion, written: Mapping[str, Setting]) -> ImpactHistory:
+    """The answer in SI units from a motion in the units of its strip, without stated errors."""
     loading: Any = setup.scene.loading
     channels = _channels(setup, strip, motion, written)
     peaks: dict[str, Any] = {name: peak(channels[channel]) for name, channel in PEAKS.items()}
@@ -289,7 +290,7 @@ def _scalar_change(answer: ImpactHistory, companion: ImpactHistory, name: str) -
 def _change_near(
     answer: HistoryPath, companion: HistoryPath, name: str, final: HistoryPath, narrow: float
 ) -> FloatArray:
-    """Largest change of a quantity near each of n instants, and a share of its mean, shape (n,).
+    """Largest `_change` within `WINDOW` instants of each of n instants, plus `SHARE_OF_MEAN` of its mean, shape (n,).
 
     Args:
         answer: the finer answer.

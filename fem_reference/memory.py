@@ -98,9 +98,9 @@ class Top:
         self._modes, self._volume, self._shear = modes.displacements, modes.volume, modes.shear
         self._long_term = relaxation.long_term_modulus / unit
         self._moduli, self._times = relaxation.moduli[acts] / unit, relaxation.times[acts]
-        self._now = self._before = self._memory = np.zeros_like(modes.volume)
+        self._amplitudes = self._earlier = self._memory = np.zeros_like(modes.volume)
         self._branches = np.zeros((len(self._moduli), len(modes.volume)))
-        self._duration = self._last = 0.0
+        self._duration = self._last_duration = 0.0
         self._modulus, self._unit = np.nan, modes.displacements @ modes.displacements.T
 
     def restart(self) -> None:
@@ -108,7 +108,7 @@ class Top:
 
         The difference of second order would mix the rates before and after the jump.
         """
-        self._last = 0.0
+        self._last_duration = 0.0
 
     def begin(self, duration: float) -> tuple[FloatArray, FloatArray]:
         """Matrix A and offset o of the moments ``u = A p + o`` at the end of a step [s], for the pressures p there.
@@ -118,13 +118,17 @@ class Top:
         ratio = duration / self._times
         self._duration = duration
         self._alpha, self._beta = np.exp(-ratio), -self._moduli * np.expm1(-ratio) / ratio
-        q = duration / self._last if self._last else 0.0
+        q = duration / self._last_duration if self._last_duration else 0.0
         # Coefficients of x_1 and x_(-1) in eta x'_1. That of -x_0 is their sum: (1 + q)^2/(1 + q).
-        per_time = self.viscosity / duration
-        following, before = per_time * (1 + 2 * q) / (1 + q), per_time * q * q / (1 + q)
-        tangent = float(self._beta.sum())
-        self._memory = self._alpha @ self._branches - (tangent + following + before) * self._now + before * self._before
-        modulus = self._long_term + tangent + following
+        rate = self.viscosity / duration
+        current_share, earlier_share = rate * (1 + 2 * q) / (1 + q), rate * q * q / (1 + q)
+        branch_modulus = float(self._beta.sum())
+        self._memory = (
+            self._alpha @ self._branches
+            - (branch_modulus + current_share + earlier_share) * self._amplitudes
+            + earlier_share * self._earlier
+        )
+        modulus = self._long_term + branch_modulus + current_share
         if modulus != self._modulus:
             self._modulus, self._stiffness = modulus, self._volume + self._shear * modulus
             relaxes_alike = not self._volume.any()
@@ -139,12 +143,12 @@ class Top:
         Args:
             pressure: p / G_0 at the vertices at the end of the step, shape (n,).
         """
-        following = (self._modes.T @ pressure - self._shear * self._memory) / self._stiffness
-        change = following - self._now
+        amplitudes = (self._modes.T @ pressure - self._shear * self._memory) / self._stiffness
+        change = amplitudes - self._amplitudes
         self.dissipated_energy += self._dissipation(change)
         self.dashpot_force = self.viscosity / self._duration * float(self._uniform @ (self._shear * change))
         self._branches = self._alpha[:, None] * self._branches + np.outer(self._beta, change)
-        self._before, self._now, self._last = self._now, following, self._duration
+        self._earlier, self._amplitudes, self._last_duration = self._amplitudes, amplitudes, self._duration
 
     @property
     def stored_energy(self) -> float:
@@ -152,7 +156,7 @@ class Top:
 
         It does not vanish when contact is lost: the free surface still relaxes.
         """
-        energy = (self._volume + self._long_term * self._shear) @ self._now**2
+        energy = (self._volume + self._long_term * self._shear) @ self._amplitudes**2
         return float(energy + (self._branches**2 @ self._shear) @ (1 / self._moduli)) / 2
 
     def _dissipation(self, change: FloatArray) -> float:

@@ -2,7 +2,7 @@
 
 The section is 0 <= r <= outer radius, 0 <= z <= thickness with z into the layer. Its boundaries have names: ``axis``
 (r = 0), ``top`` (z = 0), ``base`` (z = thickness), ``outer`` (r = outer radius). A mesh line runs along every face
-between two parts (`materials`). Each part has vertices of its own there, so that layers may slide.
+between two parts (`materials`). Each part has separate vertices there, so that layers may slide.
 
 Graded points are vertices on the top with a small cell size: the contact edge, kinks, a sharp tip. Cells grow with the
 distance d from them. A strip, for contacts of unknown radius (`surface`), has equal cells on all of the top up to its
@@ -38,8 +38,8 @@ MISSING_LIBRARIES = (
 )
 # Length of a line that gmsh divides, over its smallest cell. gmsh takes minutes for longer ones: they are split.
 LONGEST_LINE = 1e10
-# Accuracy, in cells, to which gmsh integrates 1 / (cell size) along lines. Its own 1e-9 takes three times as long. With
-# 1e-7 cells in narrow rings are so uneven that slopes of delta_0 err by 7 %.
+# Accuracy, in cells, to which gmsh integrates 1 / (cell size) along lines. The default 1e-9 takes three times as long.
+# With 1e-7 cells in narrow rings are so uneven that slopes of delta_0 err by 7 %.
 LINE_PRECISION = 1e-8
 # gmsh's number of its Delaunay algorithm. The default, frontal Delaunay, makes 15 % fewer triangles, but one mesh in
 # ten with cells of 1e-10 radii lacks them near the edge: depths then err by 1e-3 to 0.2.
@@ -110,7 +110,7 @@ class Section:
         return hashlib.sha256(self.mesh.p.tobytes() + self.mesh.t.tobytes()).hexdigest()[:16]
 
     def stretched(self, graded: FloatArray, depths: FloatArray, outer_radius: float) -> Section | None:
-        """The same triangles with mesh lines at other depths, and the outer edge moved in proportion.
+        """Section of the same triangles with mesh lines at other depths and another outer radius.
 
         Radii within the contact do not change, and within a contact radius of the edge or half a thickness triangles
         keep their shape as far as possible. Errors of stretched meshes are smooth functions of the contact radius, but

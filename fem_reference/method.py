@@ -73,7 +73,7 @@ class Fem:
         truncation: relative change of the stiffness allowed to the outer edge of the mesh.
         half_space_thickness: thickness, in contact radii, of the layer that represents a half-space; an elastic base
             below a stack is meshed to its power of 0.8.
-        outer_distance: from contact edge to outer edge, in thicknesses; None for what ``truncation`` requires.
+        outer_distance: distance of the outer edge from the contact edge, in thicknesses; None to use ``truncation``.
     """
 
     name: ClassVar[str] = "fem"
@@ -155,6 +155,7 @@ class Fem:
         return answer if self.accuracy is None else with_accuracy_note(answer, self.accuracy, self.pressure_accuracy)
 
     def _solve(self, scene: Scene, log: StageLog) -> Answer:
+        """The answer at the given settings, or at settings refined until ``accuracy`` is reached."""
         attempt = self._attempt(scene, log)
         if self.accuracy is None:
             return attempt(self.discretisation)

@@ -72,7 +72,7 @@ class Strip:
         modes: modes of the layer; a flat punch has one vertex, unless a compressible layer relaxes.
         relaxation: shear relaxation of the layer.
         profile: moments ``int phi_i f 2 pi r dr`` of the indenter's profile, shape (n,).
-        radius: L [m].
+        radius: radius L of the strip [m].
     """
 
     modes: Modes
@@ -479,6 +479,7 @@ class HistorySetup:
         return proportional_modes(strip.compliance * per_shear, strip.resultants, strip.radii, strip.unknowns)
 
     def _mesh(self, radius: float, cells: int) -> tuple[Parts, Section]:
+        """Material and mesh of a strip of ``radius`` [m], in units of it; graded at the edge of a flat punch."""
         layer, indenter = self.scene.layer, self.scene.indenter
         with self.log.stage("mesh"):
             if isinstance(indenter, FlatPunch):

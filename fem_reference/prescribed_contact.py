@@ -50,18 +50,18 @@ class PrescribedContact:
     Attributes:
         layer: the discrete layer.
         indenter: the profile in units of the contact radius.
-        stiffness: k_N = dF/d(delta) at fixed radius.
-        stiffness_slope: k_N' = dk_N/da.
-        smooth_depth: delta_0, depth at which the stress at the contact edge vanishes; zero for a flat punch.
-        smooth_depth_slope: delta_0' = d(delta_0)/da.
-        profile_force: F_2, the force at depth zero; negative, since there the surface is pulled up to the profile.
+        stiffness: stiffness k_N = dF/d(delta) at fixed radius.
+        stiffness_slope: derivative k_N' = dk_N/da.
+        smooth_depth: depth delta_0 at which the stress at the contact edge vanishes; zero for a flat punch.
+        smooth_depth_slope: derivative delta_0' = d(delta_0)/da.
+        profile_force: force F_2 at depth zero; negative, since there the surface is pulled up to the profile.
         solutions: all unknowns of u_1 and u_2, shape (size, 2).
         contact_trace: piecewise polynomials on the contact.
         pressures: pressures of u_1 and u_2 at the nodes of ``contact_trace``, shape (node, 2).
         top_trace: piecewise polynomials on the whole top.
         displacements: u_z of u_1 and u_2 at the nodes of ``top_trace``, shape (node, 2).
-        energy_defect: |energy stiffness / reaction stiffness - 1|.
-        patch_defect: see `DiscreteLayer.patch_defect`.
+        energy_defect: relative difference |k_N by energy / k_N by reactions - 1|.
+        patch_defect: largest relative residual of the patch test, see `DiscreteLayer.patch_defect`.
         radius: contact radius over that of the mesh, below one after `narrowed` only.
     """
 

@@ -41,7 +41,7 @@ class Discretisation:
             thickness away from the edge.
         truncation: relative change of the stiffness that the finite outer radius may cause.
         half_space_thickness: thickness, in contact radii, of the layer that represents a half-space.
-        outer_distance: from contact edge to outer edge, in thicknesses; None for what ``truncation`` requires.
+        outer_distance: distance of the outer edge from the contact edge, in thicknesses; None to use ``truncation``.
         coarsening: growth over that of the answer: one in the answer, `COARSER` in its companion.
     """
 

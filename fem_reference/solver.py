@@ -1,7 +1,7 @@
 """Sparse direct solutions with prescribed unknowns.
 
-Unknowns inside triangles are condensed, the rest is factorised in an order that needs no pivoting, and every solution
-is checked by its backward error. With o for the unknowns that a triangle shares with others and i for those inside it,
+Unknowns inside triangles are condensed, the others are factorised in an order that needs no pivoting. Every solution is
+checked by its backward error. With o for the unknowns that a triangle shares with others and i for those inside it,
 ``K_ii u_i + K_io u_o = f_i`` leaves ``S u_o = f_o - K_oi K_ii^-1 f_i`` with ``S = K_oo - K_oi K_ii^-1 K_io``
 (E. L. Wilson, Int. J. Numer. Meth. Engng 8 (1974) 198-203). The pressure inside a triangle is condensed with the
 displacements there, which keep K_ii regular at nu = 1/2.

@@ -1,7 +1,7 @@
 """Functions on the top, and the layer condensed to it: contact problems of a few hundred unknowns.
 
 Tractions are continuous and piecewise linear on a strip of equal cells, with hat functions phi_i; displacements are of
-fourth degree, so that the mesh errs less than the contact set, which is found to a cell. For nodal pressures p
+fourth degree, so that the mesh errs less than the contact set, which is exact to a cell. For nodal pressures p
 (positive into the layer) and tangential tractions q (positive outward) the moments ``int phi_i (u_z, u_r) 2 pi r dr``
 are
 
@@ -33,7 +33,7 @@ STRIP_ORDER = 4
 # Displacement nodes per cell of the pressures, without and with tangential tractions. With friction each cell of the
 # tractions is one of the mesh: kinks inside a cell make forces err like 1 / cells.
 STRIDE, RUBBED_STRIDE = 2, 4
-# Cells of a strip for which the growth of cells away from it is as given: more cells have a lower growth.
+# Number of cells of a strip at which the growth outside it is the given one: with more cells it is lower.
 STRIP_CELLS = 120
 # Cells from the axis below which a kink gets no vertex: narrow cells next to the axis make pressures there oscillate.
 NEAREST_KINK = 0.5

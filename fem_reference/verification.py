@@ -103,10 +103,12 @@ class ManufacturedProblem:
 
     @property
     def _is_incompressible(self) -> bool:
+        """Whether nu = 1/2."""
         return self.poissons_ratio == 0.5
 
     @cached_property
     def _shear_and_bulk(self) -> tuple[float, float]:
+        """Shear modulus mu and bulk modulus K over E*; K is infinite at nu = 1/2."""
         shear, compressibility = (float(values[0, 0]) for values in self.layer.moduli)
         return shear, 1 / compressibility if compressibility else np.inf
 
@@ -156,7 +158,7 @@ class ManufacturedProblem:
         layer, space = self.layer, self.layer.space
 
         def work(v: Any, w: Any) -> Any:
-            """Virtual work ``f . v`` of the body force, per dr dz."""
+            """Integrand ``2 pi r f . v`` of the virtual work of the body force."""
             force = self.force(*w.x)
             return (force[0] * v[0] + force[1] * v[1]) * weak_forms.measure(w)
 

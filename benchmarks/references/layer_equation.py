@@ -71,7 +71,13 @@ class DensityInDigits:
 
 
 class Contact:
-    """Discrete equation for one contact radius a, over the thickness, on one layer."""
+    """Discrete equation for one contact radius on one layer.
+
+    Args:
+        ratio: Contact radius over thickness, a/h.
+        poissons_ratio: Poisson's ratio of a bonded layer; None for an unbonded layer.
+        nodes: Number of Gauss nodes on [0, a].
+    """
 
     def __init__(self, ratio: mpf, poissons_ratio: mpf | None, nodes: int) -> None:
         self.a = mpf(ratio)
@@ -108,9 +114,11 @@ class Contact:
         return mp.fsum(self._weight)
 
     def _applied(self, moments: Sequence[mpf], row: Sequence[mpf]) -> mpf:
+        """(2/pi) int (1 - chi) moments(k) row(k) dk."""
         return mp.fdot(moments, [w * c for w, c in zip(self._weight, row, strict=True)])
 
     def _solved(self, right: list[mpf]) -> list[mpf]:
+        """Values at the Gauss nodes that solve the discrete equation."""
         return list(mp.lu_solve(self._matrix, mp.matrix(right)))
 
     def _wavenumbers(self, poissons_ratio: mpf | None) -> tuple[list[mpf], list[mpf]]:

@@ -82,6 +82,8 @@ def entries() -> Iterator[Entry]:
 
 
 def _entry(kind: str, label: str, ratio: str, compute: Callable[[int], list[mpf]]) -> Entry:
+    """Entry of a layer at a ratio a/h, with the nodes of `NODES`."""
+
     def with_nodes(more: int) -> list[mpf]:
         """Numbers with ``more`` nodes than usual."""
         return compute(NODES[ratio] + more)

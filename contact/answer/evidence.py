@@ -59,7 +59,7 @@ class StatedErrors(Mapping[str, FloatArray]):
 
     @one_thread
     def __getitem__(self, name: str) -> FloatArray:
-        """The error of one quantity, read-only.
+        """Stated relative error of one quantity, read-only.
 
         Raises:
             NotConvergedError: If the error is not finite.

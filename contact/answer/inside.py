@@ -174,7 +174,7 @@ class Inside:
             InvalidInput: The maximum is infinite, at an edge of a flat punch or a kink on a compressible layer.
         """
         if what not in ("von_mises", "interface_shear"):
-            raise InvalidInput(f"largest({what!r}): ask for 'von_mises' or 'interface_shear'")
+            raise InvalidInput(f"largest({what!r}): choose 'von_mises' or 'interface_shear'")
         faces, a, thickness = self._faces, self.contact_radius, self.scene.layer.thickness
         if what == "von_mises":
             self._refuse_infinite_maximum()
@@ -213,8 +213,8 @@ class Inside:
         edges = self._edges
         if edges and (edges[-1] == self.contact_radius or self.scene.layer.surface.poissons_ratio < 0.5):
             raise InvalidInput(
-                f'largest("von_mises"): it is infinite at the sharp edge r = {edges[-1]:g} m of the surface; ask for '
-                "fields at points of interest"
+                f'largest("von_mises"): it is infinite at the sharp edge r = {edges[-1]:g} m of the surface; use '
+                "at(radius, depth) at points of interest"
             )
 
 

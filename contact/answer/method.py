@@ -40,7 +40,7 @@ def other_layer(method: str, layer: ElasticLayer) -> Unsupported | None:
     """Refusal of other layers by a method that models one uniform `Layer` only; None for a `Layer`."""
     if isinstance(layer, Layer):
         return None
-    return Unsupported(f"{method} models one uniform layer or a half-space, not a {type(layer).__name__}; ask mdr")
+    return Unsupported(f"{method} models one uniform layer or a half-space, not a {type(layer).__name__}; use mdr")
 
 
 def not_round(method: str, scene: Scene, where: str = "") -> Unsupported | None:

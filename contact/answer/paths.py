@@ -84,6 +84,7 @@ class SampledFields:
         return self._at(self.displacements, radius, step)
 
     def _at(self, values: FloatArray, radius: FloatArray, step: int) -> FloatArray:
+        """Entries of ``values`` (n, m) of one step at stored radii."""
         stored = np.broadcast_to(self.radius, values.shape)[step]
         places = np.minimum(np.searchsorted(stored, radius), stored.size - 1)
         missing = radius[stored[places] != radius]
@@ -108,7 +109,7 @@ def sampled(
         InvalidInput: The answer has no such field or step, or a radius is negative or not finite.
     """
     if not hasattr(fields, name):
-        raise InvalidInput(f"{answer.method} gave no surface fields of this name ({name}); ask a method that does")
+        raise InvalidInput(f"{answer.method} gave no surface fields of this name ({name}); use a method that does")
     answer.refuse_step(step)
     r = np.asarray(radius, dtype=np.float64)
     if not np.all(np.isfinite(r) & (r >= 0.0)):
@@ -165,6 +166,7 @@ class ContactPath(Solution):
         return super().scale(quantity) if self._adheres or not hasattr(self, quantity) else self._magnitude(quantity)
 
     def _mean_pressure(self) -> FloatArray:
+        """Scale of pressures [Pa], see `scale`, shape (n,); zero without contact."""
         force, area = np.abs(self.normal_force), np.pi * self.contact_radius**2
         if self._adheres:
             force = np.maximum(force, self.contact_stiffness * np.abs(self.indentation_depth))
@@ -212,13 +214,13 @@ class ContactPath(Solution):
         """
         inside = getattr(self.fields, "inside", None)
         if inside is None:
-            raise UnsupportedSceneError(f"{self.method} gives no fields inside the body; ask mdr or fem")
+            raise UnsupportedSceneError(f"{self.method} gives no fields inside the body; use mdr or fem")
         self.refuse_step(step)
         if "pressure" not in self.error_estimate:
             raise InvalidInput(f"{self.method} states no error of this pressure, nor of the fields that follow inside")
         radius = float(self.contact_radius[step])
         if radius == 0.0:
-            raise InvalidInput(f"step = {step}: nothing touches; ask for a step that presses")
+            raise InvalidInput(f"step = {step}: nothing touches; choose a step with contact")
         names = ("contact_radius", "pressure")
         errors = (np.broadcast_to(self.error_estimate.get(name, 0.0), len(self))[step] for name in names)
         fields = inside(step % len(self), KnownContact(radius, *map(float, errors)))
@@ -390,11 +392,11 @@ class HistoryPath(Solution):
             UnsupportedSceneError: If the method gives no fields inside.
         """
         if self.fields is None:
-            raise UnsupportedSceneError(f"{self.method} gives no fields inside the body under a history; ask mdr")
+            raise UnsupportedSceneError(f"{self.method} gives no fields inside the body under a history; use mdr")
         self.refuse_step(step)
         radius, instant = float(self.contact_radius[step]), float(self.time[step])
         if radius <= 0.0:
-            raise InvalidInput(f"step = {step}: nothing touches at t = {instant:g} s; ask for an instant of contact")
+            raise InvalidInput(f"step = {step}: nothing touches at t = {instant:g} s; choose an instant of contact")
         fields = self.fields.inside(step % len(self))
         singular = getattr(fields, "singular_edge", False)
         return Inside(fields=fields, scene=self.scene, contact_radius=radius, singular_edge=singular)

@@ -94,6 +94,7 @@ class Solution(Evidence):
         return "\n".join([*lines, f"  next: {', '.join(f'.{offer}' for offer in offers)}"])
 
     def _states(self) -> str:
+        """Number of states as text."""
         return f"{len(self)} {'state' if len(self) == 1 else 'states'}"
 
     def _cells(self, name: str) -> tuple[str, str]:
@@ -166,6 +167,7 @@ class Solution(Evidence):
         return arrays
 
     def _head(self) -> dict[str, Any]:
+        """Method and scene, for the attributes of tables."""
         return {"method": self.method, "scene": scene_line(self.scene)}
 
     def _columns(self) -> dict[str, Any]:
@@ -188,6 +190,7 @@ class Solution(Evidence):
         write_tree(path, self._tree())
 
     def _tree(self) -> dict[str, Any]:
+        """Entries of the file of the answer."""
         texts = {
             "scene": scene_to_mapping(self.scene),
             "cost": dataclasses.asdict(self.cost),
@@ -223,6 +226,7 @@ class Solution(Evidence):
 
     @classmethod
     def _of_tree(cls, tree: Mapping[str, Any]) -> Any:
+        """The answer from the entries of its file; the inverse of `_tree`."""
         if tree.get("schema") not in _READABLE:
             raise InvalidInput(f"schema = {shown(tree.get('schema'))}: this version reads {' and '.join(_READABLE)}")
         kinds = {kind_of_answer.__name__: kind_of_answer for kind_of_answer in _subclasses(cls)}
@@ -252,6 +256,7 @@ class Solution(Evidence):
 
 
 def _subclasses(cls: type[Any]) -> list[type[Any]]:
+    """The class and all classes derived from it."""
     return [cls, *(kind for direct in cls.__subclasses__() for kind in _subclasses(direct))]
 
 
@@ -273,6 +278,7 @@ def scene_line(scene: Scene) -> str:
 
 
 def _call(item: Record) -> str:
+    """Text of a record as a call of its class, with units and without fields that are None."""
     parts = ((field.name, getattr(item, field.name)) for field in dataclasses.fields(item))
     fields = (f"{name}={_value(value, unit_of(type(item), name))}" for name, value in parts if value is not None)
     return f"{type(item).__name__}({', '.join(fields)})"
@@ -297,5 +303,6 @@ def _value(value: object, unit: str | None) -> str:
 
 
 def _ends(values: FloatArray, form: str) -> str:
+    """Text of the first and the last value; only one if their texts are equal."""
     first, last = form.format(values[0]), form.format(values[-1])
     return first if first == last else f"{first} ... {last}"

@@ -34,6 +34,7 @@ def load_scene(path: str | Path) -> Scene:
 
 
 def _tables(file: Path) -> dict[str, Any]:
+    """Tables of a TOML file."""
     try:
         text = read_bytes(file, "a scene").decode("utf-8-sig")
     except UnicodeDecodeError as error:
@@ -123,6 +124,7 @@ def table_of(item: Record) -> dict[str, Any]:
 
 
 def _written(value: object) -> Any:
+    """Value of a field as a number, text, list or table."""
     if isinstance(value, tuple):
         return [_written(part) for part in value]
     if isinstance(value, Record):

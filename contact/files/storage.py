@@ -44,6 +44,7 @@ def _seal(content: bytes) -> bytes:
 
 
 def _write(group: h5py.Group, tree: Tree) -> None:
+    """Write arrays as datasets, scalars as attributes and mappings as groups of a group."""
     for name, value in tree.items():
         if isinstance(value, Mapping):
             _write(group.create_group(name, track_order=True), value)
@@ -81,6 +82,7 @@ def read_tree(path: str | Path) -> dict[str, Any]:
 
 
 def _read(group: h5py.Group) -> dict[str, Any]:
+    """Nested mappings of a group; the inverse of `_write`."""
     tree = {name: _scalar(value) for name, value in group.attrs.items()}
     for name, item in group.items():
         tree[name] = _read(item) if isinstance(item, h5py.Group) else np.asarray(item[()])
@@ -88,6 +90,7 @@ def _read(group: h5py.Group) -> dict[str, Any]:
 
 
 def _scalar(value: Any) -> Any:
+    """Python value of an attribute; None for an empty one."""
     if isinstance(value, h5py.Empty):
         return None
     return value.item() if isinstance(value, np.generic) else value

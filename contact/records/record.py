@@ -77,10 +77,11 @@ class _RecordType(ABCMeta):
 
         @__signature__.setter
         def __signature__(cls, of_pydantic: object) -> None:
-            """Pydantic's own signature lists validators."""
+            """Ignore the signature of pydantic, which lists validators."""
 
 
 def _parameter(field: dataclasses.Field[Any]) -> inspect.Parameter:
+    """Parameter of the constructor for a field, with its plain type."""
     return inspect.Parameter(
         field.name,
         inspect.Parameter.KEYWORD_ONLY if field.kw_only else inspect.Parameter.POSITIONAL_OR_KEYWORD,
@@ -116,6 +117,7 @@ class Record(metaclass=_RecordType):
         return f"{type(self).__qualname__}({', '.join(fields)})"
 
     def _content(self) -> tuple[Any, ...]:
+        """Class and field values in a hashable form, for equality and hash."""
         values = [getattr(self, field.name) for field in dataclasses.fields(self)]
         return type(self), *[value.tobytes() if isinstance(value, np.ndarray) else value for value in values]
 
@@ -181,6 +183,7 @@ class OneOf:
         return handler.generate_schema(Annotated[Union[*members, instance], Discriminator(self._tag)])
 
     def _tag(self, value: object) -> str:
+        """Tag of the member of the union that validates a value."""
         if not isinstance(value, Mapping):
             return f"{_TAG}instance"
         kind = value.get("kind")
@@ -212,11 +215,13 @@ def unit_of(cls: type[Record], field: str) -> str | None:
 
 @functools.cache
 def _units(cls: type[Record]) -> dict[str, str]:
+    """SI units of the fields of a record class, by name; without fields of pure numbers."""
     hints = get_type_hints(cls, include_extras=True)
     return {name: part.name for name, hint in hints.items() for part in _parts(hint) if isinstance(part, Unit)}
 
 
 def _parts(annotation: Any) -> Iterable[Any]:
+    """An annotation and all its nested arguments."""
     yield annotation
     for part in get_args(annotation):
         yield from _parts(part)

@@ -166,6 +166,7 @@ def table_text(file: Path) -> str:
 
 
 def _cells(line: str, separator: str) -> list[str]:
+    """Texts of the cells of a line, without blanks and quotes."""
     cells = line.split() if separator == " " else line.split(separator)
     return [cell.strip().strip('"') for cell in cells]
 
@@ -219,6 +220,7 @@ def plain_unit(unit: str) -> str:
 
 
 def _bare_unit(cell: str) -> str:
+    """Unit of a cell that has nothing else; empty for other cells."""
     cell = plain_unit(cell.strip("[]()<> "))
     return cell if re.fullmatch(_UNIT, cell) else ""
 

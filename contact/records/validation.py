@@ -230,6 +230,7 @@ def range_of(table: Mapping[str, Any], unit: str | None, reading: Reading | None
 
 
 def _end(value: object, unit: str | None, name: str, reading: Reading | None) -> float:
+    """Start or stop of a range in SI; errors begin with its ``name``."""
     try:
         end = read_number(value, f"give one up to {LARGEST:g}, or a text with its unit", unit, reading)
     except ValueError as error:

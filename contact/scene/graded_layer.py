@@ -83,6 +83,7 @@ class ExponentialDepth(_BetweenFaces):
 
     @property
     def _rate(self) -> float:
+        """ln(base/surface)."""
         return math.log(self.base / self.surface)
 
 
@@ -224,6 +225,7 @@ class GradedLayer(ElasticLayer):
         return Sublayer(thickness=self.thickness, youngs_modulus=modulus, poissons_ratio=float(self.ratio_at(0.0)))
 
     def _ratios(self) -> tuple[float, ...]:
+        """Tabulated Poisson's ratios, or the uniform one."""
         nu = self.poissons_ratio
         return tuple(nu.values.tolist()) if isinstance(nu, TabulatedDepth) else (nu,)
 
@@ -249,15 +251,16 @@ class GradedLayer(ElasticLayer):
         return tuple(sorted({z for function in functions for z in function.breakpoints(self.thickness)}))
 
     def in_own_units(self) -> Self:
-        """The same layer with thickness 1 and E* = 1 at the surface."""
+        """Copy of the layer with thickness 1 and E* = 1 at the surface."""
         return self._scaled(self.thickness, self.contact_modulus, thickness=1.0)
 
     def stretched(self, factor: float) -> Self:
-        """The same layer with all depths multiplied by the factor."""
+        """Copy of the layer with all depths multiplied by the factor."""
         # The thickness is divided like the depths, so that a table that ends at the base still ends there exactly.
         return self._scaled(1.0 / factor, 1.0, thickness=self.thickness / (1.0 / factor))
 
     def _scaled(self, length: float, modulus: float, *, thickness: float) -> Self:
+        """The layer with depths over ``length`` [m], moduli over ``modulus`` [Pa], and a given thickness."""
         nu, support = self.poissons_ratio, self.support
         return self.replace(
             thickness=thickness,

@@ -46,7 +46,7 @@ class ElasticBase(Record):
     interface: Interface = "bonded"
 
     def scaled(self, modulus: float) -> Self:
-        """The same base with its modulus divided by ``modulus`` [Pa]."""
+        """Copy of the base with its modulus divided by ``modulus`` [Pa]."""
         return self.replace(youngs_modulus=self.youngs_modulus / modulus)
 
 
@@ -69,15 +69,15 @@ class ElasticLayer(Record):
         raise TypeError(f"{type(self).__name__} declares no surface")
 
     def in_own_units(self) -> Self:
-        """The same layer in units of its thickness and E*; a half-space stays infinite."""
+        """Copy of the layer in units of its thickness and E*; a half-space stays infinite."""
         raise TypeError(f"{type(self).__name__} has no units of its own")
 
     def stretched(self, factor: float) -> ElasticLayer:
-        """The same layer with all depths multiplied by the factor."""
+        """Copy of the layer with all depths multiplied by the factor."""
         raise TypeError(f"{type(self).__name__} cannot be stretched")
 
     def simplest(self) -> ElasticLayer:
-        """The same layer as an object of the simplest class that describes it."""
+        """The layer as an object of the simplest class that describes it."""
         return self
 
     @property
@@ -189,7 +189,7 @@ class Layer(ElasticLayer):
         return f"{below}, nu = {self.poissons_ratio:g}"
 
     def in_own_units(self) -> Self:
-        """The same layer with thickness 1 and E* = 1; a half-space stays infinite."""
+        """Copy of the layer with thickness 1 and E* = 1; a half-space stays infinite."""
         nu = self.poissons_ratio
         return self.replace(thickness=math.inf if self.is_half_space else 1.0, youngs_modulus=(1.0 - nu) * (1.0 + nu))
 
@@ -259,7 +259,7 @@ class LayerStack(ElasticLayer):
         return Layer(**vars(self.surface), support=self.support)
 
     def in_own_units(self) -> Self:
-        """The same stack with thickness 1 and E* = 1."""
+        """Copy of the stack with thickness 1 and E* = 1."""
         length, modulus, support = self.thickness, self.contact_modulus, self.support
         sublayers = tuple(
             part.replace(thickness=part.thickness / length, youngs_modulus=part.youngs_modulus / modulus)
@@ -269,5 +269,5 @@ class LayerStack(ElasticLayer):
         return self.replace(sublayers=sublayers, support=base)
 
     def stretched(self, factor: float) -> Self:
-        """The same stack with all thicknesses multiplied by the factor."""
+        """Copy of the stack with all thicknesses multiplied by the factor."""
         return self.replace(sublayers=tuple(part.replace(thickness=part.thickness * factor) for part in self.sublayers))

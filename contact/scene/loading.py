@@ -140,6 +140,7 @@ class ForceHistory(Loading):
 
 
 def _check_lengths(time: FloatArray, values: FloatArray, name: str) -> None:
+    """Refuse a history of fewer than two instants, or without one value per instant."""
     if time.shape != values.shape or time.size < 2:
         sizes = f"got {time.size} instants and {values.size} values"
         raise ValueError(f"a history needs at least two instants and one {name} for each; {sizes}")

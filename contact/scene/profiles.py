@@ -66,7 +66,7 @@ class Profile(Record, ABC):
 
     @property
     def max_radius(self) -> float:
-        """Radius [m] where the profile ends."""
+        """Radius [m] where the profile ends; infinite without an end."""
         return math.inf
 
     @property

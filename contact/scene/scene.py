@@ -32,6 +32,7 @@ LayerT_co = TypeVar("LayerT_co", bound=ElasticLayer, default=Layer, covariant=Tr
 
 
 def _truth(value: object) -> object:
+    """The value, if it is True or False; else a ValueError."""
     if not isinstance(value, bool):
         raise ValueError("must be true or false")
     return value
@@ -107,6 +108,7 @@ AnyScene: TypeAlias = Scene[Loading, ElasticLayer]
 
 
 def _check_effects(scene: AnyScene) -> None:
+    """Refuse repeated effects, and a detachment without adhesion."""
     kinds = [Viscoelasticity if isinstance(effect, Viscoelasticity) else type(effect) for effect in scene.effects]
     if len(set(kinds)) < len(kinds):
         names = ", ".join(type(effect).__name__ for effect in scene.effects)
@@ -116,6 +118,7 @@ def _check_effects(scene: AnyScene) -> None:
 
 
 def _check_radii(scene: AnyScene) -> None:
+    """Refuse prescribed contact radii that the indenter cannot have."""
     if isinstance(scene.loading, ContactRadii):
         if isinstance(scene.indenter, Shape):
             raise ValueError("loading = ContactRadii: this contact is no circle; give depths or forces")
@@ -133,6 +136,7 @@ def _check_radii(scene: AnyScene) -> None:
 
 
 def _check_radius(scene: AnyScene, radius: float, place: str) -> None:
+    """Refuse a radius [m] within the flat end or beyond the end of the profile; ``place`` is its path."""
     flat, end = scene.indenter.flat_radius, scene.indenter.max_radius
     if radius < flat or (radius == flat and not isinstance(scene.indenter, FlatPunch) and not scene.effects):
         raise ValueError(f"{place} = {radius:g}: the indenter's flat end already touches out to {flat:g} m; go beyond")
@@ -141,6 +145,7 @@ def _check_radius(scene: AnyScene, radius: float, place: str) -> None:
 
 
 def _check_signs(scene: AnyScene) -> None:
+    """Refuse negative depths and forces without adhesion."""
     if scene.effect(Adhesion) is not None or not isinstance(scene.loading, IndentationDepths | NormalForces):
         return
     if np.any(scene.loading.values < 0.0):
@@ -151,6 +156,7 @@ def _check_signs(scene: AnyScene) -> None:
 
 
 def _check_moduli(scene: AnyScene) -> None:
+    """Refuse a viscoelastic effect whose instantaneous modulus differs from that of the layer."""
     model = scene.effect(Viscoelasticity)
     if model is None:
         return

@@ -78,6 +78,7 @@ class Shape(Profile, ABC):
         self._refuse()
 
     def _refuse(self) -> Never:
+        """Raise the error of a height without a direction."""
         name = type(self).__name__
         raise UnsupportedSceneError(f"indenter = {name}: its height depends on the direction; {self.instead}")
 
@@ -346,6 +347,7 @@ class PolygonalPunch(Flat):
 
     @property
     def _rounding(self) -> float:
+        """Radius [m] of the corners; zero for sharp corners."""
         return self.corner_radius or 0.0
 
     @property

@@ -134,7 +134,7 @@ class Growing:
 
     Attributes:
         contact: condensed layer and indenter on the strip.
-        states: states at the k touching points; in the first, node 1 just touches.
+        states: states at k touching points; in the first, node 1 just touches.
     """
 
     contact: RubbedContact
@@ -187,10 +187,10 @@ class Growing:
         return quantities | {"stiffness": force / depth * float(fit[1, 0]), "widening": float(fit[1, 1])}
 
     def state_at(self, depth: float) -> RubbedState:
-        """The equilibrium at a depth [m]."""
-        passed = int(np.searchsorted(self.points["depth"][:-1], depth))
-        before = self.states[passed - 1] if passed else at_rest(self.contact)
-        return advance(self.contact, before, passed + 1, at_load(depth / self.contact.radius, by_depth=True))
+        """Equilibrium at a depth [m], one step after the last touching point of smaller depth."""
+        count = int(np.searchsorted(self.points["depth"][:-1], depth))
+        last_state = self.states[count - 1] if count else at_rest(self.contact)
+        return advance(self.contact, last_state, count + 1, at_load(depth / self.contact.radius, by_depth=True))
 
 
 @dataclass(frozen=True)

@@ -55,8 +55,8 @@ class RubbedContact:
     Attributes:
         surface: the condensed layer.
         profile: moments ``int phi_i f 2 pi r dr`` of the indenter's profile, shape (n,).
-        coefficient: mu; infinity for full stick.
-        radius: L [m].
+        coefficient: coefficient of friction mu; infinity for full stick.
+        radius: radius L of the strip [m].
     """
 
     surface: Surface
@@ -70,15 +70,15 @@ class RubbedState:
     """One equilibrium at the end of a step, in the units of `RubbedContact`.
 
     Attributes:
-        depth: delta / L.
-        tractions: p and q at the nodes, shape (2 n,).
+        depth: indentation depth delta / L.
+        tractions: tractions p and q at the nodes, shape (2 n,).
         displacements: moments of u_z and u_r, shape (2 n,).
         touched: moments of u_r at the instant when each node touched, shape (n,); for free nodes the present ones.
-        sliding: 0 where a node sticks, else the sign of q, shape (n,).
+        sliding: sign of q at sliding nodes, 0 at sticking nodes, shape (n,).
         active: number of pressed nodes, the first ones from the axis.
-        force: F / (E* L^2).
-        work: done by the indenter so far, over E* L^3.
-        dissipated: heat of friction so far, over E* L^3.
+        force: normal force F / (E* L^2).
+        work: work of the indenter since the start, over E* L^3.
+        dissipated: heat of friction since the start, over E* L^3.
     """
 
     depth: float
@@ -138,6 +138,7 @@ def at_load(load: float, *, by_depth: bool) -> Control:
     """Control of a step that ends at a depth over L, or at a force w . p over E* L^2."""
 
     def equation(contact: RubbedContact, active: int) -> Equation:
+        """Coefficients and right-hand side of ``delta = load`` or ``w . p = load``."""
         w = np.concatenate([contact.surface.resultants, np.zeros(len(contact.profile))])
         return (0.0 * w, 1.0, load) if by_depth else (w, 0.0, load)
 
@@ -148,7 +149,7 @@ def advance(contact: RubbedContact, before: RubbedState, active: int, control: C
     """The equilibrium at the end of a step, with the first ``active`` nodes pressed.
 
     Raises:
-        NotConvergedError: no set of sliding nodes was found.
+        NotConvergedError: no set of sliding nodes satisfies the conditions.
         UnsupportedSceneError: tension at a pressed node, or overlap at a free node: the contact is no single circle.
     """
     sliding = _first_guess(before, active, contact.coefficient)
@@ -320,11 +321,11 @@ def _towards(
 
 
 def stick_radius(contact: RubbedContact, state: RubbedState) -> float:
-    """Stick radius c over L.
+    """Stick radius c over L, extrapolated from the tractions at three nodes inside it.
 
     With r -> c ``y = 1 - |q|/(mu p)`` falls to zero like ``(c - r)^(3/2)`` where the stick region grows and like
     ``(c - r)^(1/2)`` where it shrinks. Hence y^(2/3) or y^2 is linear: the straighter one of these at three nodes is
-    extrapolated to zero. The last sticking node is left out, since it slid during a part of its step.
+    extrapolated to zero. The last sticking node is omitted, since it slid during a part of its step.
     """
     radii: FloatArray = contact.surface.radii
     stuck = [i for i in range(state.active) if state.sliding[i] == 0]
