@@ -165,7 +165,7 @@ class Branch:
         return loads
 
     def _load_within(self, piece: BranchPiece, control: Controlled, radius: FloatArray) -> FloatArray:
-        """The controlled load at radii [m] of one piece."""
+        """Controlled load at radii [m] of one piece: depth [m], F / E* [m^2], or displacement of the machine [m]."""
         stiffness, slope, smooth, profile = piece.evaluate(radius)
         depth = smooth - np.sqrt(4 * np.pi * radius * self.work / slope)
         force = stiffness * depth + profile

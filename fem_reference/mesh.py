@@ -303,8 +303,8 @@ def _gmsh() -> Any:
         import gmsh  # noqa: PLC0415 - a missing system library gives one clear message, at first use
     except OSError as reason:
         raise ImportError(MISSING_LIBRARIES.format(reason=reason)) from reason
-    # gmsh lets a broken pipe end the process, and with it a pool. Only the main thread may set signals, and Windows has
-    # no such signal.
+    # gmsh resets SIGPIPE, so that a broken pipe would end the process and its pool: the handler is restored. Only the
+    # main thread may set signals, and Windows has no such signal.
     pipe = getattr(signal, "SIGPIPE", None) if current_thread() is main_thread() else None
     handler = pipe and signal.getsignal(pipe)
     gmsh.initialize([], interruptible=False)

@@ -70,11 +70,11 @@ class Shape(Profile, ABC):
         return (ends[:-1, None] + width * (1.0 + _T) / 2.0).ravel(), (width * _W / (2.0 * ends[-1])).ravel()
 
     def height(self, radius: ArrayLike) -> FloatArray:
-        """Refused: see the class."""
+        """Raise UnsupportedSceneError: the height depends on the direction, see `polar`."""
         self._refuse()
 
     def slope_at(self, radius: ArrayLike) -> FloatArray:
-        """Refused: see the class."""
+        """Raise UnsupportedSceneError: the slope depends on the direction."""
         self._refuse()
 
     def _refuse(self) -> Never:
