@@ -272,11 +272,11 @@ def stable_radius(branch: Branch, control: Controlled, target: float) -> float:
 def branch_of(
     scene: Scene, start: float | None, settings: Discretisation, log: StageLog, span: float = SPANS[0]
 ) -> Branch:
-    """The branch from a radius [m] (by default one where the contact is pressed) down to one ``span`` times smaller."""
+    """Branch from the radius ``start`` [m] (by default of a pressed contact) down to a radius ``span`` times smaller."""
     indenter, work = scene.indenter, work_of_adhesion(scene)
     is_punch, high = isinstance(indenter, FlatPunch), start or indenter.flat_radius
     if not start and not is_punch:
-        # Where f exceeds twice dl of a half-space (k_N' = 2 E*), contact presses: delta_0 >= f.
+        # delta_0 >= f. Where f is twice dl of a half-space (k_N' = 2 E*), depth and force are positive.
         high = first_radius(indenter, lambda r: height(indenter, r) >= 2 * np.sqrt(2 * np.pi * r * work))
     kinks = [k for k in indenter.kinks if k < high]
     smallest = min([high / 3, scene.layer.surface.thickness, *kinks])

@@ -121,7 +121,7 @@ class Space:
 
     @cached_property
     def displacement_dofs(self) -> Dofs:
-        """Numbering of one displacement component."""
+        """scikit-fem's numbering of the unknowns of one displacement component."""
         return Dofs(self.mesh, self.pair.displacement)
 
     @property
@@ -131,7 +131,7 @@ class Space:
 
     @cached_property
     def pressure_dofs(self) -> Dofs:
-        """Numbering of the pressure."""
+        """scikit-fem's numbering of the pressure unknowns."""
         return Dofs(self.mesh, self.pair.pressure)
 
     @cached_property

@@ -104,7 +104,12 @@ class HalfSpaceContact:
         self._slip_parts()
 
     def _transform_parts(self, inner: FloatArray, outer: FloatArray) -> None:
-        """Matrices of H between the sticking and the sliding interval; ``mirrored`` ones are those of -1 < t < -k."""
+        """Matrices of H between the sticking and the sliding interval; ``mirrored`` ones are those of -1 < t < -k.
+
+        Args:
+            inner: Values of ln(left/right) at the points of the sticking interval, shape (n,).
+            outer: Values of ln(left/right) at the points of the sliding interval, shape (m,).
+        """
         unit = self.step / np.pi
         stuck, slid, k = self.stuck, self.slid, self.k
         self.stuck_to_stuck, self.slid_to_slid = stuck.principal(self.step, inner), slid.principal(self.step, outer)

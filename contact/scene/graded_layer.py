@@ -45,7 +45,7 @@ class DepthFunction(Record):
         raise TypeError(f"{type(self).__name__} declares no values")
 
     def slope(self, depth: ArrayLike, thickness: float) -> FloatArray:
-        """Derivative by z, values per metre, at depths z [m] in a layer of this thickness [m]."""
+        """Derivative of the function by z, in its unit per metre, at depths z [m] in a layer of this thickness [m]."""
         raise TypeError(f"{type(self).__name__} declares no slope")
 
     def scaled(self, length: float, value: float) -> Self:

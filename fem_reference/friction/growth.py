@@ -263,7 +263,7 @@ class GrowthRecord:
         return min(quantities["stick"], 1.0)
 
     def errors(self, name: str, value: float) -> dict[str, float]:
-        """Stated errors of `numbers`: relative, that of the stick radius to a, that of the heat to F delta.
+        """Relative stated errors of `numbers`; the stick radius is relative to a, the heat to F delta.
 
         Each is the change by the extrapolation, plus the uncertainty of the edges. One change may vanish by accident:
         each is at least `LEAST_SHARE` of the largest of depth, force and stiffness.
@@ -278,7 +278,7 @@ class GrowthRecord:
             each: SAFETY * max(abs(coarse[each] - size), least_change * size) / scale[each]
             for each, size in fine.items()
         } | {name: 0.0}
-        # Slip may be narrower than a cell: the edge is that of a contact that sticks, or that of one that slides.
+        # Slip may be narrower than a cell. The edge then lies between that of full stick and that of a sliding edge.
         edge = cell * (EDGE_UNCERTAIN + self.fine.stick_shift * math.isfinite(self.fine.contact.coefficient))
         if name == "radius":
             # The edge shifts the depth by d ln(delta)/d ln(a) times as much, and dF/F = (k_N delta/F) d(delta)/delta.
