@@ -272,7 +272,7 @@ def stable_radius(branch: Branch, control: Controlled, target: float) -> float:
 def branch_of(
     scene: Scene, start: float | None, settings: Discretisation, log: StageLog, span: float = SPANS[0]
 ) -> Branch:
-    """Branch from the radius ``start`` [m] (by default of a pressed contact) down to a radius ``span`` times smaller."""
+    """Branch from the radius ``start`` [m] (by default of a pressed contact) down to one ``span`` times smaller."""
     indenter, work = scene.indenter, work_of_adhesion(scene)
     is_punch, high = isinstance(indenter, FlatPunch), start or indenter.flat_radius
     if not start and not is_punch:

@@ -128,7 +128,7 @@ Control: TypeAlias = Callable[[RubbedContact, int], Equation]
 def touching(contact: RubbedContact, active: int) -> Equation:
     """Equation of a step that ends where the first free node touches: u_z = delta - f there, without pressure.
 
-    In unloading the equation for one pressed node less determines the instant at which the last pressed node leaves.
+    In unloading the equation for one pressed node less determines when the last pressed node leaves.
     """
     surface = contact.surface
     return surface.compliance[active], -float(surface.resultants[active]), -float(contact.profile[active])
