@@ -20,7 +20,7 @@ from bem.numerics import EPS, gauss
 from contact import ContactPath
 from contact.answer.method import Supported, Unsupported, not_round
 from contact.answer.no_contact import without_contact
-from contact.answer.one_circle import never_touches_beside, no_single_circle, refuse_touching_path
+from contact.answer.one_circle import cannot_touch_outside, no_single_circle, refuse_touching_path
 from contact.answer.one_thread import one_thread
 from contact.answer.small_strains import within_small_strains
 from contact.answer.stages import StageLog
@@ -213,7 +213,7 @@ class DirectSolver:
         Raises:
             UnsupportedSceneError: With the radius of the largest tension.
         """
-        if not never_touches_beside(self.scene):
+        if not cannot_touch_outside(self.scene):
             radius = contact.density.t[::3]
             pressure = self.pressure(contact, radius)
             if pressure.min() < -_LEAST_TENSION * contact.mean_pressure:

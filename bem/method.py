@@ -30,7 +30,7 @@ from contact import (
     UnsupportedSceneError,
     not_round,
 )
-from contact.answer.accuracy import asked_errors
+from contact.answer.accuracy import number_errors
 from contact.answer.no_contact import without_contact
 from contact.answer.one_thread import one_thread
 from contact.answer.small_strains import within_small_strains
@@ -179,7 +179,7 @@ class Bem(Record):
                 if points == ACCURACY_POINTS[-1]:
                     raise
                 continue
-            errors = asked_errors(path)
+            errors = number_errors(path)
             worst = max(errors, key=lambda name: errors[name])
             if errors[worst] <= accuracy:
                 return dataclasses.replace(path, settings=dict(path.settings) | {"accuracy": accuracy})

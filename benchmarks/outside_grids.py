@@ -1,10 +1,10 @@
-"""Processor time of our grids and of outside grid codes at equal error.
+"""Processor time of `Bem` and of outside grid codes at equal error of the force.
 
     CONTACT_REFEREES_PYTHON=PYTHON python -m benchmarks.outside_grids
 
-Each outside code answers a paraboloid at one depth, under a half-space and a bonded layer, on finer grids. Our
-boundary elements answer on the coarsest grid whose force is as exact. Times of outside codes are those of their
-processes less that of a grid of 16 points: the start of an interpreter does not count.
+Each outside code solves a paraboloid at one depth, on a half-space and on a bonded layer, on finer and finer grids.
+`Bem` solves it on the coarsest grid whose force has at most the same error. From the time of an outside process that
+of a grid of 16 points is subtracted, which is the start of its interpreter.
 """
 
 import os
@@ -26,7 +26,7 @@ BODIES = {
 
 
 def measured(method: Method, scene: Scene, exact: float) -> tuple[float, float]:
-    """Processor seconds with child processes, and the relative error of the force."""
+    """Processor time [s] with child processes, and relative error of the force, for an ``exact`` force [N]."""
     before = os.times()
     path: Any = method.solve(scene)
     after = os.times()
@@ -38,15 +38,15 @@ def measured(method: Method, scene: Scene, exact: float) -> tuple[float, float]:
 
 
 def ours(scene: Scene, exact: float, error: float) -> tuple[int, float, float]:
-    """Points, seconds and error of the coarsest grid of ours that is as exact, after one answer that loads modules."""
+    """Points, time [s] and error of the coarsest grid of `Bem` of at most this error, with loaded modules."""
     for points in (96, 128, 192, 256, 384, 512):
         Bem(points=points).solve(scene)
         start = time.process_time()
-        seconds, own = measured(Bem(points=points), scene, exact)
+        seconds, own_error = measured(Bem(points=points), scene, exact)
         seconds = max(seconds, time.process_time() - start)
-        if own <= error:
+        if own_error <= error:
             break
-    return points, seconds, own
+    return points, seconds, own_error
 
 
 def main() -> None:
@@ -60,9 +60,9 @@ def main() -> None:
             start = np.median([measured(kind(points=16), scene, exact)[0] for _ in range(3)])
             for points in (64, 128, 256):
                 seconds, error = measured(kind(points=points), scene, exact)
-                own_points, own_seconds, own = ours(scene, exact, error)
+                own_points, own_seconds, own_error = ours(scene, exact, error)
                 theirs = f"{kind.name} {points}: {max(seconds - start, 0.0):.3f} s, error {error:.1e}"
-                sys.stdout.write(f"{body}: {theirs}; ours {own_points}: {own_seconds:.3f} s, error {own:.1e}\n")
+                sys.stdout.write(f"{body}: {theirs}; ours {own_points}: {own_seconds:.3f} s, error {own_error:.1e}\n")
 
 
 if __name__ == "__main__":

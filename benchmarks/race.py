@@ -1,4 +1,4 @@
-"""Processor time of this source and of another revision on the same rows, measured in turn.
+"""Processor time of this working tree and of another revision on the same rows, measured alternately.
 
     python -m benchmarks.race REVISION [ROW..] [--rounds 7]
 
@@ -6,7 +6,7 @@ Each sample is a fresh interpreter. Revision, working tree and the revision once
 every other round, after one round that is not counted and that writes compiled bytecode. "First" rows time the whole
 process, "warm" rows a second solve, "batch" rows one call after its imports. A row prints the median ratio of the
 working tree to the revision with its 95 % interval, the limit of the ratio, the largest relative change of the answers
-and the peak memory. Exit codes: 0 no row is slower than its limit; 1 one is; 4 wrong usage.
+and the peak memory. Exit codes: 0 no row is slower than its limit; 1 some row is; 4 wrong usage.
 """
 
 import argparse
@@ -50,7 +50,7 @@ start = time.process_time()
 path = solve()
 report(time.process_time() - start, numbers(path))
 """
-# As many solves as fill a tenth of a second: shorter samples scatter by the resolution of the clock.
+# Repeats the solve for a tenth of a second: shorter samples scatter by the resolution of the clock.
 WARM = """
 solve()
 start = time.process_time()
@@ -125,16 +125,17 @@ numbers = lambda found: found.youngs_modulus.tolist()
 """
 
 
-def _with(loading: str) -> str:
+def _with_loading(loading: str) -> str:
+    """Line of a program that replaces the loading of its scene."""
     return f"scene = scene.replace(loading={loading})\n"
 
 
-# Row: program, and the largest ratio of its times that is accepted; below 1.1 a ratio is noise.
+# Program of each row and the largest accepted ratio of its times; ratios below 1.1 are noise.
 ROWS: dict[str, tuple[str, float]] = {
     "first answer, Mdr": (MDR + FIRST, 1.2),
-    "warm, Mdr by radius": (MDR + _with("ContactRadii([1e-3])") + WARM, 2.0),
+    "warm, Mdr by radius": (MDR + _with_loading("ContactRadii([1e-3])") + WARM, 2.0),
     "warm, Mdr by depth": (MDR + WARM, 2.0),
-    "warm, Mdr by force": (MDR + _with("NormalForces([0.05])") + WARM, 2.0),
+    "warm, Mdr by force": (MDR + _with_loading("NormalForces([0.05])") + WARM, 2.0),
     "warm, pull-off": (MDR + PULL_OFF + WARM, 1.1),
     "warm, history of 100 instants": (MDR + HISTORY + WARM, 2.0),
     "warm, 20 impacts to 1e-6, one by one": (MDR + IMPACTS + ONE_IMPACT + WARM, 2.0),
@@ -150,7 +151,7 @@ ROWS: dict[str, tuple[str, float]] = {
 
 @dataclass(frozen=True, kw_only=True)
 class Slowdown:
-    """Median ratio of paired times and its 95 % interval."""
+    """Median ratio of paired times and the ends of its 95 % interval."""
 
     ratio: float
     lower: float
@@ -158,10 +159,10 @@ class Slowdown:
 
 
 def slowdown(base: Sequence[float], head: Sequence[float]) -> Slowdown:
-    """Return the median of head over base with its bootstrap interval.
+    """Median ratio of times of head over base [s], shape (n,) each, with its bootstrap interval.
 
     Raises:
-        InvalidInput: with fewer than seven pairs, or with times that are not positive.
+        InvalidInput: there are fewer than seven pairs, or a time is not positive.
     """
     pairs = np.asarray([base, head], dtype=np.float64) if len(base) == len(head) else np.empty((2, 0))
     if pairs.shape[1] < SAMPLES or not np.all(np.isfinite(pairs) & (pairs > 0)):
@@ -174,27 +175,34 @@ def slowdown(base: Sequence[float], head: Sequence[float]) -> Slowdown:
 
 @dataclass(frozen=True, kw_only=True)
 class Race:
-    """Processor seconds of a row by revision, by working tree and by the revision again, shape (n,) each."""
+    """Processor times of a row and its limit.
+
+    Attributes:
+        base: Times of the revision [s], shape (n,).
+        head: Times of the working tree [s], shape (n,).
+        repeated: Times of the revision, measured a second time [s], shape (n,).
+        limit: Largest accepted ratio of head over base.
+    """
 
     base: Sequence[float]
     head: Sequence[float]
-    again: Sequence[float]
+    repeated: Sequence[float]
     limit: float = 1.1
 
     @property
     def null_spread(self) -> float:
-        """Relative difference of identical code: |log median ratio| and its standard error, added in squares."""
-        null = slowdown(self.base, self.again)
+        """Relative difference of identical code: root of the squares of ln(median ratio) and of its standard error."""
+        null = slowdown(self.base, self.repeated)
         return math.hypot(math.log(null.ratio), math.log(null.upper / null.lower) / 4)
 
     @property
     def largest(self) -> float:
-        """Largest ratio that passes: the row's limit, or three times the difference of identical code."""
+        """Largest accepted ratio: the limit of the row, or one plus three times the difference of identical code."""
         return max(self.limit, 1 + 3 * self.null_spread)
 
 
 def judge(race: Race) -> Status:
-    """PERF if the whole interval lies above the largest ratio that passes, open if it contains that ratio."""
+    """PERF if the interval lies above the largest accepted ratio, INCONCLUSIVE if it contains that ratio, else PASS."""
     measured = slowdown(race.base, race.head)
     if measured.lower > race.largest:
         return Status.PERF
@@ -203,10 +211,10 @@ def judge(race: Race) -> Status:
 
 @contextmanager
 def worktree(repository: Path, revision: str) -> Iterator[Path]:
-    """Check out ``revision`` into a folder of its own while the body runs; the working tree is not touched.
+    """Folder with the sources of ``revision`` during a `with` statement; the working tree does not change.
 
     Raises:
-        InvalidInput: with git's own words if there is no such revision.
+        InvalidInput: there is no such revision; the message is that of git.
     """
     commit = git(repository, "rev-parse", "--verify", f"{revision}^{{commit}}").strip()
     with tempfile.TemporaryDirectory(prefix="contact-verify-") as folder:
@@ -220,7 +228,7 @@ def worktree(repository: Path, revision: str) -> Iterator[Path]:
 
 @dataclass(frozen=True, kw_only=True)
 class Sample:
-    """One run of a row: processor seconds, peak memory in MB, and some of its answers."""
+    """One run of a row: processor time [s], peak memory [MB], and numbers of its answer."""
 
     seconds: float
     memory: float
@@ -231,7 +239,7 @@ def sampled(folder: Path, program: str, bytecode: str) -> Sample:
     """Run a program in a fresh interpreter on the source in ``folder``, on one thread.
 
     Raises:
-        InvalidInput: with the last line of the error if the program fails there.
+        InvalidInput: the program fails; the message is the last line of its error.
     """
     environment = {**os.environ, "PYTHONPATH": str(folder), "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
     environment |= {"PYTHONPYCACHEPREFIX": bytecode, "PYTHONDONTWRITEBYTECODE": ""}
@@ -244,23 +252,23 @@ def sampled(folder: Path, program: str, bytecode: str) -> Sample:
 
 
 def raced(program: str, limit: float, base: Path, head: Path, rounds: int) -> tuple[Race, str]:
-    """Return the times of one program on both sources, and its line of the table without name and verdict."""
+    """Times of one program on the sources in two folders, and its line of the table without name and verdict."""
     folders = (base, head, base)
-    taken: list[list[Sample]] = [[], [], []]
+    runs: list[list[Sample]] = [[], [], []]
     with tempfile.TemporaryDirectory() as bytecode:
         for number in range(rounds + 1):
-            for place in (0, 1, 2) if number % 2 else (2, 1, 0):
-                taken[place].append(sampled(folders[place], program, bytecode))
+            for folder_index in (0, 1, 2) if number % 2 else (2, 1, 0):
+                runs[folder_index].append(sampled(folders[folder_index], program, bytecode))
     # The first round wrote the bytecode.
-    seconds = [[sample.seconds for sample in samples[1:]] for samples in taken]
-    race = Race(base=seconds[0], head=seconds[1], again=seconds[2], limit=limit)
-    before, now = (np.asarray(samples[-1].answers) for samples in taken[:2])
-    moved = float(np.max(np.abs(now - before)[before != 0] / np.abs(before[before != 0])))
+    seconds = [[sample.seconds for sample in samples[1:]] for samples in runs]
+    race = Race(base=seconds[0], head=seconds[1], repeated=seconds[2], limit=limit)
+    before, now = (np.asarray(samples[-1].answers) for samples in runs[:2])
+    change = float(np.max(np.abs(now - before)[before != 0] / np.abs(before[before != 0])))
     measured = slowdown(race.base, race.head)
     return race, (
         f"{np.median(race.base):.3g} s | {np.median(race.head):.3g} s | {measured.ratio:.3g} "
-        f"({measured.lower:.3g} to {measured.upper:.3g}) | {race.largest:.3g} | {moved:.0e} | "
-        f"{taken[0][-1].memory:.0f} | {taken[1][-1].memory:.0f}"
+        f"({measured.lower:.3g} to {measured.upper:.3g}) | {race.largest:.3g} | {change:.0e} | "
+        f"{runs[0][-1].memory:.0f} | {runs[1][-1].memory:.0f}"
     )
 
 
@@ -270,17 +278,18 @@ def main(arguments: Sequence[str]) -> int:
     parser.add_argument("revision", help="revision to compare with, anything git understands")
     parser.add_argument("rows", nargs="*", help="only rows whose names contain one of these words")
     parser.add_argument("--rounds", type=int, choices=range(SAMPLES, 100), default=SAMPLES, metavar="7..99")
-    asked = parser.parse_args(arguments)
+    options = parser.parse_args(arguments)
     try:
-        rows = _rows(asked.rows)
-        with worktree(SOURCE, asked.revision) as base:
-            return _run(rows, base, asked.rounds)
+        rows = _rows(options.rows)
+        with worktree(SOURCE, options.revision) as base:
+            return _run(rows, base, options.rounds)
     except InvalidInput as error:
         sys.stderr.write(f"{error}\n")
         return ExitCode.USAGE
 
 
 def _rows(words: Sequence[str]) -> list[str]:
+    """Names of the rows that contain one of the words; all rows without words."""
     rows = [row for row in ROWS if not words or any(word in row for word in words)]
     if not rows:
         raise InvalidInput(f"no row is named {' or '.join(words)}; rows are: {'; '.join(ROWS)}")
@@ -288,6 +297,7 @@ def _rows(words: Sequence[str]) -> list[str]:
 
 
 def _run(rows: Sequence[str], base: Path, rounds: int) -> int:
+    """Measure the rows, print their lines and return the exit code."""
     sys.stdout.write("row | before | now | ratio | limit | answers changed | MB before | MB now\n")
     slower = False
     for row in rows:

@@ -24,7 +24,7 @@ from contact import (
     Unsupported,
     UnsupportedSceneError,
 )
-from contact.answer.accuracy import asked_errors, shortfalls, told_where_less
+from contact.answer.accuracy import number_errors, shortfalls, with_accuracy_note
 from contact.scene.loading import EquilibriumLoading, HistoryLoading
 
 AnswerT = TypeVar("AnswerT", bound=Solution, default=Solution)
@@ -76,7 +76,7 @@ def solve(scene: Scene[Any, Any], *, accuracy: float, pressure_accuracy: float |
     Args:
         scene: Scene to solve.
         accuracy: Largest relative error of radius, depth, force and stiffness, or of critical numbers, or of
-            restitution and peaks (`Solution.ASKED`). Other quantities that state more are named in the notes.
+            restitution and peaks (`Solution.ACCURACY_OF`). Other quantities that state more are named in the notes.
         pressure_accuracy: Largest relative error of the contact pressure; None if it does not matter.
 
     Raises:
@@ -98,9 +98,9 @@ def solve(scene: Scene[Any, Any], *, accuracy: float, pressure_accuracy: float |
         except UnsupportedSceneError as error:
             refusals.append(f"{method.name}: {error}")
             continue
-        stated = max(asked_errors(answer).values(), default=np.inf)
+        stated = max(number_errors(answer).values(), default=np.inf)
         if not shortfalls(answer, accuracy, pressure_accuracy):
-            noted = told_where_less(answer, accuracy, pressure_accuracy)
+            noted = with_accuracy_note(answer, accuracy, pressure_accuracy)
             return Outcome(method=method.name, settings=answer.settings, answer=noted, stated_error=stated)
         best = min(best, stated)
     if best < np.inf:

@@ -1,4 +1,4 @@
-"""What a scene is and what an answer is: the vocabulary that all methods share.
+"""Scenes and answers: the types that all methods share.
 
 Conventions: SI units; pressing is positive; z points into the layer; r is the distance from the axis.
 """

@@ -1,7 +1,7 @@
 """The one rule for every stated error: safety x |answer - answer at another resolution| + floor.
 
-Every quadrature, fit and iteration of a method takes part in the other resolution. Two resolutions may agree by
-accident in one state of a sequence; the neighbours' changes count there too.
+The other resolution is coarser in every quadrature, fit and iteration of a method. Two resolutions may agree by
+accident in one state of a sequence. The largest change of the state and its two neighbours counts there.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from contact.records.validation import FloatArray
 
-# Multiplies the change between two resolutions. With 1 two equal errors of opposite sign are missed, with 4 stated
+# Factor on the change between two resolutions. With 1 two equal errors of opposite sign are missed, with 4 stated
 # errors are twice as wide.
 SAFETY = 2.0
 

@@ -56,7 +56,7 @@ CAVITATION = (
 NODES, NODE_POWER = 12, 0.75
 # Largest ratio of the radii at the ends of a piece.
 WIDEST_PIECE = 4.0
-# Most breakpoints of a profile that end pieces: tables have many, and their quantities are nearly smooth.
+# Largest number of breakpoints at which pieces end. Tables have more, and their quantities are nearly smooth.
 MOST_BREAKPOINTS = 3
 # First over last radius of a branch, tried in turn until it becomes unstable. From the radius where height and
 # elongation are equal, half-spaces detach a paraboloid at 1/6 of it and a cone at 1/40.
@@ -67,14 +67,14 @@ SAMPLES = 241
 
 @dataclass(frozen=True)
 class BranchPiece:
-    """The branch between two neighbouring kinks or breakpoints.
+    """Adhesive equilibria between two contact radii, interpolated over the radius.
 
     Attributes:
         low: smallest contact radius [m].
         high: largest contact radius [m].
-        graded: whether radii are ``low + (high - low) s^2`` (next to a kink) or ``low (high / low)^s``.
+        graded: True for radii ``low + (high - low) s^2`` (above a kink), False for ``low (high / low)^s``.
         contacts: solved contacts at the Chebyshev points of s in [0, 1], in increasing s.
-        solve: solves further contacts on the same mesh.
+        solve: function that solves further contacts on the same mesh.
     """
 
     low: float
@@ -85,7 +85,7 @@ class BranchPiece:
 
     @classmethod
     def solved(cls, low: float, high: float, solve: ContactSolver, nodes: int, *, graded: bool = False) -> Self:
-        """The piece between two radii [m], interpolated from ``nodes`` contacts, the middle ones solved first."""
+        """Piece between two radii [m] from ``nodes`` solved contacts; those in the middle are solved first."""
         s = (1 + chebyshev.chebpts2(nodes)) / 2
         radii = low + (high - low) * s**2 if graded else low * (high / low) ** s
         radii[0], radii[-1] = low, high
@@ -94,16 +94,17 @@ class BranchPiece:
 
     @cached_property
     def _powers(self) -> FloatArray:
-        """Powers of the radius that delta_0 and F_2 follow between the ends, shape (2,); zero where a sign changes."""
+        """Exponents n of delta_0 / a ~ a^n and F_2 / a^2 ~ a^n between the ends, shape (2,); zero if signs differ."""
         ends = np.array([[c.smooth_depth, c.profile_force] for c in (self.contacts[0], self.contacts[-1])])
         ratios = ends[1] / np.where(ends[0] == 0, np.inf, ends[0])
         return np.asarray(np.log(np.where(ratios > 0, ratios, 1.0)) / np.log(self.high / self.low))
 
     @cached_property
     def _series(self) -> FloatArray:
-        """Chebyshev coefficients of k_N / (E* a), k_N' / E*, delta_0 / a and F_2 / (E* a^2), shape (node, 4).
+        """Chebyshev coefficients of four functions of s, shape (node, 4).
 
-        The logarithms of the first two are expanded, and the last two over their `_powers` of the radius.
+        They are ln(k_N / (E* a)), ln(k_N' / E*), and delta_0 / a and F_2 / (E* a^2), each divided by (a / high)^n with
+        its exponent n of `_powers`.
         """
         radii = np.array([c.contact_radius for c in self.contacts]) / self.high
         rows = np.array([(c.stiffness, c.stiffness_slope, c.smooth_depth, c.profile_force) for c in self.contacts])
@@ -123,12 +124,12 @@ class BranchPiece:
 
 @dataclass(frozen=True)
 class Branch:
-    """States in adhesive equilibrium.
+    """Adhesive equilibria as functions of the contact radius.
 
     Attributes:
-        pieces: in increasing radius.
+        pieces: adjacent pieces of the branch, in increasing radius.
         work: dgamma / E* [m].
-        machine: E*/K [1/m] of a machine of stiffness K; zero if it is rigid.
+        machine: compliance E*/K [1/m] of a machine of stiffness K; zero if it is rigid.
     """
 
     pieces: Sequence[BranchPiece]
@@ -137,7 +138,7 @@ class Branch:
 
     @property
     def contacts(self) -> list[PrescribedContact]:
-        """All solved contacts."""
+        """Solved contacts of all pieces."""
         return [contact for piece in self.pieces for contact in piece.contacts]
 
     @property
@@ -164,14 +165,14 @@ class Branch:
         return loads
 
     def _load_within(self, piece: BranchPiece, control: Controlled, radius: FloatArray) -> FloatArray:
-        """The controlled load at radii [m] of one piece."""
+        """Controlled load at radii [m] of one piece: depth [m], F / E* [m^2], or displacement of the machine [m]."""
         stiffness, slope, smooth, profile = piece.evaluate(radius)
         depth = smooth - np.sqrt(4 * np.pi * radius * self.work / slope)
         force = stiffness * depth + profile
         return np.asarray({"displacement": depth, "force": force, "machine": depth + self.machine * force}[control])
 
     def slope(self, control: Controlled, radius: FloatArray) -> FloatArray:
-        """d load / d a by central differences inside the piece of each radius (the interpolants are smooth)."""
+        """d load / d a at radii [m], by central differences within the smooth interpolant of each piece."""
         slopes = np.empty_like(radius)
         for piece in self.pieces:
             inside = (radius >= piece.low) & (radius <= piece.high)
@@ -182,20 +183,20 @@ class Branch:
         return slopes
 
     def slope_root(self, control: Controlled, low: float, high: float) -> float:
-        """Radius [m] between two at which the slope of a load changes its sign, or where it jumps across zero (kink).
+        """Radius [m] between ``low`` and ``high`` at which d load / d a changes its sign, or jumps across zero (kink).
 
-        The outer radius where both slopes have one sign, or one of them is zero.
+        It is ``high`` if both slopes have the same sign, or one of them is zero.
         """
-        same_sign = np.prod(self.slope(control, np.array([low, high]))) >= 0
-        return high if same_sign else root(partial(self.slope, control), low, high)
+        has_no_root = np.prod(self.slope(control, np.array([low, high]))) >= 0
+        return high if has_no_root else root(partial(self.slope, control), low, high)
 
     def radius_at(self, control: Controlled, target: float, low: float, high: float) -> float:
-        """Radius [m] between two at which a load has a value."""
+        """Radius [m] between ``low`` and ``high`` at which the load equals ``target``."""
         return root(lambda radius: self.load(control, radius) - target, low, high)
 
 
 def root(function: Callable[[FloatArray], FloatArray], low: float, high: float) -> float:
-    """Radius [m] between two at which a function of radii vanishes."""
+    """Radius [m] between ``low`` and ``high`` at which a function of radii vanishes (Brent's method)."""
     return float(brentq(lambda a: function(np.array([a]))[0], low, high, xtol=1e-13 * high))
 
 
@@ -218,9 +219,9 @@ def adhesive_equilibria(
 
     Args:
         scene: the scene.
-        solve: contact of a given radius.
-        settings: numerical settings, whose growth decides how many radii are solved along a branch.
-        log: of the stages.
+        solve: function that solves the contact of a given radius [m].
+        settings: numerical settings; their growth determines how many radii are solved along a branch.
+        log: record of time and memory per stage.
 
     Raises:
         InvalidInput: no stable state carries the load: the indenter has detached.
@@ -233,9 +234,9 @@ def adhesive_equilibria(
     control: Controlled = "displacement" if by_depth else "force"
 
     def reached(r: float) -> bool:
-        """Whether the load exceeds the target, by delta_0 >= f and F >= E* a f (convex profiles), f less twice dl."""
-        alone = height(profile, r) - 2 * np.sqrt(2 * np.pi * r * work)
-        return bool(alone >= (1.5 * largest if by_depth else largest / r))
+        """Whether the load exceeds the target by the bounds delta >= f - 2 dl, F >= E* a (f - 2 dl), convex f."""
+        height_bound = height(profile, r) - 2 * np.sqrt(2 * np.pi * r * work)
+        return bool(height_bound >= (1.5 * largest if by_depth else largest / r))
 
     branch = branch_of(scene, None if is_punch else first_radius(profile, reached), settings, log)
     end, states = branch.pieces[-1].high, []
@@ -250,7 +251,7 @@ def adhesive_equilibria(
 
 
 def stable_radius(branch: Branch, control: Controlled, target: float) -> float:
-    """The largest radius at which a load (that grows with the radius there) has the target value.
+    """Largest radius [m] at which the load equals the target and grows with the radius.
 
     Raises:
         InvalidInput: the load is beyond the last stable one.
@@ -271,11 +272,11 @@ def stable_radius(branch: Branch, control: Controlled, target: float) -> float:
 def branch_of(
     scene: Scene, start: float | None, settings: Discretisation, log: StageLog, span: float = SPANS[0]
 ) -> Branch:
-    """The branch from a radius [m] (by default one where the contact is pressed) down to one ``span`` times smaller."""
+    """Branch from the radius ``start`` [m] (by default of a pressed contact) down to one ``span`` times smaller."""
     indenter, work = scene.indenter, work_of_adhesion(scene)
     is_punch, high = isinstance(indenter, FlatPunch), start or indenter.flat_radius
     if not start and not is_punch:
-        # Where f exceeds twice dl of a half-space (k_N' = 2 E*), contact presses: delta_0 >= f.
+        # delta_0 >= f. Where f is twice dl of a half-space (k_N' = 2 E*), depth and force are positive.
         high = first_radius(indenter, lambda r: height(indenter, r) >= 2 * np.sqrt(2 * np.pi * r * work))
     kinks = [k for k in indenter.kinks if k < high]
     smallest = min([high / 3, scene.layer.surface.thickness, *kinks])
@@ -297,10 +298,10 @@ def branch_of(
 
 @dataclass(frozen=True)
 class Separation:
-    """A branch at one resolution, and where contact is lost; forces over E*.
+    """A detachment at one resolution: its branch, critical points and pull-off; forces over E*.
 
     Attributes:
-        scene: with a `Detachment`.
+        scene: scene with a `Detachment`.
         branch: equilibria over the contact radius.
     """
 
@@ -331,7 +332,7 @@ class Separation:
         return self.branch.samples[::-1]
 
     def point(self, radius: float, control: Controlled, kind: str) -> CriticalPoint:
-        """A critical point, solved at its radius: extremal loads err in the square of the radius's error only."""
+        """Critical point at a radius [m], solved there: extremal loads err only in the square of the radius error."""
         piece = next(piece for piece in self.branch.pieces if radius <= piece.high)
         contact = piece.solve(radius)
         state, a = adhesive_equilibrium(contact, self.branch.work), contact.contact_radius
@@ -358,7 +359,7 @@ class Separation:
         controls: list[Controlled] = ["displacement", "force"]
         if self.control == "machine":
             controls.append("machine")
-        # A flat punch holds its radius until detachment begins at its edge.
+        # The contact radius of a flat punch is constant until detachment begins at its edge.
         points, landings = [self.point(flat, control, "start") for control in controls if is_punch], []
         for control in controls:
             slope, values = self.branch.slope(control, radius), self.branch.load(control, radius)
@@ -376,69 +377,71 @@ class Separation:
         """The state from which contact is lost for good.
 
         Of all pull-off points, and of the first state if that is unstable, it is the one with the lowest load. A
-        contact that jumps at a higher load comes to rest on the stable part of the branch that ends there.
+        contact that becomes unstable at a higher load jumps to the stable part of the branch that ends there.
 
         Raises:
             NotConvergedError: the branch ends before it becomes unstable.
         """
         radius, control = self.radius, self.control
-        lost = [p for p in self.critical_points if p.control == control and p.kind == "pull-off"]
+        candidates = [p for p in self.critical_points if p.control == control and p.kind == "pull-off"]
         if self.branch.slope(control, radius[:1])[0] <= 0:
-            lost.insert(0, self.point(float(radius[0]), control, "pull-off"))
-        if not lost:
+            candidates.insert(0, self.point(float(radius[0]), control, "pull-off"))
+        if not candidates:
             raise NotConvergedError(
-                f"the indenter holds on from a = {radius[0]:g} m down to a = {radius[-1]:g} m under {control} control, "
-                "and no smaller radii were solved; prescribe a smaller initial_contact_radius",
+                f"the indenter stays in contact from a = {radius[0]:g} m down to a = {radius[-1]:g} m under "
+                f"{control} control, and no smaller radii were solved; prescribe a smaller initial_contact_radius",
                 {"radius_over_first": radius[-1] / radius[0]},
             )
-        depths, forces = (np.array([getattr(p, n) for p in lost]) for n in ("indentation_depth", "normal_force"))
+        depths, forces = (np.array([getattr(p, n) for p in candidates]) for n in ("indentation_depth", "normal_force"))
         loads = {"displacement": depths, "force": forces, "machine": depths + self.branch.machine * forces}
-        return lost[int(np.argmin(loads[control]))]
+        return candidates[int(np.argmin(loads[control]))]
 
     @property
     def numbers(self) -> dict[str, float]:
-        """Depth [m], forces / E* [m^2] and radius [m] of pull-off; the pull-off force is the least until pull-off."""
-        last = self.pull_off
-        passed = self.radius[self.radius >= last.contact_radius]
-        sampled = self.point(float(passed[np.argmin(self.branch.load("force", passed))]), self.control, "strongest")
-        turned = [point for point in self.critical_points if point.contact_radius >= last.contact_radius]
+        """Depth [m], forces / E* [m^2] and radius [m] at pull-off; the pull-off force is the smallest until then."""
+        pull_off = self.pull_off
+        passed_radii = self.radius[self.radius >= pull_off.contact_radius]
+        strongest = self.point(
+            float(passed_radii[np.argmin(self.branch.load("force", passed_radii))]), self.control, "strongest"
+        )
+        extrema = [point for point in self.critical_points if point.contact_radius >= pull_off.contact_radius]
         return {
-            "pull_off_depth": last.indentation_depth,
-            "pull_off_force": min(point.normal_force for point in (sampled, last, *turned)),
-            "pull_off_contact_radius": last.contact_radius,
-            "force_at_loss": last.normal_force,
+            "pull_off_depth": pull_off.indentation_depth,
+            "pull_off_force": min(point.normal_force for point in (strongest, pull_off, *extrema)),
+            "pull_off_contact_radius": pull_off.contact_radius,
+            "force_at_loss": pull_off.normal_force,
         }
 
 
 def detachment_path(
     scene: Scene, written: Mapping[str, Setting], log: StageLog, settings: Discretisation
 ) -> DetachmentPath:
-    """The branch in the order of decreasing contact radius, with its changes on coarser cells as errors.
+    """Detachment path in the order of decreasing contact radius, with stated errors from coarser cells.
 
     Args:
-        scene: with a `Detachment`.
-        written: settings of the method.
-        log: of the stages.
+        scene: scene with a `Detachment`.
+        written: settings that the answer reports.
+        log: record of time and memory per stage.
         settings: numerical settings.
 
     Raises:
         UnsupportedSceneError: the indenter would touch outside one of the contacts.
     """
-    companion, found = (Separation.of(scene, each, log) for each in (settings.coarser(), settings))
-    branch, radius, modulus = found.branch, found.radius, contact_modulus(scene.layer)
-    inside, loads, along = np.clip(radius, companion.branch.pieces[0].low, None), [], []
+    coarse, fine = (Separation.of(scene, each, log) for each in (settings.coarser(), settings))
+    branch, radius, modulus = fine.branch, fine.radius, contact_modulus(scene.layer)
+    common_radius, loads, path_errors = np.clip(radius, coarse.branch.pieces[0].low, None), [], []
     for control in ("displacement", "force"):
         loads.append(branch.load(control, radius))
-        other = companion.branch.load(control, inside)
-        along.append(stated_error(loads[-1], other, scale=np.abs(loads[-1]).max(), floor=FLOOR))
+        coarse_load = coarse.branch.load(control, common_radius)
+        path_errors.append(stated_error(loads[-1], coarse_load, scale=np.abs(loads[-1]).max(), floor=FLOOR))
         if control == "displacement":
-            tolerance = float(np.abs(loads[0] - other).max())
+            tolerance = float(np.abs(loads[0] - coarse_load).max())
             states = (adhesive_equilibrium(contact, branch.work) for contact in branch.contacts)
             refuse_touching(scene, (circle_of(state, tolerance) for state in states))
-    (depth, force), numbers, coarser = loads, found.numbers, companion.numbers
-    floor = float(np.max(along)) if branch.is_rough else FLOOR
-    number_errors = {name: stated_error(v, coarser[name], scale=v, floor=floor) for name, v in numbers.items()}
-    # Two meshes may agree in one number by accident, but to rounding only where a kink holds the radius.
+    (depth, force), numbers, coarse_numbers = loads, fine.numbers, coarse.numbers
+    floor = float(np.max(path_errors)) if branch.is_rough else FLOOR
+    number_errors = {name: stated_error(v, coarse_numbers[name], scale=v, floor=floor) for name, v in numbers.items()}
+    # Two meshes may agree in one number by accident, but to rounding only where the radius lies at a kink.
     least_error = LEAST_SHARE * np.max(list(number_errors.values()))
     number_errors = {n: np.where(e > 2 * FLOOR, np.maximum(e, least_error), e) for n, e in number_errors.items()}
     return DetachmentPath(
@@ -447,8 +450,8 @@ def detachment_path(
         settings=written,
         error_estimate={
             "contact_radius": 0.0 * radius,
-            "indentation_depth": along[0],
-            "normal_force": along[1],
+            "indentation_depth": path_errors[0],
+            "normal_force": path_errors[1],
             **number_errors,
         },
         cost=log.cost(unknowns=max(c.unknowns for c in branch.contacts)),
@@ -459,7 +462,7 @@ def detachment_path(
         normal_force=modulus * force,
         stable_displacement_control=branch.slope("displacement", radius) > 0,
         stable_force_control=branch.slope("force", radius) > 0,
-        critical_points=tuple(replace(p, normal_force=modulus * p.normal_force) for p in found.critical_points),
+        critical_points=tuple(replace(p, normal_force=modulus * p.normal_force) for p in fine.critical_points),
         **{name: value * (modulus if "force" in name else 1.0) for name, value in numbers.items()},
     )
 
@@ -468,7 +471,7 @@ def _notes(contacts: list[PrescribedContact]) -> tuple[str, ...]:
     """A warning where the flat punch's pressure at r = 0 exceeds that at 0.3 a: a second maximum besides the edge."""
     cavitating = []
     for contact in contacts:
-        centre, beside = contact.contact_trace.evaluate(contact.pressures[:, 0], np.array([0.0, 0.3]))
-        if centre > beside:
+        centre, off_centre = contact.contact_trace.evaluate(contact.pressures[:, 0], np.array([0.0, 0.3]))
+        if centre > off_centre:
             cavitating.append(contact.contact_radius)
     return tuple(CAVITATION.format(radius=min(cavitating)) for _ in cavitating[:1])

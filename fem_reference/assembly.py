@@ -36,7 +36,7 @@ class ElementPair:
     """Displacement and pressure elements of one formulation.
 
     Attributes:
-        name: e.g. "P3P2".
+        name: name of the pair, such as "P3P2".
         degree: polynomial degree of the displacement.
         displacement: scalar element of each displacement component.
         pressure: element of the pressure, None for a displacement formulation.
@@ -57,7 +57,7 @@ class ElementPair:
 
     @property
     def inner(self) -> list[int]:
-        """Places, among a triangle's unknowns, of those inside it that can be condensed.
+        """Indices, among the unknowns of a triangle, of the interior ones that are condensed.
 
         scikit-fem numbers interior unknowns last. Pressures are condensed only together with displacements: alone their
         block is ``-int p q / K``, which vanishes at nu = 1/2.
@@ -111,8 +111,8 @@ class Space:
 
     Attributes:
         mesh: triangles of all parts; the parts are not connected.
-        pair: elements.
-        faces: where parts meet.
+        pair: elements of displacement and pressure.
+        faces: interfaces between the parts.
     """
 
     mesh: MeshTri
@@ -121,7 +121,7 @@ class Space:
 
     @cached_property
     def displacement_dofs(self) -> Dofs:
-        """Numbering of one displacement component."""
+        """scikit-fem's numbering of the unknowns of one displacement component."""
         return Dofs(self.mesh, self.pair.displacement)
 
     @property
@@ -131,7 +131,7 @@ class Space:
 
     @cached_property
     def pressure_dofs(self) -> Dofs:
-        """Numbering of the pressure."""
+        """scikit-fem's numbering of the pressure unknowns."""
         return Dofs(self.mesh, self.pair.pressure)
 
     @cached_property
@@ -155,7 +155,7 @@ class Space:
 
     @cached_property
     def owner(self) -> IntArray:
-        """Displacement unknown that represents each one; itself except on the lower side of a face."""
+        """Displacement unknown that replaces each one in the equations: itself, except on the lower side of a face."""
         owner = np.arange(self.displacement_count)
         for face in self.faces:
             above, below = self.nodes_on(face.above), self.nodes_on(face.below)
@@ -206,7 +206,7 @@ def _products(pair: ElementPair) -> tuple[FloatArray, FloatArray, FloatArray]:
 
     Returns:
         Products of the terms of two displacement functions, shape (3, 3, point, basis, basis).
-        Products of the terms of one with the pressure functions, shape (3, point, pressure, basis).
+        Products of the terms of a displacement function with the pressure functions, shape (3, point, pressure, basis).
         Values of the pressure functions, shape (pressure, point).
     """
     points, _ = quadrature(pair.degree)
@@ -247,7 +247,7 @@ def element_matrices(pair: ElementPair, corners: FloatArray, moduli: PointModuli
     `weak_forms.volume` alone.
 
     Args:
-        pair: elements.
+        pair: elements of displacement and pressure.
         corners: (r, z) of the corners, shape (triangle, 3, 2); may be complex, for derivatives by complex steps.
         moduli: mu and 1/K at quadrature points, shape (triangle, point).
 
@@ -276,19 +276,19 @@ def _strain_products(
     It sums, over pairs of terms and over points, coefficients of the triangle times products of the reference triangle:
     one matrix product for each pair of components.
     """
-    # (triangle, component and term of u, the same of v, 1).
+    # Axes: triangle, component of u, term of u, component of v, term of v, 1.
     flat, products = strain.reshape(-1, 4, 6), _products(pair)[0]
     mutual = (flat.transpose(0, 2, 1) @ form @ flat).reshape(-1, 2, 3, 2, 3, 1)
     # Factor of each term: 1, 1 and 1/r.
     over_r = np.stack([np.ones_like(radius)] * 2 + [1 / radius], axis=1)
     weights, basis = (weight[:, None] * over_r)[:, :, None] * over_r[:, None], products.shape[-1]
     elements = np.empty((len(weight), basis, 2, basis, 2), dtype=weight.dtype)
-    for one, other in ((0, 0), (0, 1), (1, 1)):
+    for row, column in ((0, 0), (0, 1), (1, 1)):
         # u_z has no hoop strain: two terms instead of three.
-        i, j = slice(3 - one), slice(3 - other)
-        share = mutual[:, one, i, other, j] * weights[:, i, j]
+        i, j = slice(3 - row), slice(3 - column)
+        share = mutual[:, row, i, column, j] * weights[:, i, j]
         block = share.reshape(len(share), -1) @ products[i, j].reshape(-1, basis**2)
-        elements[:, :, one, :, other] = block.reshape(-1, basis, basis)
+        elements[:, :, row, :, column] = block.reshape(-1, basis, basis)
     elements[:, :, 1, :, 0] = elements[:, :, 0, :, 1].transpose(0, 2, 1)
     return elements.reshape(-1, 2 * basis, 2 * basis)
 
@@ -309,12 +309,12 @@ def scatter(elements: FloatArray, unknowns: IntArray, size: int) -> sparse.csc_a
     """Sum of element matrices (triangle, n, n) as a sparse matrix of shape (size, size).
 
     It is ``P^T R``: R has each row of each element matrix as one sparse row, and P assigns these rows to unknowns. The
-    product adds what belongs together, without the sorting of duplicates in COO format.
+    product adds all entries of one matrix position, without the sorting of duplicates in COO format.
     """
     count, short = unknowns.shape[1], unknowns.astype(np.int32)
     ends = np.arange(short.size + 1, dtype=np.int32)
     rows = sparse.csr_array(
         (elements.ravel(), np.repeat(short, count, axis=0).ravel(), count * ends), (short.size, size)
     )
-    belongs = sparse.csc_array((np.ones(short.size), short.ravel(), ends), shape=(size, short.size))
-    return (belongs.tocsr() @ rows).tocsc()
+    assignment = sparse.csc_array((np.ones(short.size), short.ravel(), ends), shape=(size, short.size))
+    return (assignment.tocsr() @ rows).tocsc()

@@ -20,7 +20,7 @@ from contact.records.validation import BoolArray, FloatArray
 
 # Largest accepted violation of a contact condition, relative to the largest pressure or overlap: roundings are 5e-16.
 TOLERANCE = 1e-9
-# Active sets that are tried; a handful suffice, and principal pivoting usually takes as many as there are vertices.
+# Largest number of active sets. A handful suffice, and principal pivoting usually takes as many as there are vertices.
 MOST_SETS = 1000
 # Coefficients, highest power first, of the polynomial that maps the ratio of the last two pressures to the distance
 # [cells] from the last pressed vertex to the contact edge; it errs by 0.06 cells.
@@ -28,12 +28,12 @@ EDGE_POLYNOMIAL = (0.11, 1.0, 0.04)
 
 
 class Complementary(NamedTuple):
-    """A checked solution, arrays of shape (n,).
+    """Solution whose conditions are checked, arrays of shape (n,).
 
     Attributes:
-        pressure: p.
-        gap: g.
-        active: where p > 0 was allowed and g = 0 was required.
+        pressure: nodal pressures p.
+        gap: moments g of the gap.
+        active: True at vertices where p > 0 is allowed and g = 0 is required.
     """
 
     pressure: FloatArray
@@ -44,20 +44,20 @@ class Complementary(NamedTuple):
 def solve_complementarity(
     compliance: FloatArray, approach: FloatArray, start: BoolArray | None = None
 ) -> Complementary:
-    """Solve for p and g.
+    """Solution p, g of the complementarity problem.
 
     Args:
-        compliance: C, shape (n, n), symmetric positive definite.
-        approach: b, shape (n,): overlap of the indenter with the surface as it is without pressure.
-        start: first guess of the active set; where b > 0 if omitted.
+        compliance: compliance C, shape (n, n), symmetric positive definite.
+        approach: moments b of the overlap of the indenter with the unloaded surface, shape (n,).
+        start: first guess of the active set, shape (n,); by default the vertices with b > 0.
 
     Raises:
         NotConvergedError: a condition is violated (C is not positive definite, or not finite).
     """
     diagonal = compliance.diagonal()
     active = approach > 0 if start is None else start
-    seen: set[bytes] = set()
-    returns = False
+    earlier_sets: set[bytes] = set()
+    is_cycling = False
     for _ in range(MOST_SETS):
         pressure = pressure_on(compliance, approach, active)
         # p_i > g_i / C_ii: on the active set g = 0, and off it p = 0.
@@ -65,17 +65,17 @@ def solve_complementarity(
         wrong = np.flatnonzero(following != active)
         if not len(wrong):
             return _checked(compliance, approach, pressure, active)
-        returns |= following.tobytes() in seen
-        if returns:
+        is_cycling |= following.tobytes() in earlier_sets
+        if is_cycling:
             following = active.copy()
             following[wrong[-1]] ^= True
-        seen.add(following.tobytes())
+        earlier_sets.add(following.tobytes())
         active = following
     raise NotConvergedError(f"the contact set is not settled after {MOST_SETS} attempts")
 
 
 def pressure_on(compliance: FloatArray, approach: FloatArray, active: BoolArray) -> FloatArray:
-    """Pressures (n,) with zero gap on the active set and no pressure elsewhere; negative where that pulls."""
+    """Pressures (n,), zero off the active set, that close the gap on it; negative where this needs tension."""
     pressure = np.zeros_like(approach)
     if active.any():
         _, pressure[active], failed = dposv(compliance[np.ix_(active, active)], approach[active])
@@ -85,6 +85,7 @@ def pressure_on(compliance: FloatArray, approach: FloatArray, active: BoolArray)
 
 
 def _checked(compliance: FloatArray, approach: FloatArray, pressure: FloatArray, active: BoolArray) -> Complementary:
+    """The solution, after its contact conditions were checked to `TOLERANCE`."""
     gap = compliance @ pressure - approach
     # A flat punch that touches without pressing has neither overlap nor pressure.
     tiny = np.finfo(float).tiny
@@ -104,12 +105,12 @@ def edge_radius(radii: FloatArray, pressure: FloatArray) -> float:
 
     Next to its edge every smooth contact is the same problem of the half-plane, with p proportional to sqrt(a - r).
     Solved on equal cells, the distance from the last pressed vertex to the true edge depends on the ratio of the last
-    two pressures only: `EDGE_POLYNOMIAL`. A last pressure above its neighbour belongs to a sharp edge, where the
-    contact ends.
+    two pressures only: `EDGE_POLYNOMIAL`. If the last pressure exceeds its neighbour, the edge is sharp and the contact
+    ends at the last vertex.
 
     Args:
-        radii: of the vertices, equidistant at the edge, shape (n,).
-        pressure: at the vertices, shape (n,).
+        radii: radii of the vertices, equidistant at the edge, shape (n,).
+        pressure: pressures at the vertices, shape (n,).
     """
     pressed = np.flatnonzero(pressure > 0)
     if not len(pressed):

@@ -26,7 +26,7 @@ from contact import (
     Scene,
     StageLog,
 )
-from contact.answer.friction import told_of_friction
+from contact.answer.friction import friction_notes
 from contact.answer.one_circle import Circle, no_single_circle, refuse_touching
 from contact.answer.solution import Setting
 from contact.records.validation import FloatArray
@@ -36,16 +36,16 @@ from fem_reference.prescribed_contact import QUICK, ContactSolver, Neighbours, P
 from fem_reference.profiles import height
 from fem_reference.settings import NARROWEST, narrowest_radius
 
-# Largest relative defect of the load that is left to the first-order correction, whose error is its square.
-LEFT_OVER = 1e-4
-# Most full solutions of one load: on coarse meshes each radius has a mesh that misses the load by its own error.
+# Largest relative defect of the load that the first-order correction removes, with the square of it as error.
+SMALL_DEFECT = 1e-4
+# Largest number of full solutions per load. On coarse meshes each radius has a mesh with an error of its own.
 ATTEMPTS = 3
-# Largest relative defect of the load that the last of them may leave to the correction.
-MOST_LEFT = 0.03
+# Largest relative defect of the load that the correction removes after the last full solution.
+LARGEST_DEFECT = 0.03
 # Width of a ring, over the smaller of flat radius and thickness, below which its load grows like the root of the width
 # and steps of the search are not limited. With half of it searches take more steps, with twice they may overshoot.
 NARROW = 0.1
-# Steps of the search for a radius by quick solutions; five usually suffice.
+# Largest number of steps of the search for a radius by quick solutions; five usually suffice.
 STEPS = 16
 # Relative error of the depth in a quick solution: about three times the largest, that of tabulated profiles.
 QUICK_ERROR = 2e-4
@@ -54,7 +54,7 @@ QUICK_ERROR = 2e-4
 # with smaller ones contacts without tension may be refused.
 FINE_SHARE, POINT_SHARE = 0.1, 0.5
 # Radii over the contact radius at which displacements of two meshes are compared, the nearest 6e-8 from the edge.
-BESIDE = 1.0 + 2.0 ** np.arange(-24.0, 3.0)
+OUTSIDE = 1.0 + 2.0 ** np.arange(-24.0, 3.0)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -62,9 +62,9 @@ class FemEquilibrium:
     """One state of a path at one resolution, in units of the mesh's contact radius and of E*.
 
     Attributes:
-        contact: the solved contact.
-        depth: delta / a.
-        radius_factor: contact radius over that of the mesh: one, but for the last correction and `narrowed` rings.
+        contact: solved contact on the mesh.
+        depth: indentation depth delta / a.
+        radius_factor: contact radius over that of the mesh; one, except after a correction and for `narrowed` rings.
     """
 
     contact: PrescribedContact
@@ -73,7 +73,7 @@ class FemEquilibrium:
 
     @property
     def force(self) -> float:
-        """F / (E* a^2)."""
+        """Normal force F / (E* a^2)."""
         return self.contact.force(self.depth)
 
     @property
@@ -102,7 +102,7 @@ class FemEquilibrium:
 
 
 def equilibrium_at_depth(contact: PrescribedContact, depth: float) -> FemEquilibrium:
-    """The state with the contact's radius at a depth / a, whatever the stress at its edge."""
+    """State of a solved contact at a depth delta / a; the stress at its edge may be singular."""
     return FemEquilibrium(contact=contact, depth=depth, radius_factor=contact.radius)
 
 
@@ -122,7 +122,7 @@ def targets_of(scene: Scene) -> tuple[FloatArray, bool]:
 
 
 def flat_punch_equilibria(scene: Scene, solve: ContactSolver) -> list[FemEquilibrium]:
-    """States of a flat punch at prescribed depths or forces: one solution, scaled by the depth."""
+    """States of a flat punch at prescribed depths or forces, from one solution that is proportional to the depth."""
     targets, by_depth = targets_of(scene)
     radius = scene.indenter.flat_radius
     contact = solve(radius)
@@ -137,9 +137,9 @@ def elastic_equilibria(
 
     Args:
         scene: the scene.
-        solve: contact of a given radius [m].
+        solve: function that solves the contact of a given radius [m].
         coarsening: growth of cells over that of the answer, see `Discretisation`.
-        search: radius [m] of a load, approximately; see `searched_radius`.
+        search: function that returns the approximate radius [m] of a load; see `searched_radius`.
     """
     if isinstance(scene.loading, ContactRadii):
         return [smooth_equilibrium(solve(float(a))) for a in scene.loading.values]
@@ -151,7 +151,7 @@ def elastic_equilibria(
         try:
             states.append(state_at_load(scene, target, start, solve, coarsening))
         except NotConvergedError:
-            # With tension inside the contact the load need not grow with the radius: then that is the reason to state.
+            # With tension inside the contact the load need not grow with the radius. The message then names it.
             state = smooth_equilibrium(quick_solution(scene, start, StageLog()))
             _refuse_pulled(scene, state, state)
             raise
@@ -161,33 +161,37 @@ def elastic_equilibria(
 def state_at_load(
     scene: Scene, target: float, start: float, solve: ContactSolver, coarsening: float = 1.0
 ) -> FemEquilibrium:
-    """The state at a prescribed load, from full solutions at corrected radii.
+    """State at a prescribed load, from full solutions at corrected radii.
 
     Args:
         scene: the scene, with depths or forces.
-        target: a depth [m] or a force / E* [m^2].
+        target: prescribed depth [m] or force / E* [m^2].
         start: first radius [m], close to that of the load.
-        solve: contact of a given radius [m].
-        coarsening: growth of cells over that of the answer. A companion may leave any defect of the load to the
-            correction, whose error then adds to the stated error of the answer.
+        solve: function that solves the contact of a given radius [m].
+        coarsening: growth of cells over that of the answer. In a companion the correction removes any defect of the
+            load, and its error adds to the stated error of the answer.
 
     Raises:
-        NotConvergedError: the defect is above `MOST_LEFT` after `ATTEMPTS` solutions.
+        NotConvergedError: the defect is above `LARGEST_DEFECT` after `ATTEMPTS` solutions.
     """
     radius, flat, by_depth = start, scene.indenter.flat_radius, targets_of(scene)[1]
     narrowest = narrowest_radius(scene.layer, scene.indenter, coarsening)
-    most_left = MOST_LEFT if coarsening == 1.0 else np.inf
+    largest_defect = LARGEST_DEFECT if coarsening == 1.0 else np.inf
     for attempt in range(ATTEMPTS):
         contact = solve(max(radius, narrowest))
-        scaled = target / contact.contact_radius ** (1 if by_depth else 2)
-        defect = _load(contact, by_depth) / scaled
+        scaled_target = target / contact.contact_radius ** (1 if by_depth else 2)
+        defect = _load(contact, by_depth) / scaled_target
         if radius <= narrowest and defect > 1:
             contact = contact.narrowed(1 / defect)  # load ~ delta_0 to leading order
-            defect = _load(contact, by_depth) / scaled
-        exponent = grows_like(contact, flat / contact.contact_radius, by_depth=by_depth)
+            defect = _load(contact, by_depth) / scaled_target
+        exponent = load_exponent(contact, flat / contact.contact_radius, by_depth=by_depth)
         corrected = flat + (contact.radius * contact.contact_radius - flat) * defect ** (-1 / exponent)
-        if abs(defect - 1) <= (LEFT_OVER if attempt < ATTEMPTS - 1 else most_left):
-            depth = scaled if by_depth else contact.smooth_depth + (scaled - contact.smooth_force) / contact.stiffness
+        if abs(defect - 1) <= (SMALL_DEFECT if attempt < ATTEMPTS - 1 else largest_defect):
+            depth = (
+                scaled_target
+                if by_depth
+                else contact.smooth_depth + (scaled_target - contact.smooth_force) / contact.stiffness
+            )
             return FemEquilibrium(contact=contact, depth=depth, radius_factor=corrected / contact.contact_radius)
         radius = min(corrected, scene.indenter.max_radius)
     raise NotConvergedError("the contact radius does not settle", {"load_defect": abs(defect - 1)})
@@ -204,9 +208,10 @@ def searched_radius(scene: Scene, log: StageLog, target: float) -> float:
     solve = Neighbours(scene, QUICK, log)
 
     def load_at(radius: float) -> tuple[float, float]:
+        """Load over the target at a radius [m], and d ln(load) / d ln(a - flat)."""
         contact = solve(radius)
         load = _load(contact, by_depth) * radius ** (1 if by_depth else 2)
-        return load / target, grows_like(contact, flat / radius, by_depth=by_depth)
+        return load / target, load_exponent(contact, flat / radius, by_depth=by_depth)
 
     # Estimates f(r) for the depth and 4 E* r f(r) for the force. The search starts at half the load, so that of several
     # contacts at one load it finds the narrowest, which a growing load reaches first.
@@ -219,8 +224,8 @@ def _load(contact: PrescribedContact, by_depth: bool) -> float:
     return contact.smooth_depth if by_depth else contact.smooth_force
 
 
-def grows_like(contact: PrescribedContact, flat: float, *, by_depth: bool) -> float:
-    """d ln(load) / d ln(a - flat) of one solution, lengths by the radius of its mesh, clipped to [0.2, 1e6].
+def load_exponent(contact: PrescribedContact, flat: float, *, by_depth: bool) -> float:
+    """Exponent d ln(load) / d ln(a - flat) from one solution, lengths by the radius of its mesh, clipped to [0.2, 1e6].
 
     Along smooth contacts d(depth)/da = delta_0' and dF/da = k_N delta_0'. Differences of two solutions at neighbouring
     radii would be dominated by the errors of their meshes.
@@ -239,11 +244,11 @@ def radius_of_load(
     is a half, whatever the layer, and steps are not limited there. Elsewhere ln(a - flat) changes by one at most.
 
     Args:
-        load_at: load over the wanted load at a radius, and d ln(load) / d ln(a - flat).
+        load_at: function of the radius that returns load / target and d ln(load) / d ln(a - flat).
         start: first radius.
         flat: radius of the flat end.
         end: radius where the profile ends.
-        narrowest: smallest radius, which is returned where the load is exceeded even there.
+        narrowest: smallest radius, which is returned if the load at it exceeds the target.
 
     Raises:
         InvalidInput: contact would reach the end of the profile.
@@ -259,7 +264,7 @@ def radius_of_load(
         if x == lowest and y > 0:
             return narrowest
         # One more step leaves an error of about y^2.
-        if y**2 < LEFT_OVER:
+        if y**2 < SMALL_DEFECT:
             return flat + float(np.exp(np.clip(x - y / growth, lowest, last)))
         if x == last and y < 0:
             raise InvalidInput(f"contact would reach the end of the profile at {end:g} m; press less")
@@ -273,20 +278,21 @@ def radius_of_load(
 
 
 def refuse_other_contacts(scene: Scene, states: Sequence[FemEquilibrium], coarser: Sequence[FemEquilibrium]) -> None:
-    """Refuse contacts with tension inside without adhesion, and those that the indenter touches outside the circle.
+    """Refuse tension inside a contact without adhesion, and indenters that also touch outside the contact circle.
 
     Raises:
-        UnsupportedSceneError: with the contact radius and the first place where the surface would be pulled or touched.
+        UnsupportedSceneError: tension or a second contact; the message has the contact radius and the place.
         InvalidInput: depth or force is not positive, since the slope of the profile is not positive yet.
     """
     pairs = list(zip(states, coarser, strict=True))
     if not scene.effects:
         for pair in pairs:
             _refuse_pulled(scene, *pair)
-    refuse_touching(scene, (circle_of(state, change_beside(state, other)) for state, other in pairs))
+    refuse_touching(scene, (circle_of(state, outside_change(state, other)) for state, other in pairs))
 
 
 def _refuse_pulled(scene: Scene, state: FemEquilibrium, other: FemEquilibrium) -> None:
+    """Refuse tension inside a contact without adhesion, and a depth or force that is not positive."""
     radius, is_punch = state.contact_radius, isinstance(scene.indenter, FlatPunch)
     rises = bool(state.contact.indenter.slope(np.array([1e-9]))[0] >= 0)
     if not (scene.layer.is_uniform and scene.indenter.is_convex and rises):
@@ -320,26 +326,27 @@ def pulled_radius(state: FemEquilibrium, other: FemEquilibrium) -> float | None:
     return float(radius[pulled[0]].mean() * contact.contact_radius) if pulled.size else None
 
 
-def change_beside(state: FemEquilibrium, other: FemEquilibrium) -> float:
-    """Largest change of the surface displacement outside the contact between two meshes [m], at the radii `BESIDE`."""
-    radii = state.contact_radius * BESIDE
+def outside_change(state: FemEquilibrium, other: FemEquilibrium) -> float:
+    """Largest change of the surface displacement outside the contact between two meshes [m], at the radii `OUTSIDE`."""
+    radii = state.contact_radius * OUTSIDE
     return float(np.abs(state.surface_displacement(radii) - other.surface_displacement(radii)).max())
 
 
 def circle_of(state: FemEquilibrium, error: float) -> Circle:
-    """The contact as a circle in SI units, with the error of its surface.
+    """Contact circle in SI units, with an error [m] of the surface displacement outside it.
 
-    The last correction may press it deeper than smooth contact. Its edge then overlaps by as much, which is no touch.
+    The correction in `state_at_load` may press deeper than smooth contact. The tolerance includes the resulting overlap
+    at the edge, which is no second contact.
     """
     a, deeper = state.contact.contact_radius, max(state.depth - state.contact.smooth_depth, 0.0)
     return Circle(a, a * state.depth, state.surface_displacement, error + a * deeper)
 
 
 def refuse_touching_at(scene: Scene, radius: float, log: StageLog) -> None:
-    """Refuse a motion whose largest contact radius [m] belongs to no single circle, judged on the elastic layer.
+    """Refuse a motion whose largest contact, of a radius [m], is no single circle on the elastic layer.
 
     Raises:
-        UnsupportedSceneError: with the contact radius and the radius of the deepest overlap.
+        UnsupportedSceneError: a second contact; the message has the contact radius and that of the deepest overlap.
     """
     if scene.indenter.is_convex or radius <= scene.indenter.flat_radius:
         return
@@ -350,7 +357,7 @@ def refuse_touching_at(scene: Scene, radius: float, log: StageLog) -> None:
 def contact_path(
     scene: Scene, states: Sequence[FemEquilibrium], fields: Fields, settings: Mapping[str, Setting], log: StageLog
 ) -> ContactPath:
-    """The path in SI units at one resolution. It has the residuals of its checks only; `stated` adds the errors."""
+    """Path in SI units at one resolution. Its error estimates are the residuals of checks; `stated` adds the errors."""
     modulus = contact_modulus(scene.layer)
     mesh_radius = np.array([state.contact.contact_radius for state in states])
     radius = np.array([state.contact_radius for state in states])
@@ -365,7 +372,7 @@ def contact_path(
         },
         cost=log.cost(unknowns=max(state.contact.unknowns for state in states)),
         stages=log.records,
-        notes=() if scene.effects else told_of_friction(scene.layer, radius),
+        notes=() if scene.effects else friction_notes(scene.layer, radius),
         contact_radius=radius,
         indentation_depth=mesh_radius * np.array([state.depth for state in states]),
         normal_force=modulus * mesh_radius**2 * np.array([state.force for state in states]),

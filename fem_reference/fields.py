@@ -1,6 +1,6 @@
 """Fields inside the layer in one equilibrium, their errors from coarser cells, and files of them for ParaView.
 
-Displacements are the solution's own. Stresses and the gradient of the pressure, which jump between triangles, are
+Displacements are those of the solution. Stresses and the gradient of the pressure, which jump between triangles, are
 averaged over the triangles that meet at a node; the pressure of a mixed pair is continuous within a part.
 """
 
@@ -36,7 +36,7 @@ NAMES = (
 )
 # Fields that change sign across the axis.
 ODD = [NAMES.index(name) for name in ("radial_displacement", "shear_stress", "pressure_gradient_radial")]
-# Errors that are stated together, as columns of the fields.
+# Groups of fields with a common stated error, as slices of `NAMES`.
 GROUPS = {
     "displacement": slice(0, 2),
     "stress": slice(2, 6),
@@ -46,7 +46,7 @@ GROUPS = {
 # Two meshes are compared at the nodes of a triangle, moved towards its centre by this share, off faces where fields
 # jump.
 INWARD = 0.1
-# Triangles with the nearest centres that are tried before all are.
+# Number of triangles, those with the nearest centres, that are tried before all triangles.
 NEAREST = 12
 # Least barycentric coordinate of a point inside a triangle, to rounding.
 ROUNDING = -1e-10
@@ -62,8 +62,8 @@ class MeridianSection:
     Stresses are positive in tension, the pressure ``p = -K div u`` in compression; z points into the layer.
 
     Attributes:
-        contact: the discrete answer at contact radius one.
-        depth: delta / a.
+        contact: finite element solution at contact radius one.
+        depth: indentation depth delta / a.
     """
 
     contact: PrescribedContact
@@ -125,7 +125,7 @@ class MeridianSection:
         return np.moveaxis(np.array([*u, *stress, tangential, p, *pressure.grad]), 0, -1)
 
     def places_of(self, points: FloatArray) -> tuple[IntArray, FloatArray]:
-        """Triangle (n,) of each of n points (2, n), and the place (2, n) of the point in the reference triangle.
+        """Triangle (n,) of each of n points (2, n), and the coordinates (2, n) of the points in the reference triangle.
 
         A point belongs to the triangle in which its smallest barycentric coordinate is largest: inside it is positive.
         The triangles with the nearest centres are tried first, then all.
@@ -134,14 +134,14 @@ class MeridianSection:
 
         centres = self.corners.mean(axis=1).T
         near = cKDTree(centres).query(points.T, min(NEAREST, len(centres)))[1].reshape(points.shape[1], -1)
-        found, local, smallest = self._best(points, near)
-        if (lost := smallest < ROUNDING).any():
-            every = np.broadcast_to(np.arange(len(centres)), (int(lost.sum()), len(centres)))
-            found[lost], local[:, lost], _ = self._best(points[:, lost], every)
-        return found, local
+        triangle, local, smallest = self._best(points, near)
+        if (outside := smallest < ROUNDING).any():
+            candidates = np.broadcast_to(np.arange(len(centres)), (int(outside.sum()), len(centres)))
+            triangle[outside], local[:, outside], _ = self._best(points[:, outside], candidates)
+        return triangle, local
 
     def _best(self, points: FloatArray, triangles: IntArray) -> tuple[IntArray, FloatArray, FloatArray]:
-        """Best of k triangles (n, k) for each point, the place in it, and the smallest barycentric coordinate there."""
+        """Best of k triangles (n, k) for each point, its reference coordinates and smallest barycentric coordinate."""
         repeated = np.repeat(points, triangles.shape[1], axis=1)[:, :, None]
         mapping = self.contact.layer.section.mesh.mapping()
         local = mapping.invF(repeated, tind=triangles.ravel()).reshape(2, *triangles.shape)
@@ -155,8 +155,8 @@ class FemInterior:
     """Fields inside the layer in one equilibrium.
 
     Attributes:
-        section: the solution.
-        coarser: that of the companion.
+        section: fields of the answer.
+        coarser: fields of the companion.
         modulus: E* [Pa].
     """
 
@@ -191,31 +191,33 @@ class FemInterior:
             first = points[:, beyond][:, 0] * scale
             raise InvalidInput(
                 f"(r, z) = ({first[0]:g}, {first[1]:g}) m lies beyond the mesh of finite elements, which ends at r = "
-                f"{mesh.outer_radius * scale:g} m; ask nearer, or mdr"
+                f"{mesh.outer_radius * scale:g} m; take a nearer point, or use mdr"
             )
         return np.array([r, rounded])
 
     def _changes(self, triangles: IntArray) -> FloatArray:
         """Largest difference [SI] of each field from the coarser mesh, in the triangle of each of n points, (n, 9)."""
         fine, coarse = self.section, self.coarser
-        chosen, back = np.unique(triangles, return_inverse=True)
+        distinct, inverse = np.unique(triangles, return_inverse=True)
         local = fine.local_nodes + INWARD * (1 / 3 - fine.local_nodes)
-        points = np.einsum("cvt,vb->ctb", fine.corners[:, :, chosen], barycentric(local)).reshape(2, -1)
+        points = np.einsum("cvt,vb->ctb", fine.corners[:, :, distinct], barycentric(local)).reshape(2, -1)
         points *= fine.contact.contact_radius / coarse.contact.contact_radius
         mesh = coarse.contact.layer.section
-        there = coarse.places_of(np.minimum(points, [[mesh.outer_radius], [mesh.thickness]]))
-        here = np.repeat(chosen, local.shape[1]), np.tile(local, len(chosen))
-        change = np.abs(fine.at(*here) * fine.units(self.modulus) - coarse.at(*there) * coarse.units(self.modulus))
-        # The touched surface moves with the depth.
-        depth, other = (each.depth * each.contact.contact_radius for each in (fine, coarse))
-        change[:, :2] = np.maximum(change[:, :2], abs(depth - other))
-        return np.asarray(change.reshape(len(chosen), -1, len(NAMES)).max(axis=1)[back])
+        coarse_places = coarse.places_of(np.minimum(points, [[mesh.outer_radius], [mesh.thickness]]))
+        fine_places = np.repeat(distinct, local.shape[1]), np.tile(local, len(distinct))
+        change = np.abs(
+            fine.at(*fine_places) * fine.units(self.modulus) - coarse.at(*coarse_places) * coarse.units(self.modulus)
+        )
+        # Displacements of the touched surface change by as much as the depth.
+        depth, coarse_depth = (each.depth * each.contact.contact_radius for each in (fine, coarse))
+        change[:, :2] = np.maximum(change[:, :2], abs(depth - coarse_depth))
+        return np.asarray(change.reshape(len(distinct), -1, len(NAMES)).max(axis=1)[inverse])
 
     def _stated(self, values: FloatArray, error: FloatArray) -> dict[str, float]:
         """Relative error of each group of fields in `GROUPS`: its largest error at the points over a scale.
 
-        The scale of displacements is the depth. That of stresses and of the pressure is the largest of both at the
-        points. That of the gradient is its largest value, at least the largest stress over min(a, thickness).
+        The scale of displacements is the depth. The scale of stresses and of the pressure is the largest of both at the
+        points. The scale of the gradient is its largest value, at least the largest stress over min(a, thickness).
         """
         contact, tiny = self.section.contact, np.finfo(float).tiny
         depth = max(abs(self.section.depth) * contact.contact_radius, tiny)
@@ -244,20 +246,20 @@ class FemInterior:
         units, places = section.units(self.modulus), barycentric(CORNERS_AND_MIDDLES)
         basis = tabulate(section.contact.layer.pair.displacement, CORNERS_AND_MIDDLES)[0]
         values = np.einsum("tbc,bn->tnc", section.nodal, basis, optimize=True).reshape(-1, len(NAMES)) * units
-        found = InsideFields(**dict(zip(NAMES, values.T, strict=True)), error_estimate={})
+        inside = InsideFields(**dict(zip(NAMES, values.T, strict=True)), error_estimate={})
         points = np.einsum("cvt,vn->tnc", section.corners, places).reshape(-1, 2) * units[0]
         flat = np.zeros(len(points))
         vectors = {
-            "displacement": np.array([found.radial_displacement, found.axial_displacement, flat]),
-            "pressure_gradient": np.array([found.pressure_gradient_radial, found.pressure_gradient_axial, flat]),
-            "principal_stresses": found.principal_stresses,
+            "displacement": np.array([inside.radial_displacement, inside.axial_displacement, flat]),
+            "pressure_gradient": np.array([inside.pressure_gradient_radial, inside.pressure_gradient_axial, flat]),
+            "principal_stresses": inside.principal_stresses,
         }
         scalars = (*NAMES[2:7], "von_mises", "largest_shear")
         data = {name: parts.T for name, parts in vectors.items()}
         exported = meshio.Mesh(
             np.column_stack([points, flat]),
             [("triangle6", np.arange(len(points)).reshape(-1, 6))],
-            point_data=data | {name: getattr(found, name) for name in scalars},
+            point_data=data | {name: getattr(inside, name) for name in scalars},
         )
         exported.write(file, **({"data_format": "XML"} if file.suffix == ".xdmf" else {}))
 
@@ -285,6 +287,6 @@ class FemFields:
         return self.states[step].surface_displacement(radius)
 
     def inside(self, step: int, known: KnownContact) -> FemInterior:
-        """Fields inside the layer at one step; their errors are estimated there."""
+        """Fields inside the layer at one step of the path, with error estimates."""
         fine, coarse = (MeridianSection(path[step].contact, path[step].depth) for path in (self.states, self.coarser))
         return FemInterior(fine, coarse, self.modulus)

@@ -40,16 +40,16 @@ from fem_reference.profiles import height
 from fem_reference.settings import Discretisation
 from fem_reference.stated import FLOOR, exact_names
 
-# Steps of a pilot in the expected contact time of an impact: a pilot of fewer than half as many is repeated with
-# shorter steps. Steps of each octave of the pilot of a history.
+# A pilot is a first simulation on few cells. Its steps in the expected contact time of an impact (with fewer than half
+# as many it is repeated with shorter steps), and its steps in each octave of a history.
 PILOT_STEPS, PILOT_OCTAVE = 60, 4
 # Largest change of velocity over the first velocity, in a step of the pilot, and in a step of 1/200 of the contact
-# time: a strong dashpot stops a body in a small part of that time, and equal steps must resolve it.
+# time: a strong dashpot stops a body in a small part of that time, and equal steps must resolve this.
 LARGEST_CHANGE, WANTED_CHANGE = 0.2, 0.05
 # Largest factor on the number of steps of an impact on an elastic layer.
 MOST = 16
 # Least coefficient of restitution. Below it contact ends only after its force has fallen below its roundings.
-LEAST_LEFT = 3e-8
+LEAST_RESTITUTION = 3e-8
 # Share of the peak force below which a force may be rounding: the rest of the contact time is its stated error.
 ROUNDING_FORCE = 1e-12
 # A quantity above this share of its peak is near it: the largest change there is the stated error of the peak.
@@ -69,48 +69,49 @@ A = TypeVar("A", ImpactHistory, HistoryPath)
 
 
 def impact(scene: Scene, settings: Discretisation, *, written: Mapping[str, Setting], log: StageLog) -> ImpactHistory:
-    """An impact from first touch to the loss of contact, in SI units, with relative errors.
+    """Impact from first touch to the loss of contact, in SI units, with relative errors.
 
     Args:
-        scene: an `Impact`.
-        settings: of the mesh and, by its growth, of cells and steps.
+        scene: scene with an `Impact`.
+        settings: settings of the mesh; their growth determines the numbers of cells and steps, too.
         written: settings that the answer reports.
-        log: of the stages.
+        log: record of time and memory per stage.
     """
     setups = HistorySetup.resolutions(scene, settings, log)
     radius, span = _pilot(setups[0][0])
 
-    def answer(setup: HistorySetup, resolution: Resolution) -> ImpactHistory:
+    def answer_at(setup: HistorySetup, resolution: Resolution) -> ImpactHistory:
+        """The impact at one resolution of cells and steps."""
         strip = setup.strip(radius, resolution.cells)
-        return _impact_in_si(setup, strip, _fall(setup, span / resolution.steps, strip), written)
+        return _impact_in_si(setup, strip, _impact_motion(setup, span / resolution.steps, strip), written)
 
-    half_both, half_cells, found = (answer(*each) for each in setups)
+    half_both, half_cells, answer = (answer_at(*each) for each in setups)
     # Half the cells and half the steps may cancel: both changes count.
-    pairs = (found, half_cells), (half_cells, half_both)
-    refuse_touching_at(scene, found.peak_contact_radius, log)
+    pairs = (answer, half_cells), (half_cells, half_both)
+    refuse_touching_at(scene, answer.peak_contact_radius, log)
     errors = {
-        name: np.full(len(found), SAFETY * sum(_change(*pair, name).max() for pair in pairs) + FLOOR)
-        for name in found.ARRAYS
+        name: np.full(len(answer), SAFETY * sum(_change(*pair, name).max() for pair in pairs) + FLOOR)
+        for name in answer.ARRAYS
         if name != "time"
     }
-    for name in (*found.SCALARS, "coefficient_of_restitution", "contact_time"):
+    for name in (*answer.SCALARS, "coefficient_of_restitution", "contact_time"):
         errors[name] = np.array([SAFETY * sum(_scalar_change(*pair, name) for pair in pairs) + FLOOR])
-    errors["contact_time"] += _end_by_roundings(found)
-    cell, peak_radius = radius / setups[-1][1].cells, found.peak_contact_radius
+    errors["contact_time"] += _end_by_roundings(answer)
+    cell, peak_radius = radius / setups[-1][1].cells, answer.peak_contact_radius
     at_kink = any(abs(peak_radius - kink) < 2 * cell for kink in scene.indenter.kinks)
     for name in ("contact_radius", "peak_contact_radius"):
         errors[name] = errors[name] + (1.0 if at_kink else EDGE_READING) * cell / peak_radius
-    return _with_errors(found, errors)
+    return _with_errors(answer, errors)
 
 
 def history(scene: Scene, settings: Discretisation, *, written: Mapping[str, Setting], log: StageLog) -> HistoryPath:
-    """Solve a history of prescribed depths or forces on one strip that is as wide as the largest contact.
+    """Response to prescribed depths or forces in time, on one strip for the largest contact, with relative errors.
 
     Three solutions state the errors: with half the cells and half the steps, with half the cells, and the answer.
 
     Raises:
-        InvalidInput: nothing is ever pressed.
-        UnsupportedSceneError: a dashpot would take an infinite force.
+        InvalidInput: no depth or force is positive.
+        UnsupportedSceneError: the force of a dashpot would be infinite.
     """
     setups, by_depth = HistorySetup.resolutions(scene, settings, log), isinstance(scene.loading, DepthHistory)
     values: FloatArray = scene.loading.depth if by_depth else scene.loading.force  # type: ignore[attr-defined]
@@ -120,63 +121,63 @@ def history(scene: Scene, settings: Discretisation, *, written: Mapping[str, Set
             "and give the ramp"
         )
     guess = _radius_of_load(scene, float(values.max()))
-    radius, _ = setups[0][0].fitted_radius(1.6 * guess, partial(_follow, setups[0][0], values, PILOT_OCTAVE))
+    radius, _ = setups[0][0].fitted_radius(1.6 * guess, partial(_prescribed_motion, setups[0][0], values, PILOT_OCTAVE))
 
-    def answer(setup: HistorySetup, resolution: Resolution) -> HistoryPath:
+    def answer_at(setup: HistorySetup, resolution: Resolution) -> HistoryPath:
         """The history at one resolution of cells and steps."""
         strip = setup.strip(radius, resolution.cells)
-        channels = _channels(setup, strip, _follow(setup, values, resolution.per_octave, strip), written)
+        channels = _channels(setup, strip, _prescribed_motion(setup, values, resolution.per_octave, strip), written)
         channels["contact_radius"] = np.where(channels["normal_force"] > 0, channels["contact_radius"], 0.0)
         return HistoryPath(**channels)
 
-    half_both, half_cells, found = (answer(*each) for each in setups)
-    pairs = (found, half_cells), (half_cells, half_both)
-    largest, cell = float(found.contact_radius.max()), radius / setups[-1][1].cells
+    half_both, half_cells, answer = (answer_at(*each) for each in setups)
+    pairs = (answer, half_cells), (half_cells, half_both)
+    largest, cell = float(answer.contact_radius.max()), radius / setups[-1][1].cells
     refuse_touching_at(scene, largest, log)
     errors = {
-        name: SAFETY * np.sum([_change_near(*pair, name, found, NARROW * cell) for pair in pairs], axis=0) + FLOOR
-        for name in found.ARRAYS
+        name: SAFETY * np.sum([_change_near(*pair, name, answer, NARROW * cell) for pair in pairs], axis=0) + FLOOR
+        for name in answer.ARRAYS
         if name != "time"
     }
     # Pressures of a layer that relaxes do not end like sqrt(a - r).
     errors["contact_radius"] = errors["contact_radius"] + (1.0 if scene.effects else EDGE_READING) * cell / largest
-    return _with_errors(found, errors)
+    return _with_errors(answer, errors)
 
 
 def _pilot(setup: HistorySetup) -> tuple[float, float]:
     """Radius of the strip [m], and the time [s] that is divided into `Resolution.steps` steps.
 
-    That is the contact time, or less of it by the factor of steps that a strong dashpot needs.
+    That is the contact time, divided by the factor on the number of steps that a strong dashpot needs.
 
     Raises:
-        NotConvergedError: equal steps that follow the stop are too many, or hardly any velocity is left.
+        NotConvergedError: too many equal steps would resolve the stop, or the final velocity is near rounding.
     """
     guess, span = _scales(setup.scene)
     step = span / PILOT_STEPS
     while True:
-        radius, motion = setup.fitted_radius(1.6 * guess, partial(_fall, setup, step))
+        radius, motion = setup.fitted_radius(1.6 * guess, partial(_impact_motion, setup, step))
         velocity, contact = motion.velocity, float(motion.time[-1])
         change = float(np.abs(np.diff(velocity)).max() / velocity[0])
-        finer = max(1.0, change * contact / (200 * step) / WANTED_CHANGE)
+        step_factor = max(1.0, change * contact / (200 * step) / WANTED_CHANGE)
         is_fine = len(velocity) > PILOT_STEPS // 2 and change <= LARGEST_CHANGE
-        if finer > MOST and (is_fine or step < span / PILOT_STEPS):
+        if step_factor > MOST and (is_fine or step < span / PILOT_STEPS):
             raise NotConvergedError(
                 "a strong dashpot stops the body far sooner than contact ends: equal steps that follow its stop are "
-                f"{finer:.3g} times as many as an elastic layer needs, {MOST} times at most are made; the method mdr "
-                "adapts its steps",
-                {"steps_over_usual": finer},
+                f"{step_factor:.3g} times as many as an elastic layer needs, at most {MOST} times are allowed; "
+                "the method mdr adapts its steps",
+                {"steps_over_usual": step_factor},
             )
         if is_fine:
             break
         step /= 4
-    left = abs(velocity[-1] / velocity[0])
-    if left < LEAST_LEFT:
+    restitution = abs(velocity[-1] / velocity[0])
+    if restitution < LEAST_RESTITUTION:
         raise NotConvergedError(
-            f"a strong dashpot leaves the body {left:.1g} of its velocity: below {LEAST_LEFT:g} roundings decide when "
-            "contact ends; the method mdr goes further",
-            {"restitution": left},
+            f"a strong dashpot leaves the body {restitution:.1g} of its velocity: below "
+            f"{LEAST_RESTITUTION:g} the end of contact is lost in rounding; use the method mdr",
+            {"restitution": restitution},
         )
-    return radius, contact / finer
+    return radius, contact / step_factor
 
 
 def _scales(scene: Scene) -> tuple[float, float]:
@@ -207,8 +208,8 @@ def _radius_of_load(scene: Scene, largest: float) -> float:
     return first_radius(indenter, lambda r: r * height(indenter, r) >= load)
 
 
-def _fall(setup: HistorySetup, duration: float, strip: Strip) -> Motion:
-    """The impact with time steps of this duration [s], in the units of the strip."""
+def _impact_motion(setup: HistorySetup, duration: float, strip: Strip) -> Motion:
+    """Motion of an impact in steps of a duration [s], in the units of the strip."""
     loading: Any = setup.scene.loading
     mass = loading.mass / (shear_modulus(setup.scene.layer) * strip.radius)
     with setup.log.stage("time_steps"):
@@ -217,8 +218,8 @@ def _fall(setup: HistorySetup, duration: float, strip: Strip) -> Motion:
     return motion
 
 
-def _follow(setup: HistorySetup, values: FloatArray, per_octave: int, strip: Strip) -> Motion:
-    """The response to depths [m] or forces [N], in the units of the strip."""
+def _prescribed_motion(setup: HistorySetup, values: FloatArray, per_octave: int, strip: Strip) -> Motion:
+    """Motion under depths [m] or forces [N] at the instants of the loading, in the units of the strip."""
     loading: Any = setup.scene.loading
     by_depth = isinstance(loading, DepthHistory)
     unit = strip.radius * (1.0 if by_depth else shear_modulus(setup.scene.layer) * strip.radius)
@@ -230,7 +231,7 @@ def _follow(setup: HistorySetup, values: FloatArray, per_octave: int, strip: Str
 
 
 def _channels(setup: HistorySetup, strip: Strip, motion: Motion, written: Mapping[str, Setting]) -> dict[str, Any]:
-    """Arguments that `ImpactHistory` and `HistoryPath` share, in SI units; radii are at least that of a flat end."""
+    """Common arguments of `ImpactHistory` and `HistoryPath` in SI units; radii are at least that of a flat end."""
     return {
         "scene": setup.scene,
         "method": "fem",
@@ -246,6 +247,7 @@ def _channels(setup: HistorySetup, strip: Strip, motion: Motion, written: Mappin
 
 
 def _impact_in_si(setup: HistorySetup, strip: Strip, motion: Motion, written: Mapping[str, Setting]) -> ImpactHistory:
+    """The answer in SI units from a motion in the units of its strip, without stated errors."""
     loading: Any = setup.scene.loading
     channels = _channels(setup, strip, motion, written)
     peaks: dict[str, Any] = {name: peak(channels[channel]) for name, channel in PEAKS.items()}
@@ -261,20 +263,20 @@ def _impact_in_si(setup: HistorySetup, strip: Strip, motion: Motion, written: Ma
 
 
 def _with_errors(answer: A, errors: Mapping[str, FloatArray]) -> A:
-    """The answer with errors, zero for what is prescribed."""
+    """The answer with its stated errors, which are zero for prescribed quantities."""
     exact = exact_names(answer.scene)
     return replace(answer, error_estimate={n: 0.0 * error if n in exact else error for n, error in errors.items()})
 
 
 def _change(answer: A, companion: A, name: str) -> FloatArray:
-    """|answer - companion| at the companion's instants, over the largest value."""
+    """|answer - companion| of a quantity at the companion's instants, over its largest value, shape (m,)."""
     values, others = getattr(answer, name), getattr(companion, name)
     change = np.abs(np.interp(companion.time, answer.time, values) - others)
     return np.asarray(change / max(np.abs(values).max(), np.finfo(float).tiny))
 
 
 def _scalar_change(answer: ImpactHistory, companion: ImpactHistory, name: str) -> float:
-    """Relative change of a number. The change of a peak is at least the largest of its quantity near the peak.
+    """Relative change of a number; of a peak it is at least the largest change of its quantity near the peak.
 
     The peaks of two resolutions may agree by accident.
     """
@@ -286,27 +288,27 @@ def _scalar_change(answer: ImpactHistory, companion: ImpactHistory, name: str) -
 
 
 def _change_near(
-    answer: HistoryPath, companion: HistoryPath, name: str, found: HistoryPath, narrow: float
+    answer: HistoryPath, companion: HistoryPath, name: str, final: HistoryPath, narrow: float
 ) -> FloatArray:
-    """Largest change of a quantity near each of n instants, and a share of its mean, shape (n,).
+    """Largest `_change` within `WINDOW` instants of each of n instants, plus `SHARE_OF_MEAN` of its mean, shape (n,).
 
     Args:
         answer: the finer answer.
         companion: the coarser answer, at whose m instants both are compared.
-        name: of the quantity.
-        found: the answer of n instants.
-        narrow: contact radius [m] below which the largest change of all such narrow contacts is taken.
+        name: name of the quantity.
+        final: the answer of n instants.
+        narrow: contact radius [m] below which the change is the largest of all such narrow contacts.
     """
-    change, place = _change(answer, companion, name), np.searchsorted(companion.time, found.time)
+    change, place = _change(answer, companion, name), np.searchsorted(companion.time, final.time)
     near: FloatArray = np.max([change[np.clip(place + k, 0, len(change) - 1)] for k in range(-WINDOW, WINDOW)], axis=0)
     at_narrow = change[companion.contact_radius < narrow].max(initial=0.0)
-    return np.asarray(np.maximum(near, at_narrow * (found.contact_radius < narrow)) + SHARE_OF_MEAN * change.mean())
+    return np.asarray(np.maximum(near, at_narrow * (final.contact_radius < narrow)) + SHARE_OF_MEAN * change.mean())
 
 
 def _end_by_roundings(answer: ImpactHistory) -> float:
-    """Last share of the contact time, in which the force is rounding: a strong dashpot lets it decay exponentially."""
-    presses = np.flatnonzero(answer.normal_force > ROUNDING_FORCE * answer.peak_force)
-    return float(1.0 - answer.time[min(presses[-1] + 1, len(answer) - 1)] / answer.time[-1])
+    """Last share of the contact time, in which the force is rounding: with a strong dashpot it decays exponentially."""
+    pressed = np.flatnonzero(answer.normal_force > ROUNDING_FORCE * answer.peak_force)
+    return float(1.0 - answer.time[min(pressed[-1] + 1, len(answer) - 1)] / answer.time[-1])
 
 
 def peak(values: FloatArray) -> float:

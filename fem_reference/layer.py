@@ -26,9 +26,9 @@ class DiscreteLayer:
     """A layer discretised on one mesh; lengths by the contact radius, stresses by E* of the surface.
 
     Attributes:
-        section: the mesh.
-        pair: elements.
-        parts: material over depth, and how the base is held.
+        section: mesh of the cross-section.
+        pair: elements of displacement and pressure.
+        parts: material over depth, and the support of the base.
         sticks: whether u_r = 0 on the top within radius one, as under a flat punch with full stick.
     """
 
@@ -59,13 +59,13 @@ class DiscreteLayer:
 
     @cached_property
     def matrix(self) -> sparse.csc_array:
-        """Stiffness matrix of all unknowns, the outer edge included."""
+        """Stiffness matrix, shape (size, size), with the membrane at the outer edge."""
         matrix = scatter(self.elements, self.space.element_unknowns, self.space.size)
         return matrix if self.edge is None else matrix + self.edge
 
     @cached_property
     def edge(self) -> sparse.csc_array | None:
-        """The membrane beyond the outer edge of a layer that slides, in the numbering of all unknowns."""
+        """`membrane_matrix` at the outer edge of a layer that slides, shape (size, size); None for other layers."""
         return membrane_matrix(self) if self.parts.slides else None
 
     def nodes_on(self, boundary: str) -> IntArray:
@@ -74,9 +74,9 @@ class DiscreteLayer:
 
     @cached_property
     def supported_unknowns(self) -> IntArray:
-        """Unknowns that are prescribed as zero: u_r on the axis, what the base holds, u_r under a sticking punch.
+        """Unknowns prescribed as zero: u_r on the axis, u_z (u_r if bonded) on the base, u_r under a sticking punch.
 
-        Displacements just below a face that those above represent (`Space.owner`) occur in no equation. They are
+        Displacements below a face that those above it replace (`Space.owner`) occur in no equation. They are
         prescribed, too, so that the matrix of the others is regular.
         """
         base = self.nodes_on("base")
@@ -96,7 +96,7 @@ class DiscreteLayer:
         return self.space.nodes_on(facets[inside])
 
     def solver(self, prescribed: IntArray) -> RestrictedSolver:
-        """The factorised layer with these unknowns prescribed."""
+        """Factorised matrix of the layer with these unknowns prescribed."""
         return RestrictedSolver(self.space, self.elements, self.edge, prescribed)
 
     def derivative_by_radius(self, solutions: FloatArray, eta: FloatArray) -> FloatArray:
@@ -112,7 +112,7 @@ class DiscreteLayer:
             eta: radial motion of the vertices, shape (vertex,), zero on the outer edge.
 
         Returns:
-            Shape (m, m).
+            A'(u_i, u_j), shape (m, m).
         """
         moving = np.flatnonzero((eta[self.section.mesh.t] != 0).any(axis=0))
         step = 1e-20
@@ -127,9 +127,9 @@ class DiscreteLayer:
     def patch_defect(self) -> float:
         """Patch test: largest residual of a constant strain in inner equations, over the sum of its terms' magnitudes.
 
-        Nodal values of ``u_r = s r, u_z = c z`` with their constant pressure are inserted into the assembled equations
-        of the surface's material (form A of Taylor, Simo, Zienkiewicz and Chan, Int. J. Numer. Meth. Engng 22 (1986)
-        39-62). A residual inside is an error of assembly: geometry, quadrature, hoop strain or coupling.
+        Nodal values of ``u_r = s r, u_z = c z`` with their constant pressure are inserted into the equations assembled
+        for the moduli at the surface (form A of Taylor, Simo, Zienkiewicz and Chan, Int. J. Numer. Meth. Engng 22
+        (1986) 39-62). A residual inside is an error of assembly: geometry, quadrature, hoop strain or coupling.
         """
         space, nu, (r, z) = self.space, self.parts.poissons_ratio, self.space.positions
         surface = self.parts.at(np.zeros_like(self.section.part), np.zeros_like(self.moduli.shear))
@@ -139,20 +139,20 @@ class DiscreteLayer:
         state = np.full(space.size, -2 * shear * (1 + nu) / 3)  # p = -K div u with K = 2 mu (1 + nu) / (3 (1 - 2 nu))
         state[: space.displacement_count] = np.column_stack([STRETCH * r, ((1 - 2 * nu) - 2 * STRETCH) * z]).ravel()
         local, unknowns = state[space.element_unknowns][..., None], space.element_unknowns.ravel()
-        left = np.bincount(unknowns, (elements @ local).ravel(), space.size)
+        residual = np.bincount(unknowns, (elements @ local).ravel(), space.size)
         terms = np.bincount(unknowns, (np.abs(elements) @ np.abs(local)).ravel(), space.size)
         boundary = space.nodes_on(np.concatenate([*self.section.mesh.boundaries.values()]))
         terms[np.concatenate([2 * boundary, 2 * boundary + 1, self.supported_unknowns])] = np.inf
-        return float(np.max(np.abs(left) / terms))
+        return float(np.max(np.abs(residual) / terms))
 
 
 def membrane_matrix(layer: DiscreteLayer) -> sparse.csc_array:
-    """`weak_forms.membrane` on the outer edge, in the numbering of all unknowns."""
+    """Matrix of `weak_forms.membrane` on the outer edge, in the numbering of all unknowns, shape (size, size)."""
     mesh, owner = layer.section.mesh, layer.space.owner
     facets = mesh.boundaries["outer"]
     basis = FacetBasis(mesh, ElementVector(layer.pair.displacement), facets=facets)
     depth = basis.global_coordinates()[1]
     shear = layer.parts.at(layer.section.part[mesh.f2t[0, basis.find]], depth).shear
-    found = membrane.assemble(basis, mu=shear).tocoo()
+    entries = membrane.assemble(basis, mu=shear).tocoo()
     shape = (layer.space.size, layer.space.size)
-    return sparse.coo_array((found.data, (owner[found.row], owner[found.col])), shape=shape).tocsc()
+    return sparse.coo_array((entries.data, (owner[entries.row], owner[entries.col])), shape=shape).tocsc()

@@ -38,12 +38,12 @@ from contact import (
 from contact.records.validation import FloatArray, IntArray
 from fem_reference.profiles import cubics
 
-# Largest change of ln E between two mesh lines of a graded layer. Twice of it errs ten times as much, half of it makes
-# twice as many lines.
+# Largest change of ln E between two mesh lines of a graded layer. With twice of it errors are ten times as large, with
+# half of it there are twice as many lines.
 LARGEST_CHANGE = 1.0
 # Depths between two breakpoints at which the change of ln E is summed. With half of them mesh lines shift by 1 %.
 SAMPLES = 400
-# More parts than this are refused: each adds a mesh line through the whole section.
+# Largest number of parts; more are refused, since each adds a mesh line through the whole section.
 MOST_PARTS = 60
 # The thickness of an elastic base below a layer is that of a half-space to this power. With 1 the fields at its end are
 # below roundings under films that slide, with 0.6 depths err by 3e-6.
@@ -81,9 +81,9 @@ class Part:
 
     Attributes:
         top: depth of its upper face / a.
-        thickness: distance from there to its lower face / a.
-        youngs_modulus: E / E* as a function of z / a, z from the surface of the layer.
-        poissons_ratio: nu as a function of z / a.
+        thickness: distance from its upper to its lower face / a.
+        youngs_modulus: Young's modulus E / E* as a function of z / a, z from the surface of the layer.
+        poissons_ratio: Poisson's ratio nu as a function of z / a.
         slips: whether its lower face slides on the part below.
     """
 
@@ -99,9 +99,9 @@ class Parts:
     """A layer as parts, from the surface down.
 
     Attributes:
-        parts: from the surface down; an elastic base or a half-space is the last one, with its meshed thickness.
+        parts: parts from the surface down; an elastic base or a half-space is the last one, with its meshed thickness.
         bonded: whether u_r = 0 at the bottom of the lowest part; u_z = 0 there always.
-        has_base: whether the last part stands for a half-space, be it an elastic base or the layer itself.
+        has_base: whether the last part represents a half-space: an elastic base or the layer itself.
     """
 
     parts: tuple[Part, ...]
@@ -140,12 +140,12 @@ class Parts:
         return float(self.parts[0].poissons_ratio(np.zeros(1))[0])
 
     def at(self, part: IntArray, depth: FloatArray) -> PointModuli:
-        """Moduli at depths z / a, shape (n, ...), in the parts of these indices, shape (n,)."""
-        found = np.empty((2, *depth.shape))
+        """Moduli at depths z / a, shape (n, ...), in the parts with indices ``part``, shape (n,)."""
+        values = np.empty((2, *depth.shape))
         for index, each in enumerate(self.parts):
             here = part == index
-            found[:, here] = moduli(each.youngs_modulus(depth[here]), each.poissons_ratio(depth[here]))
-        return PointModuli(*found)
+            values[:, here] = moduli(each.youngs_modulus(depth[here]), each.poissons_ratio(depth[here]))
+        return PointModuli(*values)
 
 
 def uniform(poissons_ratio: float, thickness: float = 1.0, *, bonded: bool = True, has_base: bool = False) -> Parts:
@@ -155,16 +155,16 @@ def uniform(poissons_ratio: float, thickness: float = 1.0, *, bonded: bool = Tru
 
 
 def parts_of(layer: ElasticLayer, contact_radius: float, half_space_thickness: float) -> Parts:
-    """A layer, stack or graded layer in units of a contact radius [m].
+    """Parts of a layer, stack or graded layer in units of a contact radius.
 
     Args:
         layer: layer of the scene.
-        contact_radius: a [m].
+        contact_radius: contact radius a [m].
         half_space_thickness: thickness / a of a half-space. An elastic base has it to the power `BASE_POWER`, times
             the thickness of the layer above it where that exceeds a.
 
     Raises:
-        UnsupportedSceneError: another kind of layer, or more than `MOST_PARTS` parts.
+        UnsupportedSceneError: an unknown kind of layer, or more than `MOST_PARTS` parts.
     """
     a, unit = contact_radius, contact_modulus(layer)
     match layer:
@@ -177,10 +177,10 @@ def parts_of(layer: ElasticLayer, contact_radius: float, half_space_thickness: f
         case GradedLayer():
             parts = _graded_parts(layer, a, unit)
         case _:
-            raise UnsupportedSceneError(f"finite elements know no {type(layer).__name__}")
+            raise UnsupportedSceneError(f"finite elements have no formula for {type(layer).__name__}")
     if len(parts) > MOST_PARTS:
         raise UnsupportedSceneError(
-            f"fem cuts this {layer.title} into {len(parts)} parts, and takes up to {MOST_PARTS}; ask mdr"
+            f"fem cuts this {layer.title} into {len(parts)} parts, and takes up to {MOST_PARTS}; use mdr"
         )
     base = layer.support
     if isinstance(base, ElasticBase):
@@ -191,10 +191,12 @@ def parts_of(layer: ElasticLayer, contact_radius: float, half_space_thickness: f
 
 
 def _constant(value: float) -> OfDepth:
+    """Function of depth with one value."""
     return partial(np.full_like, fill_value=value)
 
 
 def _stack_parts(layer: LayerStack, a: float, unit: float) -> list[Part]:
+    """One part per sublayer, lengths over a [m], moduli over ``unit`` [Pa]."""
     thicknesses = np.array([sublayer.thickness for sublayer in layer.sublayers]) / a
     tops = np.cumsum([0.0, *thicknesses[:-1]])
     on_base = isinstance(layer.support, ElasticBase) and layer.support.interface == "unbonded"
@@ -206,7 +208,10 @@ def _stack_parts(layer: LayerStack, a: float, unit: float) -> list[Part]:
 
 
 def _graded_parts(layer: GradedLayer, a: float, unit: float) -> list[Part]:
+    """Parts between the lines of `graded_lines`, lengths over a [m], moduli over ``unit`` [Pa]."""
+
     def of_depth(function: object, unit: float) -> OfDepth:
+        """An elastic constant over ``unit`` as a function of z / a."""
         return lambda z: at_depths(function, np.minimum(z * a, layer.thickness), layer.thickness) / unit
 
     modulus, ratio = of_depth(layer.youngs_modulus, unit), of_depth(layer.poissons_ratio, 1.0)
@@ -235,7 +240,7 @@ def at_depths(function: object, depth: FloatArray, thickness: float) -> FloatArr
     """Values of an elastic constant, uniform or a function of depth, at depths z [m] in a layer of a thickness [m].
 
     Raises:
-        UnsupportedSceneError: for a function without a formula here.
+        UnsupportedSceneError: there is no formula for the function here.
     """
     share = depth / thickness
     match function:
@@ -249,7 +254,9 @@ def at_depths(function: object, depth: FloatArray, thickness: float) -> FloatArr
             return np.asarray(surface * ((reference + depth) / reference) ** exponent)
         case TabulatedDepth(depths=depths, values=values):
             return cubics(depths, values, depth)[0]
-    raise UnsupportedSceneError(f"finite elements know no {type(function).__name__}; write it in {__name__}")
+    raise UnsupportedSceneError(
+        f"finite elements have no formula for {type(function).__name__}; write it in {__name__}"
+    )
 
 
 @dataclass(frozen=True)
@@ -257,10 +264,10 @@ class ShearRelaxation:
     """Shear relaxation ``G(t) = G_inf + sum_j G_j exp(-t/tau_j)``, and a dashpot eta in parallel.
 
     Attributes:
-        long_term_modulus: G_inf [Pa].
-        moduli: G_j [Pa], shape (m,).
-        times: tau_j [s], shape (m,).
-        viscosity: eta [Pa s].
+        long_term_modulus: long-term modulus G_inf [Pa].
+        moduli: moduli G_j of the branches [Pa], shape (m,).
+        times: relaxation times tau_j [s], shape (m,).
+        viscosity: viscosity eta of the dashpot [Pa s].
     """
 
     long_term_modulus: float
@@ -269,7 +276,7 @@ class ShearRelaxation:
     viscosity: float = 0.0
 
     @property
-    def at_once(self) -> float:
+    def instantaneous_modulus(self) -> float:
         """Instantaneous modulus ``G(0) = G_inf + sum_j G_j`` without the dashpot [Pa]."""
         return self.long_term_modulus + math.fsum(self.moduli)
 
@@ -278,7 +285,7 @@ def relaxation_of(scene: Scene) -> ShearRelaxation:
     """Shear relaxation of the scene; an elastic layer does not relax.
 
     Raises:
-        UnsupportedSceneError: for an effect without a formula here.
+        UnsupportedSceneError: there is no formula for the effect here.
     """
     match scene.effect(Viscoelasticity):
         case None:
@@ -290,4 +297,6 @@ def relaxation_of(scene: Scene) -> ShearRelaxation:
         case PronySeries(long_term_shear_modulus=spring, shear_moduli=branches, relaxation_times=times):
             return ShearRelaxation(spring, branches, times)
         case other:
-            raise UnsupportedSceneError(f"finite elements know no {type(other).__name__}; write it in {__name__}")
+            raise UnsupportedSceneError(
+                f"finite elements have no formula for {type(other).__name__}; write it in {__name__}"
+            )

@@ -45,10 +45,10 @@ from fem_reference.materials import Parts, ShearRelaxation, uniform
 from fem_reference.mesh import Section
 from fem_reference.surface import STRIDE, STRIP_ORDER, strip_loads
 
-# Effective shear moduli over G_0 whose responses span those at all others. With five the compliance errs by 3e-5 at
-# moduli between 0.02 and 1e4, and by less than 2e-7 below nu = 0.4. Ten take twice the time.
+# Effective shear moduli over G_0 whose displacements span those at all other moduli. With five the compliance
+# errs by 3e-5 at moduli between 0.02 and 1e4, and by less than 2e-7 below nu = 0.4. Ten take twice the time.
 SPANNING_MODULI = (1e-2, 1e-1, 1.0, 10.0, 1e3)
-# Least energy of a mode over the largest. Modes below it are roundings, and dropped.
+# Least energy of a mode over the largest. Modes of less energy are roundings and omitted.
 LEAST_MODE = 1e-13
 
 
@@ -73,34 +73,34 @@ class Modes(NamedTuple):
 
 
 class Top:
-    """Amplitudes x and branches s_j of a layer that is at rest at first; it has a memory and serves one history.
+    """A condensed layer with its amplitudes x and branches s_j, which are zero at first; one object per history.
 
     Each step is a call of `begin`, then of `accept`. Without `accept` a step has no effect and may be begun anew.
 
     Args:
-        modes: of the condensed layer.
-        relaxation: of shear; branches without modulus are left out.
+        modes: modes of the condensed layer.
+        relaxation: shear relaxation; branches of zero modulus are omitted.
 
     Attributes:
         resultants: w, force per nodal pressure, shape (n,).
         viscosity: eta / G_0 [s].
-        dissipated_energy: energy lost so far, over G_0 L^3.
+        dissipated_energy: energy dissipated since the start, over G_0 L^3.
         dashpot_force: share of the dashpot in the force after the last step, ``eta v . D (x_1 - x_0)/dt``, with the
             amplitudes v of a uniform displacement: ``M v = w``, so that ``F = w . p = v . (K + D G*) x``. Exact after
             Euler steps only.
     """
 
     def __init__(self, modes: Modes, relaxation: ShearRelaxation) -> None:
-        unit, acts = relaxation.at_once, relaxation.moduli > 0
+        unit, acts = relaxation.instantaneous_modulus, relaxation.moduli > 0
         self.resultants, self.viscosity = modes.resultants, relaxation.viscosity / unit
         self.dissipated_energy = self.dashpot_force = 0.0
         self._uniform = np.linalg.lstsq(modes.displacements, modes.resultants)[0]
         self._modes, self._volume, self._shear = modes.displacements, modes.volume, modes.shear
         self._long_term = relaxation.long_term_modulus / unit
         self._moduli, self._times = relaxation.moduli[acts] / unit, relaxation.times[acts]
-        self._now = self._before = self._memory = np.zeros_like(modes.volume)
+        self._amplitudes = self._earlier = self._memory = np.zeros_like(modes.volume)
         self._branches = np.zeros((len(self._moduli), len(modes.volume)))
-        self._duration = self._last = 0.0
+        self._duration = self._last_duration = 0.0
         self._modulus, self._unit = np.nan, modes.displacements @ modes.displacements.T
 
     def restart(self) -> None:
@@ -108,7 +108,7 @@ class Top:
 
         The difference of second order would mix the rates before and after the jump.
         """
-        self._last = 0.0
+        self._last_duration = 0.0
 
     def begin(self, duration: float) -> tuple[FloatArray, FloatArray]:
         """Matrix A and offset o of the moments ``u = A p + o`` at the end of a step [s], for the pressures p there.
@@ -118,13 +118,17 @@ class Top:
         ratio = duration / self._times
         self._duration = duration
         self._alpha, self._beta = np.exp(-ratio), -self._moduli * np.expm1(-ratio) / ratio
-        q = duration / self._last if self._last else 0.0
+        q = duration / self._last_duration if self._last_duration else 0.0
         # Coefficients of x_1 and x_(-1) in eta x'_1. That of -x_0 is their sum: (1 + q)^2/(1 + q).
-        per_time = self.viscosity / duration
-        following, before = per_time * (1 + 2 * q) / (1 + q), per_time * q * q / (1 + q)
-        tangent = float(self._beta.sum())
-        self._memory = self._alpha @ self._branches - (tangent + following + before) * self._now + before * self._before
-        modulus = self._long_term + tangent + following
+        rate = self.viscosity / duration
+        current_share, earlier_share = rate * (1 + 2 * q) / (1 + q), rate * q * q / (1 + q)
+        branch_modulus = float(self._beta.sum())
+        self._memory = (
+            self._alpha @ self._branches
+            - (branch_modulus + current_share + earlier_share) * self._amplitudes
+            + earlier_share * self._earlier
+        )
+        modulus = self._long_term + branch_modulus + current_share
         if modulus != self._modulus:
             self._modulus, self._stiffness = modulus, self._volume + self._shear * modulus
             relaxes_alike = not self._volume.any()
@@ -132,19 +136,19 @@ class Top:
         return self._matrix, -(self._modes / self._stiffness) @ (self._shear * self._memory)
 
     def accept(self, pressure: FloatArray) -> None:
-        """Ends the step of `begin`: computes amplitudes x_1 and branches s_j at its end, and adds the energy lost.
+        """End the step of `begin`: compute amplitudes x_1 and branches s_j at its end, and add the dissipated energy.
 
         ``x_1 = (K + D G_step)^-1 (M^T p - D memory)`` and ``s_j = alpha_j s_j + beta_j (x_1 - x_0)``.
 
         Args:
             pressure: p / G_0 at the vertices at the end of the step, shape (n,).
         """
-        following = (self._modes.T @ pressure - self._shear * self._memory) / self._stiffness
-        change = following - self._now
+        amplitudes = (self._modes.T @ pressure - self._shear * self._memory) / self._stiffness
+        change = amplitudes - self._amplitudes
         self.dissipated_energy += self._dissipation(change)
         self.dashpot_force = self.viscosity / self._duration * float(self._uniform @ (self._shear * change))
         self._branches = self._alpha[:, None] * self._branches + np.outer(self._beta, change)
-        self._before, self._now, self._last = self._now, following, self._duration
+        self._earlier, self._amplitudes, self._last_duration = self._amplitudes, amplitudes, self._duration
 
     @property
     def stored_energy(self) -> float:
@@ -152,11 +156,11 @@ class Top:
 
         It does not vanish when contact is lost: the free surface still relaxes.
         """
-        energy = (self._volume + self._long_term * self._shear) @ self._now**2
+        energy = (self._volume + self._long_term * self._shear) @ self._amplitudes**2
         return float(energy + (self._branches**2 @ self._shear) @ (1 / self._moduli)) / 2
 
     def _dissipation(self, change: FloatArray) -> float:
-        """Energy / (G_0 L^3) lost in a step of constant rate: ``int sum_j s_j.D s_j / (G_j tau_j) + eta x'.D x' dt``.
+        """Energy / (G_0 L^3) dissipated at a constant rate: ``int sum_j s_j.D s_j / (G_j tau_j) + eta x'.D x' dt``.
 
         The integrals over the branches are exact.
         """
@@ -167,8 +171,8 @@ class Top:
         transient = self._branches - steady
         integral = duration * steady + 2 * times * (1 - alpha) * transient
         squares = steady * integral + times / 2 * (1 - alpha**2) * transient**2
-        lost = self.viscosity * duration * rate**2 + np.sum(squares / (moduli * times), axis=0)
-        return float(lost @ self._shear)
+        dissipation = self.viscosity * duration * rate**2 + np.sum(squares / (moduli * times), axis=0)
+        return float(dissipation @ self._shear)
 
 
 def proportional_modes(compliance: FloatArray, resultants: FloatArray, radii: FloatArray, unknowns: int) -> Modes:
@@ -224,5 +228,5 @@ def _energy_modes(volume: FloatArray, shear: FloatArray) -> tuple[FloatArray, Fl
     energy, vectors = np.linalg.eigh(volume + shear)
     keep = energy > LEAST_MODE * energy[-1]
     unit = vectors[:, keep] / np.sqrt(energy[keep])
-    share, turned = np.linalg.eigh(unit.T @ shear @ unit)
-    return unit @ turned, 1 - share, share
+    share, rotation = np.linalg.eigh(unit.T @ shear @ unit)
+    return unit @ rotation, 1 - share, share

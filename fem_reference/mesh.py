@@ -2,7 +2,7 @@
 
 The section is 0 <= r <= outer radius, 0 <= z <= thickness with z into the layer. Its boundaries have names: ``axis``
 (r = 0), ``top`` (z = 0), ``base`` (z = thickness), ``outer`` (r = outer radius). A mesh line runs along every face
-between two parts (`materials`). Each part has vertices of its own there, so that layers may slide.
+between two parts (`materials`). Each part has separate vertices there, so that layers may slide.
 
 Graded points are vertices on the top with a small cell size: the contact edge, kinks, a sharp tip. Cells grow with the
 distance d from them. A strip, for contacts of unknown radius (`surface`), has equal cells on all of the top up to its
@@ -38,8 +38,8 @@ MISSING_LIBRARIES = (
 )
 # Length of a line that gmsh divides, over its smallest cell. gmsh takes minutes for longer ones: they are split.
 LONGEST_LINE = 1e10
-# Accuracy, in cells, to which gmsh integrates 1 / (cell size) along lines. Its own 1e-9 takes three times as long. With
-# 1e-7 cells in narrow rings are so uneven that slopes of delta_0 err by 7 %.
+# Accuracy, in cells, to which gmsh integrates 1 / (cell size) along lines. The default 1e-9 takes three times as long.
+# With 1e-7 cells in narrow rings are so uneven that slopes of delta_0 err by 7 %.
 LINE_PRECISION = 1e-8
 # gmsh's number of its Delaunay algorithm. The default, frontal Delaunay, makes 15 % fewer triangles, but one mesh in
 # ten with cells of 1e-10 radii lacks them near the edge: depths then err by 1e-3 to 0.2.
@@ -54,14 +54,14 @@ NEARBY_POWER, NEARBY_GROWTH = 0.06, 1.1
 # Growth in gmsh's size function over the wanted growth, since Delaunay triangles exceed the given size. With one,
 # displacements outside contacts err three times as much, and cells that grow by 1.5 form fans without inner vertices.
 PLAIN_SHARE = 0.9
-# Drawn thickness of a thin part over (growth x distance from the edge). Twice of it needs a tenth more unknowns, with
-# four times of it errors are three times as large.
+# Drawn thickness of a thin part over (growth x distance from the edge). With twice of it there are a tenth more
+# unknowns, with four times of it errors are three times as large.
 SLOPE_PER_GROWTH = 0.25
 # Distances h / s, at which drawn thicknesses begin to grow, that differ by less than this factor are drawn as one.
 LEAST_STEP = 1.5
 # Cells stop growing at growth x thickness. Where FAR_GROWTH x growth x distance exceeds this they grow again, with this
-# share of the growth, since oscillations of the layers continue there. Twice of it errs four times as much on some
-# stacks, half of it doubles the unknowns.
+# share of the growth, since oscillations of the layers continue there. With twice of it errors are four times as large
+# on some stacks, with half of it there are twice as many unknowns.
 FAR_GROWTH = 0.5
 # Distance from the base, over the last part's thickness, within which a vertex is put on it: above gmsh's roundings.
 ON_BASE = 1e-9
@@ -84,8 +84,8 @@ class Section:
         mesh: points and triangles, with named boundaries.
         part: index of the part of each triangle, shape (triangle,).
         faces: facets where two parts meet, from the surface down.
-        graded: radii of the graded points, increasing.
-        depths: of the mesh lines, the surface and the base included, increasing.
+        graded: radii of the graded points on the top, increasing.
+        depths: depths of the mesh lines, the surface and the base included, increasing.
     """
 
     mesh: MeshTri
@@ -101,7 +101,7 @@ class Section:
 
     @property
     def outer_radius(self) -> float:
-        """End of the section."""
+        """Radius of the outer boundary."""
         return float(self.mesh.p[0].max())
 
     @cached_property
@@ -110,12 +110,12 @@ class Section:
         return hashlib.sha256(self.mesh.p.tobytes() + self.mesh.t.tobytes()).hexdigest()[:16]
 
     def stretched(self, graded: FloatArray, depths: FloatArray, outer_radius: float) -> Section | None:
-        """The same triangles with mesh lines at other depths, and the outer edge moved in proportion.
+        """Section of the same triangles with mesh lines at other depths and another outer radius.
 
-        Within the contact radii stay, and within a contact radius of the edge or half a thickness triangles keep their
-        shape as far as possible. Errors of stretched meshes are smooth functions of the contact radius, while each new
-        mesh has errors of its own. None where graded points differ or a thickness changes by more than
-        `MOST_STRETCHED`; the section itself where nothing moves.
+        Radii within the contact do not change, and within a contact radius of the edge or half a thickness triangles
+        keep their shape as far as possible. Errors of stretched meshes are smooth functions of the contact radius, but
+        each new mesh has errors of its own. The result is None where graded points differ or a thickness changes by
+        more than `MOST_STRETCHED`, and the section itself where no thickness changes.
         """
         if not np.array_equal(graded, self.graded) or depths.shape != self.depths.shape:
             return None
@@ -144,20 +144,20 @@ def section_mesh(
         end: radius where the profile ends upright, infinite without such an end; it limits the reach of the edge.
 
     Raises:
-        NotConvergedError: a triangle turned over when it was moved back, or has no area.
+        NotConvergedError: a triangle turned over when drawn thicknesses were scaled back, or has no area.
     """
     drawing = Drawing(parts, outer_radius, points, growth, strip, end)
     drawn, regions = _triangulated(drawing)
     # Vertices of each part, numbered part by part: those on a face then exist twice.
     vertices_of = [np.unique(region) for region in regions]
-    points_back = np.hstack([_placed(drawing, drawn, vertices_of, index) for index in range(len(vertices_of))])
+    positions = np.hstack([_placed(drawing, drawn, vertices_of, index) for index in range(len(vertices_of))])
     starts = np.cumsum([0, *(len(vertices) for vertices in vertices_of)])
     each = zip(starts, vertices_of, regions, strict=False)
     corners = np.hstack([start + np.searchsorted(vertices, region) for start, vertices, region in each])
-    if np.any(doubled_area(points_back, corners) * np.sign(doubled_area(drawn, np.hstack(regions))) <= 0):
-        raise NotConvergedError("a triangle of a thin part turned over or has no area; ask for smaller cells")
+    if np.any(doubled_area(positions, corners) * np.sign(doubled_area(drawn, np.hstack(regions))) <= 0):
+        raise NotConvergedError("a triangle of a thin part turned over or has no area; choose smaller cells")
     owner = np.repeat(np.arange(len(regions)), [region.shape[1] for region in regions])
-    return named_section(points_back, corners, owner, parts, [r for r, _ in points])
+    return named_section(positions, corners, owner, parts, [r for r, _ in points])
 
 
 @dataclass(frozen=True)
@@ -190,36 +190,40 @@ class Drawing:
     def stations(self) -> FloatArray:
         """Radii at which the drawn mesh lines have points, increasing; between two they are straight.
 
-        ``max(h, s d)`` bends at the distances d = h / s from graded points and halfway between two of them. Far away
-        further points split the lines at every factor of a hundred. Points that are crowded for their distance from
-        the edge are left out.
+        ``max(h, s d)`` has kinks at the distances d = h / s from graded points and halfway between two of them. Far
+        away further points split the lines at every factor of a hundred. Points that are too close together for their
+        distance from the edge are omitted.
         """
-        bends: list[float] = []
-        for bend in np.sort(self.parts.finite) / (SLOPE_PER_GROWTH * self.growth):
-            if not bends or bend > LEAST_STEP * bends[-1]:
-                bends.append(float(bend))
+        kink_distances: list[float] = []
+        for distance in np.sort(self.parts.finite) / (SLOPE_PER_GROWTH * self.growth):
+            if not kink_distances or distance > LEAST_STEP * kink_distances[-1]:
+                kink_distances.append(float(distance))
         graded = self.radii
-        middles = (graded[:-1] + graded[1:])[np.diff(graded) / 2 > min(bends, default=np.inf)] / 2
-        at_bends = np.concatenate([graded + side * bend for bend in bends for side in (-1.0, 1.0)] or [np.empty(0)])
-        # Another graded point may be nearer than h / s: the thickness does not bend there.
-        is_nearest = np.min(np.abs(at_bends[:, None] - graded), axis=1) >= 0.999 * np.repeat(bends, 2 * len(graded))
-        far = 1.0 + max([1.0, *bends]) * 100.0 ** np.arange(1, 8)
-        every = np.concatenate([graded, middles, at_bends[is_nearest], far])
-        every = np.unique(every[(every > 0) & (every < 0.3 * self.outer_radius)])
+        middles = (graded[:-1] + graded[1:])[np.diff(graded) / 2 > min(kink_distances, default=np.inf)] / 2
+        kink_radii = np.concatenate(
+            [graded + side * distance for distance in kink_distances for side in (-1.0, 1.0)] or [np.empty(0)]
+        )
+        # Another graded point may be nearer than h / s: the thickness has no kink there.
+        is_nearest = np.min(np.abs(kink_radii[:, None] - graded), axis=1) >= 0.999 * np.repeat(
+            kink_distances, 2 * len(graded)
+        )
+        far = 1.0 + max([1.0, *kink_distances]) * 100.0 ** np.arange(1, 8)
+        candidates = np.concatenate([graded, middles, kink_radii[is_nearest], far])
+        candidates = np.unique(candidates[(candidates > 0) & (candidates < 0.3 * self.outer_radius)])
         kept = [0.0]
-        for radius in (*every, self.outer_radius):
+        for radius in (*candidates, self.outer_radius):
             is_crowded = radius - kept[-1] <= 0.2 * float(self.distance(np.array([radius]))[0])
             if radius in graded or radius == self.outer_radius or not is_crowded:
                 kept.append(float(radius))
         return np.unique(kept + self._splits(kept))
 
     def _splits(self, stations: list[float]) -> list[float]:
-        """Radii that split lines longer than `LONGEST_LINE` cells of one end, at the mean of ln(distance)."""
+        """Radii that split lines longer than `LONGEST_LINE` cells of either end, at the mean of ln(distance)."""
         cells, splits = dict(zip(self.radii, self.cells, strict=True)), []
         for left, right in pairwise(stations):
-            for end, away in ((left, right - left), (right, left - right)):
-                if abs(away) > LONGEST_LINE * cells.get(end, np.inf):
-                    splits.append(float(end + np.copysign(np.sqrt(cells[end] * abs(away)), away)))
+            for end, length in ((left, right - left), (right, left - right)):
+                if abs(length) > LONGEST_LINE * cells.get(end, np.inf):
+                    splits.append(float(end + np.copysign(np.sqrt(cells[end] * abs(length)), length)))
         return splits
 
     def distance(self, radius: FloatArray) -> FloatArray:
@@ -258,7 +262,7 @@ class Drawing:
         gaps = np.diff([0.0 if self.radii[0] else -np.inf, *self.radii, self.end])
         reaches = [min(left, right, self.parts.parts[0].thickness) for left, right in pairwise(gaps)]
         each = zip(self.cells, distances, reaches, strict=True)
-        sizes = [f"{cell:.17g}+{self._grown(away, reach)}" for cell, away, reach in each]
+        sizes = [f"{cell:.17g}+{self._grown(distance, reach)}" for cell, distance, reach in each]
         if self.strip:
             beyond = f"(x{self.origin - self.strip:+.17g})"
             distances.append(f"Sqrt(0.5*{beyond}*({beyond}+Abs{beyond})+y*y)")
@@ -271,21 +275,21 @@ class Drawing:
             expression = f"Min({size},{expression})"
         return expression
 
-    def _grown(self, away: str, reach: float) -> str:
+    def _grown(self, distance: str, reach: float) -> str:
         """Increase of the cell size over that at a graded point, as a gmsh expression of the distance d from the point.
 
         ``max(PLAIN_SHARE g d, min(NEARBY_GROWTH g^(1/2) d, g (s/d)^NEARBY_POWER d))`` with the growth g.
 
         Args:
-            away: gmsh expression of d.
+            distance: gmsh expression of d.
             reach: s, distance to the next graded point, at most the thickness of the first part.
         """
         plain, most = PLAIN_SHARE * self.growth, NEARBY_GROWTH * self.growth**0.5
-        nearby = f"{self.growth * reach**NEARBY_POWER:.17g}*{away}^{1 - NEARBY_POWER:.17g}"
-        return f"Max({plain:.17g}*{away},Min({most:.17g}*{away},{nearby}))"
+        nearby = f"{self.growth * reach**NEARBY_POWER:.17g}*{distance}^{1 - NEARBY_POWER:.17g}"
+        return f"Max({plain:.17g}*{distance},Min({most:.17g}*{distance},{nearby}))"
 
-    def moved_back(self, points: FloatArray, part: int) -> FloatArray:
-        """(r, z) in the layer of points (2, n) of one part as drawn; the share of the depth within the part is kept."""
+    def layer_positions(self, points: FloatArray, part: int) -> FloatArray:
+        """(r, z) in the layer of drawn points (2, n) of one part, at the same relative depth within the part."""
         x = self.stations - self.origin
         share = (points[1] - np.interp(points[0], x, self.levels[part])) / np.interp(points[0], x, self.drawn[part])
         top, bottom = self.parts.depths[part : part + 2]
@@ -299,8 +303,8 @@ def _gmsh() -> Any:
         import gmsh  # noqa: PLC0415 - a missing system library gives one clear message, at first use
     except OSError as reason:
         raise ImportError(MISSING_LIBRARIES.format(reason=reason)) from reason
-    # gmsh lets a broken pipe end the process, and with it a pool. Only the main thread may set signals, and Windows has
-    # no such signal.
+    # gmsh resets SIGPIPE, so that a broken pipe would end the process and its pool: the handler is restored. Only the
+    # main thread may set signals, and Windows has no such signal.
     pipe = getattr(signal, "SIGPIPE", None) if current_thread() is main_thread() else None
     handler = pipe and signal.getsignal(pipe)
     gmsh.initialize([], interruptible=False)
@@ -337,8 +341,8 @@ def _triangulated(drawing: Drawing) -> tuple[FloatArray, list[IntArray]]:
         position = np.empty(int(tags.max()) + 1, dtype=np.int64)
         position[tags] = np.arange(len(tags))
         points = np.ascontiguousarray(coordinates.reshape(-1, 3)[:, :2].T)
-        found = (mesh.getElementsByType(2, surface)[1] for surface in surfaces)
-        return points, [np.ascontiguousarray(position[nodes].reshape(-1, 3).T) for nodes in found]
+        connectivity = (mesh.getElementsByType(2, surface)[1] for surface in surfaces)
+        return points, [np.ascontiguousarray(position[nodes].reshape(-1, 3).T) for nodes in connectivity]
     finally:
         gmsh.model.remove()
 
@@ -370,9 +374,9 @@ def _draw(geo: Any, drawing: Drawing) -> list[int]:
 
 
 def _placed(drawing: Drawing, drawn: FloatArray, vertices_of: list[IntArray], part: int) -> FloatArray:
-    """(r, z) of the vertices of a part, those on its faces, on the top and on the base exactly at their depth."""
+    """(r, z) of the vertices of a part; z is exact on its faces, on the top and on the base."""
     vertices, (top, bottom) = vertices_of[part], drawing.parts.depths[part : part + 2]
-    points = drawing.moved_back(drawn[:, vertices], part)
+    points = drawing.layer_positions(drawn[:, vertices], part)
     on_top = np.isin(vertices, vertices_of[part - 1]) if part else drawn[1, vertices] == 0
     is_last = part == len(vertices_of) - 1
     on_bottom = points[1] >= bottom - ON_BASE * (bottom - top) if is_last else np.isin(vertices, vertices_of[part + 1])
@@ -391,7 +395,7 @@ def named_section(
 ) -> Section:
     """Section of points (2, n) and triangles (3, m) in the parts of indices (m,), with named boundaries and faces.
 
-    Radii of graded points may be given for `Section.stretched`.
+    ``graded`` are the radii of graded points, for `Section.stretched`.
 
     Raises:
         NotConvergedError: a triangle has no area.

@@ -33,7 +33,7 @@ from contact import (
     Viscoelasticity,
     other_layer,
 )
-from contact.answer.accuracy import told_where_less
+from contact.answer.accuracy import with_accuracy_note
 from contact.answer.method import not_round
 from contact.answer.no_contact import without_contact
 from contact.answer.one_thread import one_thread
@@ -62,18 +62,18 @@ class Fem:
     """Axisymmetric finite elements: mixed P_k-P_(k-1) on graded triangles, at every Poisson's ratio.
 
     Attributes:
-        accuracy: relative accuracy wanted in radius, depth, force and stiffness, or in restitution and peaks of an
-            impact and depth and force of a history; the other settings are then chosen (and refined until the
-            estimated errors hold), and the values given for them are not used.  Adhesive contacts are refined at fixed
-            radii. Notes of an answer name what is less accurate.
-        pressure_accuracy: the same for the pressure of contacts that do not move, besides an accuracy of the numbers.
+        accuracy: required relative accuracy of radius, depth, force and stiffness, of restitution and peaks of an
+            impact, or of depth and force of a history. The other settings are then chosen, and refined until the
+            stated errors are below it; values given for them are not used. Notes of an answer list the quantities that
+            are less accurate.
+        pressure_accuracy: required relative accuracy of the pressure in equilibria; it needs ``accuracy``, too.
         order: degree k of the displacement, 2, 3 or 4.
-        edge_cell: cell at the contact edge, relative to the smallest length there.
+        edge_cell: cell size at the contact edge, relative to the smallest length there.
         growth: increase of the cell size per distance from the contact edge; also largest cell over thickness.
         truncation: relative change of the stiffness allowed to the outer edge of the mesh.
-        half_space_thickness: thickness, in contact radii, of the layer that stands for a half-space; an elastic base
+        half_space_thickness: thickness, in contact radii, of the layer that represents a half-space; an elastic base
             below a stack is meshed to its power of 0.8.
-        outer_distance: from contact edge to outer edge, in thicknesses; None for what ``truncation`` requires.
+        outer_distance: distance of the outer edge from the contact edge, in thicknesses; None to use ``truncation``.
     """
 
     name: ClassVar[str] = "fem"
@@ -90,11 +90,11 @@ class Fem:
     def __post_init__(self) -> None:
         """Raise InvalidInput for settings outside their ranges."""
         for name in ("accuracy", "pressure_accuracy"):
-            wanted = getattr(self, name)
-            if wanted is not None and not 1e-9 <= wanted <= 0.1:
-                raise InvalidInput(f"{name} must lie in [1e-9, 0.1], got {wanted}")
+            value = getattr(self, name)
+            if value is not None and not 1e-9 <= value <= 0.1:
+                raise InvalidInput(f"{name} must lie in [1e-9, 0.1], got {value}")
         if self.pressure_accuracy is not None and self.accuracy is None:
-            raise InvalidInput("pressure_accuracy is asked besides an accuracy of the numbers; give both")
+            raise InvalidInput("pressure_accuracy is used besides an accuracy of the numbers; give both")
         _ = self.discretisation
 
     @property
@@ -107,20 +107,20 @@ class Fem:
 
     def supports(self, scene: Scene) -> Supported | Unsupported:
         """Whether this method models the scene."""
-        if (other := not_round("fem", scene)) is not None:
-            return other
+        if (unsupported := not_round("fem", scene)) is not None:
+            return unsupported
         if scene.effect(Friction) is not None:
             punch = isinstance(scene.indenter, FlatPunch)
-            other = other_layer("full stick of a FlatPunch by fem", scene.layer) if punch else None
-            return _supports_friction(scene) if other is None else other
+            unsupported = other_layer("full stick of a FlatPunch by fem", scene.layer) if punch else None
+            return _supports_friction(scene) if unsupported is None else unsupported
         in_time = isinstance(scene.loading, MOTIONS)
-        if in_time and (other := other_layer("contact in time by fem", scene.layer)) is not None:
-            return other
+        if in_time and (unsupported := other_layer("contact in time by fem", scene.layer)) is not None:
+            return unsupported
         modelled = Viscoelasticity if in_time else Adhesion
         if all(isinstance(effect, modelled) for effect in scene.effects):
             return Supported()
-        listed = f" with {', '.join(type(effect).__name__ for effect in scene.effects)}"
-        return Unsupported(f"fem does not model loading {type(scene.loading).__name__}{listed}")
+        effects = f" with {', '.join(type(effect).__name__ for effect in scene.effects)}"
+        return Unsupported(f"fem does not model loading {type(scene.loading).__name__}{effects}")
 
     @overload
     def solve(self, scene: Scene[EquilibriumLoading]) -> ContactPath: ...
@@ -139,8 +139,8 @@ class Fem:
         """The answer with its error estimates.
 
         Raises:
-            UnsupportedSceneError: the scene asks for what `supports` denies, the contact would be no single circle, or
-                the mesh does not fit into memory.
+            UnsupportedSceneError: `supports` denies the scene, the contact would be no single circle, or the mesh does
+                not fit into memory.
             NotConvergedError: a linear solve or the requested accuracy was missed.
         """
         support = self.supports(scene)
@@ -150,11 +150,12 @@ class Fem:
             answer = self._solve(scene, StageLog())
         except MemoryError:
             raise UnsupportedSceneError(
-                "the mesh does not fit into memory: ask fem for a less strict accuracy, or give it a larger growth"
+                "the mesh does not fit into memory: give fem a less strict accuracy or a larger growth"
             ) from None
-        return answer if self.accuracy is None else told_where_less(answer, self.accuracy, self.pressure_accuracy)
+        return answer if self.accuracy is None else with_accuracy_note(answer, self.accuracy, self.pressure_accuracy)
 
     def _solve(self, scene: Scene, log: StageLog) -> Answer:
+        """The answer at the given settings, or at settings refined until ``accuracy`` is reached."""
         attempt = self._attempt(scene, log)
         if self.accuracy is None:
             return attempt(self.discretisation)
@@ -229,7 +230,7 @@ class Fem:
 
 
 def _supports_friction(scene: Scene) -> Supported | Unsupported:
-    """Flat punches that stick, and rounded or pointed indenters with any friction; no second effect."""
+    """Whether friction is modelled: of sticking flat punches, or of indenters without a flat end; no second effect."""
     if not scene.layer.is_piecewise_uniform:
         return Unsupported(f"fem models friction on uniform layers and stacks, not on a {type(scene.layer).__name__}")
     friction = next(effect for effect in scene.effects if isinstance(effect, Friction))

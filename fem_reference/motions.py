@@ -36,8 +36,8 @@ from fem_reference.profiles import ScaledIndenter, shape
 from fem_reference.settings import Discretisation, contact_section
 from fem_reference.surface import TraceSpace, condense, strip_section
 
-# Steps of an impact after which the body is reported not to come off: five hundred times what an impact at the default
-# settings takes.
+# Largest number of steps of an impact; then the body counts as not coming off. It is five hundred times the number at
+# the default settings.
 MAX_STEPS = 200_000
 # Duration of the step for a load that jumps at the first instant, over that of the next step.
 INSTANT = 1e-7
@@ -46,7 +46,7 @@ FEWEST_EVENTS = 4
 # Events closer than this share of a step are one event. With a hundredth of it roundings split events, and forces on a
 # dashpot err ten times as much. With a hundred times as much they are the same.
 SLIGHTLY = 1e-6
-# Secants to the next event: one or two are needed where moduli relax in proportion, up to four in other layers.
+# Largest number of secants to the next event: one or two are needed where moduli relax in proportion, else up to four.
 MOST_SECANTS = 20
 # Octaves of steps in a segment, the fewest and the most, and the number that all segments of a history share. Steps
 # double from octave to octave: after a kink of the load the layer relaxes on every time scale.
@@ -69,10 +69,10 @@ class Strip:
     Units: lengths by the strip's radius L, stresses by the instantaneous shear modulus G_0, times in seconds.
 
     Attributes:
-        modes: the layer; its vertices are one for a flat punch, unless a compressible layer relaxes.
-        relaxation: of its shear.
+        modes: modes of the layer; a flat punch has one vertex, unless a compressible layer relaxes.
+        relaxation: shear relaxation of the layer.
         profile: moments ``int phi_i f 2 pi r dr`` of the indenter's profile, shape (n,).
-        radius: L [m].
+        radius: radius L of the strip [m].
     """
 
     modes: Modes
@@ -85,13 +85,13 @@ class Motion(NamedTuple):
     """Quantities at the instants of a motion, each of shape (instant,), in the units of its `Strip`.
 
     Attributes:
-        time: t [s].
-        depth: delta / L.
-        velocity: v / L [1/s], of the body of an impact; zero in a prescribed history.
-        force: F / (G_0 L^2).
-        radius: a / L.
-        stored: energy of the layer over G_0 L^3.
-        dissipated: energy lost so far over G_0 L^3.
+        time: instants t [s].
+        depth: indentation depth delta / L.
+        velocity: velocity v / L [1/s] of the body in an impact; zero in a prescribed history.
+        force: normal force F / (G_0 L^2).
+        radius: contact radius a / L.
+        stored: stored energy of the layer over G_0 L^3.
+        dissipated: energy dissipated since the start over G_0 L^3.
         dashpot: share of the dashpot in the force, see `Top.dashpot_force`.
     """
 
@@ -106,13 +106,13 @@ class Motion(NamedTuple):
 
 
 class Record:
-    """A motion while it is simulated: the memory of the layer, and one row of `Motion` per instant."""
+    """A motion during its simulation: the layer with its memory, and one row of `Motion` per instant."""
 
     def __init__(self, strip: Strip) -> None:
         self.strip, self.top, self.rows = strip, Top(strip.modes, strip.relaxation), list[tuple[float, ...]]()
 
     def add(self, time: float, depth: float, velocity: float, pressure: FloatArray) -> None:
-        """Add the instant at which the layer has taken a step with the end pressures (n,)."""
+        """Add a row after a step of the layer whose pressures at the end are ``pressure`` (n,)."""
         top, edge = self.top, edge_radius(self.strip.modes.radii, pressure)
         force = float(top.resultants @ pressure)
         energies = top.stored_energy, top.dissipated_energy
@@ -120,25 +120,25 @@ class Record:
 
     @property
     def motion(self) -> Motion:
-        """The motion so far."""
+        """The motion from the rows added so far."""
         return Motion(*np.array(self.rows).T)
 
 
 def simulate_impact(strip: Strip, mass: float, velocity: float, duration: float) -> Motion:
-    """An impact in equal steps, from first touch to the loss of contact.
+    """Motion of an impact in equal steps, from first touch to the loss of contact.
 
-    The last step ends where contact is lost, after a part of ``duration``. There the pressure is zero. Memory, depth
-    and velocity take a step of that length, by the same rules as every step: the work of the force still equals the
-    change of the kinetic energy, and the energies of the layer are those at the loss of contact.
+    The last step ends where contact is lost, after a part of ``duration``. There the pressure is zero. The rules of
+    the step are the same: the work of the force still equals the change of the kinetic energy, and the energies of the
+    layer are those at the loss of contact.
 
     Args:
         strip: the layer at rest and its indenter.
         mass: M / (G_0 L) [s^2].
         velocity: v_0 / L [1/s].
-        duration: of a step [s].
+        duration: length of a step [s].
 
     Raises:
-        NotConvergedError: the body never comes off (a layer without long-term elasticity may hold it).
+        NotConvergedError: the body never comes off, as on some layers without long-term elasticity.
     """
     record, active, overlaps = Record(strip), None, (0.0, 0.0, 0.0)
     top, depth, time, kappa = record.top, 0.0, 0.0, duration**2 / (4 * mass)
@@ -181,15 +181,15 @@ def _first_pressure(record: Record, velocity: float, instant: float) -> FloatArr
 def _release_fraction(earlier: float, before: float, after: float) -> float:
     """Part of the last step after which contact is lost.
 
-    The overlap is the largest of ``(delta w - f - o) / w``, of the indenter with the surface as it would be without
-    pressure. It passes zero smoothly at release, while the force of a round indenter vanishes like its power 3/2. The
-    zero of the parabola through three overlaps is taken: the error of a straight line, of second order in the step,
-    would depend on where in the step the zero lies, and disturb the comparison of two step sizes.
+    The overlap is the largest of ``(delta w - f - o) / w``, of the indenter with the surface without pressure. It
+    passes zero smoothly at release, while the force of a round indenter vanishes like its power 3/2. The result is the
+    zero of the parabola through three overlaps. The error of a straight line, of second order in the step, would depend
+    on where in the step the zero lies, and disturb the comparison of two step sizes.
 
     Args:
         earlier: overlap one step before the last step.
-        before: overlap at its start.
-        after: overlap at its end.
+        before: overlap at the start of the last step.
+        after: overlap at the end of the last step.
     """
     if not before > 0 > after:
         return 1.0
@@ -208,12 +208,12 @@ def segments(time: FloatArray, per_octave: int) -> list[FloatArray]:
         per_octave: M, even in an answer, and M/2 in its companion.
 
     Returns:
-        An array of instants [s] for each segment, without its start and with its end.
+        An array of instants [s] per segment, without its start and with its end.
     """
     octaves = int(np.clip(SHARED // (len(time) - 1), FEWEST, MOST))
     steps = np.repeat(2.0 ** np.arange(octaves), per_octave)
     shares = np.cumsum(steps) / steps.sum()
-    # The last instant is the given one, to the bit.
+    # The last instant equals the given one exactly.
     shares[-1] = 1.0
     return [t0 * (1.0 - shares) + t1 * shares for t0, t1 in pairwise(time)]
 
@@ -231,14 +231,14 @@ def simulate_prescribed(
         by_depth: whether ``values`` are depths.
 
     Raises:
-        NotConvergedError: no depth carries the force.
+        NotConvergedError: no depth has the prescribed force.
     """
     record, depth = Record(strip), float(values[0]) if by_depth else 0.0
     top, pressure = record.top, np.zeros_like(strip.profile)
     active = np.zeros(len(pressure), dtype=bool)
 
     def advance(duration: float, load: float) -> None:
-        """A step [s] to this load."""
+        """Step of a duration [s] to a depth or force at its end."""
         nonlocal depth, pressure, active
         matrix, offset = top.begin(duration)
         gap = strip.profile + offset
@@ -259,8 +259,8 @@ def simulate_prescribed(
         for before, now in pairwise([t0, *ends]):
             load = float(v1 if now == t1 else v0 + rate * (now - t0))
             if by_depth and top.viscosity and rate > 0 and now > ends[0]:
-                pressure, active, found = from_event_to_event(record, depth, rate, active, float(now - before))
-                events += [(before + after, force) for after, force in found]
+                pressure, active, new_events = from_event_to_event(record, depth, rate, active, float(now - before))
+                events += [(before + after, force) for after, force in new_events]
                 depth = load
             else:
                 advance(float(now - before), load)
@@ -270,14 +270,14 @@ def simulate_prescribed(
 
 
 def smooth_dashpot(rows: list[tuple[float, ...]], events: Sequence[tuple[float, float]]) -> list[tuple[float, ...]]:
-    """Rows of a segment, the dashpot's share of the force made piecewise linear in time.
+    """Rows of a segment with the dashpot's share of the force as a piecewise linear function of time.
 
     Between two events the computed share is constant and correct in the middle of the interval. These values are
     interpolated, and replace the computed ones.
 
     Args:
-        rows: of `Motion`.
-        events: the instant [s] of each event in the segment, and the dashpot's force in the interval before it.
+        rows: rows of `Motion`.
+        events: instant [s] of each event in the segment, and the dashpot's force in the interval before it.
     """
     if len(events) < FEWEST_EVENTS:
         return rows
@@ -285,8 +285,8 @@ def smooth_dashpot(rows: list[tuple[float, ...]], events: Sequence[tuple[float, 
     middles, motion = (ends[1:] + ends[:-1]) / 2, Motion(*np.array(rows).T)
     smooth = make_interp_spline(middles, forces[1:], k=1)(motion.time)
     force = np.maximum(0.0, motion.force + smooth - motion.dashpot)
-    found = motion._replace(force=np.where(motion.time < middles[0], motion.force, force))
-    return list(zip(*found, strict=True))
+    smoothed = motion._replace(force=np.where(motion.time < middles[0], motion.force, force))
+    return list(zip(*smoothed, strict=True))
 
 
 def from_event_to_event(
@@ -300,15 +300,15 @@ def from_event_to_event(
     cell.
 
     The slack of a vertex is p_i A_ii where it is pressed and the gap g_i where it is free. It is negative where the set
-    is wrong. The next event is the first zero of a slack: the secant through two instants has it, exactly where moduli
-    relax in proportion, else after a few repetitions (regula falsi).
+    is wrong. The next event is the first zero of a slack. The secant through two instants gives it exactly where
+    moduli relax in proportion, else after a few repetitions (regula falsi).
 
     Args:
-        record: whose memory moves on.
-        depth: at the start.
-        rate: of the depth.
-        active: pressed vertices at the start.
-        duration: of the step [s].
+        record: the motion so far; the memory of its layer advances.
+        depth: depth at the start, over L.
+        rate: rate of the depth [1/s].
+        active: pressed vertices at the start, shape (n,).
+        duration: length of the step [s].
 
     Returns:
         Pressures (n,) and pressed vertices (n,) at the end, and for each event the time since the start of the step [s]
@@ -318,30 +318,30 @@ def from_event_to_event(
     top, elapsed, active = record.top, 0.0, active.copy()
 
     def problem(part: float) -> tuple[FloatArray, FloatArray]:
-        """Compliance A and approach delta w - f - o after a part [s], one Euler step of the dashpot."""
+        """Compliance A and approach delta w - f - o after a part [s] of the step, by one Euler step of the dashpot."""
         top.restart()
         matrix, offset = top.begin(part)
         return matrix, (depth + rate * (elapsed + part)) * top.resultants - record.strip.profile - offset
 
     def fixed(part: float) -> tuple[FloatArray, FloatArray]:
-        """Pressures with the active set fixed after a part [s], and slacks (n,), both with a margin for roundings."""
+        """Pressures and slacks (n,) after a part [s] with a fixed active set; slacks have a margin for rounding."""
         matrix, approach = problem(part)
         pressure = pressure_on(matrix, approach, active)
         slack = np.where(active, matrix.diagonal() * pressure, matrix @ pressure - approach)
         return pressure, slack + 1e-11 * np.abs(approach).max()
 
     for _ in range(2 * len(active)):
-        left = duration - elapsed
-        pressure, late = fixed(left)
-        if late.min() >= 0.0:
+        remaining = duration - elapsed
+        pressure, late_slack = fixed(remaining)
+        if late_slack.min() >= 0.0:
             top.accept(pressure)
             return np.maximum(pressure, 0.0), active, events
-        part, tiny = 0.0, SLIGHTLY * left
-        early = fixed(tiny)[1]
-        wrong = early < 0.0
-        # Where a vertex touches or leaves at the start the set changes there.
+        part, tiny = 0.0, SLIGHTLY * remaining
+        early_slack = fixed(tiny)[1]
+        wrong = early_slack < 0.0
+        # If a slack is negative at the start, the set changes there.
         if not wrong.any():
-            part, wrong, pressure = _first_zero(fixed, (tiny, early), (left, late), tiny)
+            part, wrong, pressure = _first_zero(fixed, (tiny, early_slack), (remaining, late_slack), tiny)
             top.accept(pressure)
             elapsed += part
             events.append((elapsed, top.dashpot_force))
@@ -361,26 +361,26 @@ def _first_zero(
     """Instant of the first zero of the slacks, the vertices (n,) that reach it, and the pressures (n,) there.
 
     Args:
-        fixed: pressures and slacks at an instant.
-        low: an instant at which no slack is negative, and the slacks there.
-        high: a later one at which one is.
-        tiny: accuracy of the instant.
+        fixed: function that returns pressures and slacks at an instant [s].
+        low: instant at which no slack is negative, and the slacks there.
+        high: later instant at which a slack is negative, and the slacks there.
+        tiny: accuracy of the instant [s].
     """
-    (t0, early), (t1, late), found = low, high, low[0]
+    (t0, early_slack), (t1, late_slack), instant = low, high, low[0]
     pressure = fixed(t0)[0]
     for _ in range(MOST_SECANTS):
-        zeros = np.full(len(late), np.inf)
-        falls = late < 0.0
-        zeros[falls] = t0 + (t1 - t0) * early[falls] / (early - late)[falls]
-        if abs(zeros.min() - found) <= tiny:
+        zeros = np.full(len(late_slack), np.inf)
+        falls = late_slack < 0.0
+        zeros[falls] = t0 + (t1 - t0) * early_slack[falls] / (early_slack - late_slack)[falls]
+        if abs(zeros.min() - instant) <= tiny:
             break
-        found = float(zeros.min())
-        pressure, slack = fixed(found)
+        instant = float(zeros.min())
+        pressure, slack = fixed(instant)
         if slack.min() < 0.0:
-            t1, late = found, slack
+            t1, late_slack = instant, slack
         else:
-            t0, early = found, slack
-    return found, zeros <= found + 2 * tiny, pressure
+            t0, early_slack = instant, slack
+    return instant, zeros <= instant + 2 * tiny, pressure
 
 
 def _carrying(
@@ -388,18 +388,18 @@ def _carrying(
 ) -> tuple[Complementary, float]:
     """Contact under a given force F, and its depth: Newton's method on the convex, piecewise linear F(delta).
 
-    On the active vertices A p = delta w - gap, hence dF/d(delta) = w . A^-1 w. Without force the indenter stays at its
-    last depth, unless the recovering surface lifts it.
+    On the active vertices A p = delta w - gap, hence dF/d(delta) = w . A^-1 w. At zero force the indenter stays at its
+    last depth, unless the recovering surface pushes it up.
 
     Args:
         matrix: A, shape (n, n).
         gap: f + o, moments of the profile and of the surface without pressure, shape (n,).
-        w: moments of one, shape (n,).
+        w: moments of the function one, shape (n,).
         force: F.
-        depth: first guess.
+        depth: first guess of delta.
 
     Raises:
-        NotConvergedError: no depth carries the force.
+        NotConvergedError: no depth has the prescribed force.
     """
     touch = float(np.min(gap / w))
     if force == 0:
@@ -414,11 +414,11 @@ def _carrying(
         active = state.active if state.active.any() else gap / w <= depth + 1e-12
         change = defect / float(w @ pressure_on(matrix, w, active))
         depth += change
-    raise NotConvergedError("no depth carries the prescribed force", {"force_defect": defect})
+    raise NotConvergedError("no depth has the prescribed force", {"force_defect": defect})
 
 
 class Resolution(NamedTuple):
-    """How finely a motion is resolved.
+    """Numbers of cells and steps of a motion.
 
     Attributes:
         cells: cells of the strip.
@@ -432,7 +432,7 @@ class Resolution(NamedTuple):
 
 
 class HistorySetup:
-    """Strips of one scene at one resolution."""
+    """Strips of one scene at one resolution, cached."""
 
     def __init__(self, scene: Scene, settings: Discretisation, log: StageLog) -> None:
         self.scene, self.log, self.relaxation = scene, log, relaxation_of(scene)
@@ -454,7 +454,7 @@ class HistorySetup:
         return [(coarser, half_both), (coarser, half_cells), (setup, Resolution(2 * cells, 2 * steps, 2 * octave))]
 
     def strip(self, radius: float, cells: int) -> Strip:
-        """The layer at rest and the indenter, on a strip of ``radius`` [m]."""
+        """The layer at rest and the indenter on a strip of ``radius`` [m] with ``cells`` cells."""
         if (radius, cells) not in self._strips:
             modes, indenter, profile = self._modes(radius, cells), self.scene.indenter, np.zeros(1)
             if len(modes.radii) > 1:
@@ -479,6 +479,7 @@ class HistorySetup:
         return proportional_modes(strip.compliance * per_shear, strip.resultants, strip.radii, strip.unknowns)
 
     def _mesh(self, radius: float, cells: int) -> tuple[Parts, Section]:
+        """Material and mesh of a strip of ``radius`` [m], in units of it; graded at the edge of a flat punch."""
         layer, indenter = self.scene.layer, self.scene.indenter
         with self.log.stage("mesh"):
             if isinstance(indenter, FlatPunch):
@@ -491,11 +492,11 @@ class HistorySetup:
 
         Args:
             guess: first radius of a strip [m].
-            simulate: the motion on a strip.
+            simulate: function that returns the motion on a strip.
 
         Raises:
             InvalidInput: contact reaches the end of the profile.
-            NotConvergedError: no strip fits, or no step presses.
+            NotConvergedError: no strip fits, or the pilot has no step with contact.
         """
         indenter = self.scene.indenter
         if isinstance(indenter, FlatPunch):
@@ -506,7 +507,7 @@ class HistorySetup:
             largest = float(motion.radius.max())
             if largest == 0:
                 raise NotConvergedError(
-                    "the pilot simulation presses at no step: a strong dashpot stops the body, or nothing presses"
+                    "the pilot simulation has no step with contact: a strong dashpot stops the body, or no load presses"
                 )
             if largest > FULL and radius >= indenter.max_radius:
                 raise InvalidInput(f"contact reaches the end of the profile at {radius:g} m; load less")

@@ -49,19 +49,19 @@ class PrescribedContact:
 
     Attributes:
         layer: the discrete layer.
-        indenter: the profile, by the contact radius.
-        stiffness: k_N = dF/d(delta) at fixed radius.
-        stiffness_slope: k_N' = dk_N/da.
-        smooth_depth: delta_0, depth at which the stress at the contact edge vanishes; zero for a flat punch.
-        smooth_depth_slope: delta_0' = d(delta_0)/da.
-        profile_force: F_2, the force at depth zero; negative, since there the surface is pulled up to the profile.
+        indenter: the profile in units of the contact radius.
+        stiffness: stiffness k_N = dF/d(delta) at fixed radius.
+        stiffness_slope: derivative k_N' = dk_N/da.
+        smooth_depth: depth delta_0 at which the stress at the contact edge vanishes; zero for a flat punch.
+        smooth_depth_slope: derivative delta_0' = d(delta_0)/da.
+        profile_force: force F_2 at depth zero; negative, since there the surface is pulled up to the profile.
         solutions: all unknowns of u_1 and u_2, shape (size, 2).
         contact_trace: piecewise polynomials on the contact.
-        pressures: pressure of u_1 and u_2 at its nodes, shape (node, 2).
+        pressures: pressures of u_1 and u_2 at the nodes of ``contact_trace``, shape (node, 2).
         top_trace: piecewise polynomials on the whole top.
-        displacements: u_z of u_1 and u_2 at its nodes, shape (node, 2).
-        energy_defect: |energy stiffness / reaction stiffness - 1|.
-        patch_defect: see `DiscreteLayer.patch_defect`.
+        displacements: u_z of u_1 and u_2 at the nodes of ``top_trace``, shape (node, 2).
+        energy_defect: relative difference |k_N by energy / k_N by reactions - 1|.
+        patch_defect: largest relative residual of the patch test, see `DiscreteLayer.patch_defect`.
         radius: contact radius over that of the mesh, below one after `narrowed` only.
     """
 
@@ -119,7 +119,7 @@ class PrescribedContact:
         return np.concatenate([[0.0], solveh_banded(bands, reactions[1:], lower=True, check_finite=False)])
 
     def narrowed(self, share: float) -> PrescribedContact:
-        """The contact whose ring around a flat end has ``share^2`` times the width, derived without a mesh.
+        """The contact whose ring around a flat end has ``share^2`` times the width, by its leading-order powers.
 
         The ring lies between the flat radius b and the contact radius a, of width w = a - b << b. To leading order k_N
         is linear in a, while delta_0 and the fields of u_2 outside the ring grow like ``w^(1/2)``. From smooth contact,
@@ -128,17 +128,17 @@ class PrescribedContact:
         Args:
             share: factor on delta_0, at most one.
         """
-        shares, lost = np.array([1.0, share]), (1.0 - self.indenter.last_kink) * (1 - share**2)
+        shares, narrowing = np.array([1.0, share]), (1.0 - self.indenter.last_kink) * (1 - share**2)
         return replace(
             self,
-            stiffness=self.stiffness - self.stiffness_slope * lost,
+            stiffness=self.stiffness - self.stiffness_slope * narrowing,
             smooth_depth=share * self.smooth_depth,
             smooth_depth_slope=self.smooth_depth_slope / share,
             profile_force=share**3 * self.profile_force,
             pressures=self.pressures * shares,
             displacements=self.displacements * shares,
             solutions=self.solutions * shares,
-            radius=1 - lost,
+            radius=1 - narrowing,
         )
 
 
@@ -148,17 +148,17 @@ ContactSolver: TypeAlias = Callable[[float], PrescribedContact]
 
 @dataclass
 class Neighbours:
-    """Solves contacts of given radii [m]; those of similar proportions share a mesh, which is stretched.
+    """Solver of contacts of given radii [m]. Contacts of similar proportions share a mesh, which is stretched.
 
-    Where nothing is stretched, as on a half-space under a smooth profile, they share the factorised matrix, too.
+    If the mesh needs no stretching, as on a half-space under a smooth profile, they share the factorised matrix, too.
 
     Attributes:
         scene: layer and indenter.
         settings: numerical settings.
         log: record of time and memory by stage.
         sticks: whether u_r = 0 under the indenter.
-        sections: meshes so far, not stretched.
-        factorised: the last mesh with its factors.
+        sections: meshes made so far, before they are stretched.
+        factorised: layer on the last mesh and its factorised matrix.
     """
 
     scene: Scene
@@ -196,12 +196,12 @@ def solve_contact(
 
 
 def quick_solution(scene: Scene, radius: float, log: StageLog) -> PrescribedContact:
-    """The contact of a radius [m] on few cells, accurate to about 1e-5, for tabulated profiles 1e-4."""
+    """The contact of a radius [m] on few cells, accurate to about 1e-5, for tabulated profiles to 1e-4."""
     return solve_contact(scene, radius, QUICK, log)
 
 
 def factorised_contact(layer: DiscreteLayer, log: StageLog) -> RestrictedSolver:
-    """The layer with u_z prescribed within radius one: the last of the prescribed unknowns, as `top_nodes` has them."""
+    """Factorised layer with u_z prescribed within radius one: the last prescribed unknowns, in `top_nodes` order."""
     with log.stage("assemble"):
         log.hold(layer.elements.nbytes)
     with log.stage("factor"):
@@ -244,7 +244,7 @@ def energy_stiffness(layer: DiscreteLayer, solution: FloatArray) -> float:
 def _evaluated(
     layer: DiscreteLayer, indenter: ScaledIndenter, solutions: FloatArray, reactions: FloatArray, energy: float
 ) -> PrescribedContact:
-    """All numbers from u_1, u_2 (size, 2), their reactions at the contact nodes (node, 2) and u_1 . K u_1."""
+    """`PrescribedContact` from u_1, u_2 (size, 2), their reactions at the contact nodes (node, 2) and u_1 . K u_1."""
     stiffness, profile_force = reactions.sum(axis=0)
     defect, patch = abs(energy / stiffness - 1), layer.patch_defect
     if not defect < ENERGY_AGREEMENT:
@@ -261,7 +261,7 @@ def _evaluated(
     height_change = np.interp(trace.radii, trace.vertices, eta) * indenter.slope(trace.radii)
     smooth_depth = float((reactions[:, 0] @ height_change - derivative[0, 1]) / derivative[0, 0])
     pressures = trace.recover(reactions)
-    analytic = min(nearest, 1.0 - max(indenter.breakpoints, default=0.0), indenter.left_to_upright_end)
+    analytic = min(nearest, 1.0 - max(indenter.breakpoints, default=0.0), indenter.distance_to_upright_end)
     return PrescribedContact(
         layer=layer,
         indenter=indenter,

@@ -1,6 +1,6 @@
 """Heights and slopes of indenters, derived from the parameters of the scene, and an indenter scaled by its contact.
 
-These formulas are typed independently of `contact.scene.profiles`, which the other methods use: a mistake in a shared
+These formulas are written independently of `contact.scene.profiles`, which the other methods use: a mistake in a shared
 formula would not appear as a difference between two methods. Hence `pchip_slopes` instead of scipy's PchipInterpolator.
 """
 
@@ -43,7 +43,7 @@ def shape(profile: Profile, radius: FloatArray) -> Shape:  # noqa: PLR0911 - one
     """Height and slope of a profile at radii [m]; infinite beyond its end. Eq. (35): Machines 11 (2023) 474.
 
     Raises:
-        UnsupportedSceneError: for a profile without a formula here.
+        UnsupportedSceneError: this function has no formula for the profile.
     """
     match profile:
         case FlatPunch(radius=end):
@@ -71,10 +71,13 @@ def shape(profile: Profile, radius: FloatArray) -> Shape:  # noqa: PLR0911 - one
         case Tabulated(radii=radii, heights=heights):
             within = radius <= radii[-1]
             return Shape(*(np.where(within, values, np.inf) for values in cubics(radii, heights, radius)))
-    raise UnsupportedSceneError(f"finite elements know no {type(profile).__name__}; write its shape in {__name__}")
+    raise UnsupportedSceneError(
+        f"finite elements have no formula for {type(profile).__name__}; write its shape in {__name__}"
+    )
 
 
 def _spheroconical(profile: Spheroconical, radius: FloatArray) -> Shape:
+    """Height and slope of a cone with a spherical tip."""
     # sin(theta) and cos(theta) of the cone with slope tan(theta), which touches the sphere at r = R sin(theta).
     steep, level = profile.slope / np.hypot(1.0, profile.slope), 1.0 / np.hypot(1.0, profile.slope)
     join = profile.radius * steep
@@ -136,18 +139,18 @@ def height(profile: Profile, radius: float) -> float:
 
 @dataclass(frozen=True)
 class ScaledIndenter:
-    """A profile within one contact radius; lengths by that radius.
+    """A profile within a contact radius, lengths in units of that radius.
 
     Attributes:
-        profile: the indenter.
-        contact_radius: a [m].
+        profile: the indenter in SI units.
+        contact_radius: contact radius a [m].
     """
 
     profile: Profile
     contact_radius: float
 
     def height(self, radius: FloatArray) -> FloatArray:
-        """Height f / a at r / a; nodes at the edge of a punch may exceed it by rounding."""
+        """Height f / a at r / a; radii that exceed the edge by rounding count as at the edge."""
         return np.asarray(shape(self.profile, self._inside(radius)).height / self.contact_radius)
 
     def slope(self, radius: FloatArray) -> FloatArray:
@@ -155,6 +158,7 @@ class ScaledIndenter:
         return np.asarray(shape(self.profile, (1 - 1e-15) * self._inside(radius)).slope)
 
     def _inside(self, radius: FloatArray) -> FloatArray:
+        """Radii [m] of radii over a, at most the contact radius and the end of the profile."""
         return np.minimum(radius * self.contact_radius, min(self.contact_radius, self.profile.max_radius))
 
     @cached_property
@@ -168,6 +172,7 @@ class ScaledIndenter:
         return self._within(self.profile.breakpoints)
 
     def _within(self, radii: tuple[float, ...]) -> tuple[float, ...]:
+        """Radii / a of those radii [m] that lie inside the contact."""
         return tuple(r / self.contact_radius for r in radii if r < self.contact_radius * (1 - 1e-12))
 
     @property
@@ -176,7 +181,7 @@ class ScaledIndenter:
         return max(self.kinks, default=0.0)
 
     @property
-    def left_to_upright_end(self) -> float:
+    def distance_to_upright_end(self) -> float:
         """(end - a) / a where the profile ends upright, like a sphere at its equator; else infinite."""
         end = self.profile.max_radius
         is_upright = np.isfinite(end) and np.isinf(shape(self.profile, np.asarray(end)).slope)

@@ -31,7 +31,7 @@ SMALLEST = 1e-13
 
 @dataclass(frozen=True, kw_only=True)
 class Discretisation:
-    """Everything that decides the mesh and its elements.
+    """Numerical settings that determine the mesh and its elements.
 
     Attributes:
         order: polynomial degree k of the displacement, 2, 3 or 4; the pressure has degree k - 1.
@@ -40,8 +40,8 @@ class Discretisation:
         growth: increase of cell size per distance from a graded point; also cell size over thickness about a
             thickness away from the edge.
         truncation: relative change of the stiffness that the finite outer radius may cause.
-        half_space_thickness: thickness, in contact radii, of the layer that stands for a half-space.
-        outer_distance: from contact edge to outer edge, in thicknesses; None for what ``truncation`` requires.
+        half_space_thickness: thickness, in contact radii, of the layer that represents a half-space.
+        outer_distance: distance of the outer edge from the contact edge, in thicknesses; None to use ``truncation``.
         coarsening: growth over that of the answer: one in the answer, `COARSER` in its companion.
     """
 
@@ -97,11 +97,11 @@ class Discretisation:
         )
 
     def outer_radius(self, parts: Parts) -> float:
-        """Radius at which a section ends, over the contact radius.
+        """Outer radius of a section over the contact radius.
 
         In a layer of thickness h disturbances decay like ``exp(-d / (h sqrt(c)))`` with the distance d from the
         contact, c the ratio of the largest modulus to the smallest: a stiff sheet on a soft one spreads them. The
-        section ends where this is ``truncation``. A half-space ends as far away as it is thick.
+        section ends where this equals ``truncation``. The section of a half-space is as wide as it is thick.
         """
         if parts.has_base:
             return float(parts.thicknesses[-1])
@@ -110,26 +110,26 @@ class Discretisation:
 
 
 def contact_section(
-    layer: ElasticLayer, indenter: ScaledIndenter, settings: Discretisation, made: list[Section] | None = None
+    layer: ElasticLayer, indenter: ScaledIndenter, settings: Discretisation, sections: list[Section] | None = None
 ) -> tuple[Parts, Section]:
     """The graded section of a contact of known radius, with vertices at the edge and at every kink and breakpoint.
 
     Args:
-        layer: of the scene.
-        indenter: by the contact radius.
+        layer: layer of the scene.
+        indenter: profile in units of the contact radius.
         settings: numerical settings.
-        made: sections of other contact radii: one that is similar is stretched, else a new one is appended.
+        sections: sections of other contact radii. A similar one is stretched, else a new one is appended.
     """
     parts = parts_of(layer, indenter.contact_radius, settings.half_space_thickness)
     points, outer_radius = graded_points(parts.parts[0].thickness, indenter, settings), settings.outer_radius(parts)
     graded = np.array([r for r, _ in points])
-    for section in made or ():
+    for section in sections or ():
         if stretched := section.stretched(graded, parts.depths, outer_radius):
             return parts, stretched
-    end = 1.0 + indenter.left_to_upright_end
+    end = 1.0 + indenter.distance_to_upright_end
     section = section_mesh(parts, outer_radius, points, settings.growth, end=end)
-    if made is not None:
-        made.append(section)
+    if sections is not None:
+        sections.append(section)
     return parts, section
 
 
@@ -140,7 +140,7 @@ def graded_points(thickness: float, indenter: ScaledIndenter, settings: Discreti
     like d^(-1/2) with the distance d. At a kink the stress goes like log d: the energy error falls like c^2, but the
     L2 error of the pressure like c^(1/2). Other breakpoints need no small cells.
     """
-    nearest = min(1.0, thickness, 1.0 - indenter.last_kink, indenter.left_to_upright_end)
+    nearest = min(1.0, thickness, 1.0 - indenter.last_kink, indenter.distance_to_upright_end)
     edge_cell = max(settings.edge_cell * nearest, SMALLEST)
     cells = {r: 0.5 * settings.growth * min(1.0, thickness) for r in indenter.breakpoints}
     ends = (0.0, *sorted(indenter.kinks), 1.0)

@@ -1,7 +1,7 @@
 """Sparse direct solutions with prescribed unknowns.
 
-Unknowns inside triangles are condensed, the rest is factorised in an order that needs no pivoting, and every solution
-is checked by its backward error. With o for the unknowns that a triangle shares with others and i for those inside it,
+Unknowns inside triangles are condensed, the others are factorised in an order that needs no pivoting. Every solution is
+checked by its backward error. With o for the unknowns that a triangle shares with others and i for those inside it,
 ``K_ii u_i + K_io u_o = f_i`` leaves ``S u_o = f_o - K_oi K_ii^-1 f_i`` with ``S = K_oo - K_oi K_ii^-1 K_io``
 (E. L. Wilson, Int. J. Numer. Meth. Engng 8 (1974) 198-203). The pressure inside a triangle is condensed with the
 displacements there, which keep K_ii regular at nu = 1/2.
@@ -37,16 +37,16 @@ class RestrictedSolver:
     Args:
         space: the unknowns.
         elements: matrix of each triangle, shape (triangle, n, n).
-        springs: a matrix of all unknowns that is added, or None; without entries inside triangles.
+        springs: matrix that is added, in the numbering of all unknowns, without entries inside triangles; or None.
         prescribed: unknowns with given values, none of them inside a triangle.
 
     Attributes:
         prescribed: unknowns with given values.
-        factorisations: how many were needed: one, or two where the first lost digits.
+        factorisations: number of factorisations: one, or two if the first was inaccurate.
 
     Raises:
         NotConvergedError: the matrix is singular.
-        UnsupportedSceneError: its factors do not fit into memory.
+        UnsupportedSceneError: the factors do not fit into memory.
     """
 
     def __init__(
@@ -79,9 +79,9 @@ class RestrictedSolver:
         return solution
 
     def solve_loaded(self, loads: FloatArray, *, inside: bool = True) -> FloatArray:
-        """All unknowns, shape (size, m), for loads of that shape, the prescribed unknowns at zero.
+        """All unknowns, shape (size, m), for loads of that shape, with the prescribed unknowns at zero.
 
-        Without ``inside`` triangles carry no loads inside, and unknowns there stay zero.
+        If ``inside`` is False, loads inside triangles are zero, and unknowns there are not computed but left at zero.
         """
         solution, outer = np.zeros_like(loads), loads.copy()
         if inside:
@@ -97,7 +97,7 @@ class RestrictedSolver:
         return np.asarray(self._matrix[unknowns] @ solution)
 
     def _factorised(self, **options: Any) -> Any:
-        """SuperLU's factors; with partial pivoting where a diagonal pivot vanishes."""
+        """SuperLU's factors with the given options; with partial pivoting if a diagonal pivot vanishes."""
         self.factorisations += 1
         if BYTES_PER_ENTRY * self._square.nnz > physical_memory():
             raise self._too_large
@@ -108,17 +108,18 @@ class RestrictedSolver:
         except RuntimeError:
             if options:
                 return self._factorised()
-        raise NotConvergedError("the stiffness matrix is singular; is the layer held by its base and axis?")
+        raise NotConvergedError("the stiffness matrix is singular; do the base and the axis support the layer?")
 
     @property
     def _too_large(self) -> UnsupportedSceneError:
+        """Error of a matrix whose factors do not fit into memory."""
         return UnsupportedSceneError(
             f"a mesh of {len(self._free)} unknowns needs about {BYTES_PER_ENTRY * self._square.nnz / 1e9:.2g} GB, more "
-            "than there is: ask for a less strict accuracy, or give a larger growth"
+            "than there is: give a less strict accuracy or a larger growth"
         )
 
     def _solved(self, rhs: FloatArray) -> FloatArray:
-        """Solution at the free unknowns, shape (free, m), refactorised with pivoting where diagonal pivots lose digits.
+        """Solution at the free unknowns, shape (free, m), refactorised with pivoting if diagonal pivots are inaccurate.
 
         Raises:
             NotConvergedError: the backward error stays above `BACKWARD_ERROR`.
@@ -166,17 +167,17 @@ def minimum_degree(space: Space) -> IntArray:
     (Vanderbei, SIAM J. Optim. 5 (1995) 100-113). At nu = 1/2, where C = 0, the pivot of a pressure is minus the Schur
     complement of the displacements before it, and would vanish without these. Therefore displacements precede the
     pressures of their node. The inf-sup condition bounds the complement of all unknowns, not each pivot:
-    `RestrictedSolver` checks every solution, and pivots where digits were lost.
+    `RestrictedSolver` checks every solution, and pivots if one is inaccurate.
     """
     unknowns = space.element_unknowns
     # One random number per triangle: their sum over the triangles of an unknown identifies its node.
     numbers = np.random.default_rng(0).random(len(unknowns))[:, None] + np.zeros(unknowns.shape[1])
     tags, node = np.unique(np.bincount(unknowns.ravel(), numbers.ravel(), space.size), return_inverse=True)
     ends = unknowns.shape[1] * np.arange(len(unknowns) + 1)
-    belongs = sparse.csr_array((np.ones(unknowns.size), node[unknowns].ravel(), ends), (len(unknowns), len(tags)))
-    neighbours = (belongs.T @ belongs).tocsc()
+    assignment = sparse.csr_array((np.ones(unknowns.size), node[unknowns].ravel(), ends), (len(unknowns), len(tags)))
+    neighbours = (assignment.T @ assignment).tocsc()
     # Any matrix of that pattern whose diagonal outweighs its rows factors without row exchanges.
-    heavy = neighbours + sparse.diags_array(1.0 + neighbours.sum(axis=0)).tocsc()
-    rank = splu(heavy, permc_spec="MMD_AT_PLUS_A", **DIAGONAL).perm_c
+    dominant = neighbours + sparse.diags_array(1.0 + neighbours.sum(axis=0)).tocsc()
+    rank = splu(dominant, permc_spec="MMD_AT_PLUS_A", **DIAGONAL).perm_c
     is_pressure = np.arange(space.size) >= space.displacement_count
     return np.lexsort((is_pressure, rank[node])).astype(np.int64)

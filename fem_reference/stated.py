@@ -28,7 +28,7 @@ from contact import (
 from contact.answer.accuracy import shortfalls
 from contact.records.validation import FloatArray
 from contact.stated import SAFETY, stated_error
-from fem_reference.equilibria import FemEquilibrium, change_beside
+from fem_reference.equilibria import FemEquilibrium, outside_change
 from fem_reference.prescribed_contact import PrescribedContact
 from fem_reference.settings import Discretisation
 
@@ -39,24 +39,24 @@ FLOOR = 1e-12
 # Least change of a number of a state, over the largest of them: two meshes may agree in one number by accident. With a
 # tenth one stiffness in a hundred is missed by three, twice of it widens half of all stated errors.
 LEAST_SHARE = 0.3
-# Stated errors of P4P3 fall like this power of the growth on graded meshes.  It chooses the next mesh only: a wrong
+# Power of the growth with which stated errors of P4P3 fall on graded meshes. It determines the next mesh only: a wrong
 # value costs attempts, no accuracy.
 ERROR_ORDER = 7.0
-# Stated error of P4P3 at growth 1/2 on punches, cones and paraboloids.  It chooses the first mesh only.
+# Stated error of P4P3 at growth 1/2 on punches, cones and paraboloids. It determines the first mesh only.
 ERROR_AT_HALF = 2e-5
-# Share of the accuracy that the outer edge may cost.  At a load most other errors cancel to a hundredth of the
-# accuracy, and this does not: with a hundred times as much it is most of what is stated of unbonded layers.
+# Truncation at the outer edge over the accuracy. At a load most other errors cancel to a hundredth of the accuracy, the
+# truncation error does not: with a hundred times as much it dominates the stated error of unbonded layers.
 FAR_SHARE = 1e-5
-# The error of the pressure falls like this power of the growth.
+# Power of the growth with which the error of the pressure falls.
 PRESSURE_ORDER = 3.0
 # Growth of the first mesh of a motion: its cells and steps err like powers of one to two.
 MOTION_GROWTH = 1.0
-# Refinements that are tried before an accuracy counts as out of reach.
+# Largest number of meshes that are tried for an accuracy.
 ATTEMPTS = 6
-# A finer mesh that leaves more than this share of the excess was in vain; after two in a row the accuracy is refused,
-# before a mesh fills the memory.
+# A finer mesh is in vain if its excess over the accuracy is more than this share of the last excess. After two in a row
+# the accuracy is refused, before a mesh fills the memory.
 LEFT, IN_VAIN = 0.8, 2
-# Which number a loading prescribes.
+# Quantity that a loading prescribes.
 PRESCRIBED = {
     ContactRadii: "contact_radius",
     IndentationDepths: "indentation_depth",
@@ -78,7 +78,7 @@ def path_with_errors(
     states: Sequence[FemEquilibrium],
     coarser: Sequence[FemEquilibrium],
 ) -> ContactPath:
-    """The path with its stated errors, relative, one per state.
+    """The path with its relative stated errors, one per state.
 
     Args:
         answer: path of the answer.
@@ -91,20 +91,22 @@ def path_with_errors(
         for name in answer.ARRAYS
     }
     least_error = LEAST_SHARE * np.max([errors[name] for name in errors if name != "contact_radius"], axis=0)
-    # The stiffness of a load errs with its radius, too.
+    # At a load the error of the radius changes the stiffness, too.
     by_radius = LEAST_SHARE * errors["contact_radius"]
     errors["contact_stiffness"] = np.maximum(errors["contact_stiffness"], by_radius)
-    exact = set() if answer.scene.effect(Adhesion) is not None else exact_names(answer.scene)
-    errors = {name: 0.0 * error if name in exact else np.maximum(error, least_error) for name, error in errors.items()}
+    prescribed = set() if answer.scene.effect(Adhesion) is not None else exact_names(answer.scene)
+    errors = {
+        name: 0.0 * error if name in prescribed else np.maximum(error, least_error) for name, error in errors.items()
+    }
     pairs = list(zip(states, coarser, strict=True))
-    displacements = SAFETY * np.array([change_beside(*pair) for pair in pairs]) / answer.scale("indentation_depth")
+    displacements = SAFETY * np.array([outside_change(*pair) for pair in pairs]) / answer.scale("indentation_depth")
     errors["pressure"] = SAFETY * np.array([pressure_change(*pair) for pair in pairs]) + FLOOR
     errors["surface_displacement"] = np.maximum(displacements + FLOOR, errors["indentation_depth"])
     return replace(answer, error_estimate={**answer.error_estimate, **errors})
 
 
 def pressure_change(state: FemEquilibrium, other: FemEquilibrium) -> float:
-    """L2 distance of two pressures over the norm of the first, weight ``2 pi r``; both as functions of r / a.
+    """L2 distance of two pressures as functions of r / a, over the norm of the first, with weight ``2 pi r``.
 
     Under flat punches and with adhesion p grows like ``(a - r)^(-1/2)`` at the edge, and p^2 is not integrable. There
     the weight is ``2 pi r (1 - r^2 / a^2)``.
@@ -123,7 +125,7 @@ def contact_rule(contact: PrescribedContact) -> tuple[FloatArray, FloatArray]:
 
 
 def l2_change(weight: FloatArray, fine: FloatArray, coarse: FloatArray, size: FloatArray) -> float:
-    """L2 distance of two fields over the norm of a third one, given at the points of a quadrature rule."""
+    """L2 distance of two fields over the norm of a third one, from values (n,) at points with quadrature weights."""
     return float(np.sqrt(weight @ (fine - coarse) ** 2 / (weight @ size**2)))
 
 
@@ -143,12 +145,12 @@ def settings_for(accuracy: float) -> Discretisation:
 def solve_to_accuracy(
     attempt: Callable[[Discretisation], S], accuracy: float, pressure_accuracy: float | None, *, moves: bool
 ) -> S:
-    """The first answer none of whose stated errors is above what is wanted.
+    """First answer whose stated errors are all within the required accuracy.
 
     Args:
-        attempt: solves the scene with given settings.
-        accuracy: relative accuracy of the numbers.
-        pressure_accuracy: relative accuracy of the pressure, if any.
+        attempt: function that solves the scene with given settings.
+        accuracy: required relative accuracy of the numbers.
+        pressure_accuracy: required relative accuracy of the pressure, or None.
         moves: whether the scene is a motion, whose errors fall slowly.
 
     Raises:
@@ -157,31 +159,32 @@ def solve_to_accuracy(
     settings = settings_for(accuracy)
     if moves:
         settings = replace(settings, growth=MOTION_GROWTH)
-    before, in_vain = np.inf, 0
-    for left in reversed(range(ATTEMPTS)):
+    last_excess, in_vain = np.inf, 0
+    for attempts_left in reversed(range(ATTEMPTS)):
         try:
             answer = attempt(settings)
         except NotConvergedError:
             # On coarse meshes the radius of a load near a flat end may not settle. An excess of 1e3 halves the growth.
             in_vain += 1
-            if not left or in_vain == IN_VAIN:
+            if not attempts_left or in_vain == IN_VAIN:
                 raise
             settings = _finer(settings, 1e3, 0.0, moves=False)
             continue
-        over = shortfalls(answer, accuracy, pressure_accuracy)
-        if not over:
+        missed = shortfalls(answer, accuracy, pressure_accuracy)
+        if not missed:
             return answer
-        excess = {n: e / (accuracy if n != "pressure" else pressure_accuracy or accuracy) for n, e in over.items()}
+        excess = {n: e / (accuracy if n != "pressure" else pressure_accuracy or accuracy) for n, e in missed.items()}
         worst = max(excess, key=lambda name: excess[name])
-        in_vain, before = in_vain + 1 if excess[worst] > LEFT * before else 0, excess[worst]
+        in_vain, last_excess = in_vain + 1 if excess[worst] > LEFT * last_excess else 0, excess[worst]
         if in_vain == IN_VAIN:
             break
         pressure = excess.pop("pressure", 0.0)
         settings = _finer(settings, max(excess.values(), default=0.0), pressure, moves=moves)
     why = "; finer meshes do not lessen its error" if in_vain == IN_VAIN else ""
-    wanted = pressure_accuracy if worst == "pressure" else accuracy
+    required = pressure_accuracy if worst == "pressure" else accuracy
     raise NotConvergedError(
-        f"accuracy {wanted:g} of the {worst.replace('_', ' ')} was not reached{why}", {"estimated_error": over[worst]}
+        f"accuracy {required:g} of the {worst.replace('_', ' ')} was not reached{why}",
+        {"estimated_error": missed[worst]},
     )
 
 
@@ -189,9 +192,9 @@ def _finer(settings: Discretisation, numbers: float, pressure: float, *, moves: 
     """Settings for the next attempt.
 
     Args:
-        settings: of the last attempt.
+        settings: settings of the last attempt.
         numbers: largest stated error of a number over the accuracy; zero if all are below.
-        pressure: the same of the pressure.
+        pressure: stated error of the pressure over its accuracy; zero if it is below.
         moves: whether the scene is a motion, whose cells and steps are halved.
     """
     if moves:

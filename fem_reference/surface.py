@@ -1,7 +1,7 @@
 """Functions on the top, and the layer condensed to it: contact problems of a few hundred unknowns.
 
 Tractions are continuous and piecewise linear on a strip of equal cells, with hat functions phi_i; displacements are of
-fourth degree, so that the mesh errs less than the contact set, which is found to a cell. For nodal pressures p
+fourth degree, so that the mesh errs less than the contact set, which is exact to a cell. For nodal pressures p
 (positive into the layer) and tangential tractions q (positive outward) the moments ``int phi_i (u_z, u_r) 2 pi r dr``
 are
 
@@ -30,10 +30,10 @@ from fem_reference.settings import Discretisation
 
 # Degree of the displacements on a strip.
 STRIP_ORDER = 4
-# Displacement nodes from one vertex of the pressures to the next, without and with tangential tractions. With friction
-# each cell of the tractions is one of the mesh: kinks inside a cell make forces err like 1 / cells.
+# Displacement nodes per cell of the pressures, without and with tangential tractions. With friction each cell of the
+# tractions is one of the mesh: kinks inside a cell make forces err like 1 / cells.
 STRIDE, RUBBED_STRIDE = 2, 4
-# Cells of a strip for which the growth of cells away from it is as given: more cells have a lower growth.
+# Number of cells of a strip at which the growth outside it is the given one: with more cells it is lower.
 STRIP_CELLS = 120
 # Cells from the axis below which a kink gets no vertex: narrow cells next to the axis make pressures there oscillate.
 NEAREST_KINK = 0.5
@@ -52,7 +52,7 @@ class TraceSpace:
     scikit-fem's line elements above degree 2 are hierarchical: their unknowns are no nodal values.
 
     Attributes:
-        radii: r of all nodes, increasing; each cell has ``degree + 1`` equispaced nodes and shares its end nodes.
+        radii: radii of all nodes, increasing; each cell has ``degree + 1`` equispaced nodes and shares its end nodes.
         degree: polynomial degree.
     """
 
@@ -61,7 +61,7 @@ class TraceSpace:
 
     @property
     def vertices(self) -> FloatArray:
-        """Cell ends."""
+        """Radii of the cell ends."""
         return self.radii[:: self.degree]
 
     def basis(self, t: FloatArray) -> FloatArray:
@@ -69,11 +69,11 @@ class TraceSpace:
         # Products of differences: each value has the same bits for any set of arguments.
         nodes = np.arange(self.degree + 1) / self.degree
         others = [[m for m in range(self.degree + 1) if m != n] for n in range(self.degree + 1)]
-        ways = [
+        functions = [
             np.prod((t[..., None] - nodes[other]) / (nodes[n] - nodes[other]), axis=-1)
             for n, other in enumerate(others)
         ]
-        return np.stack(ways, axis=-1)
+        return np.stack(functions, axis=-1)
 
     def _values(self, cell: IntArray, t: FloatArray) -> sparse.csr_array:
         """Values of all functions at local coordinates t of cells, shape (n, node)."""
@@ -83,7 +83,7 @@ class TraceSpace:
         return sparse.csr_array(entries, shape=(len(t), len(self.radii)))
 
     def evaluate(self, values: FloatArray, radius: FloatArray) -> FloatArray:
-        """Function with nodal ``values`` at radii within the trace; zero beyond it."""
+        """Function with nodal ``values``, at radii (n,); zero beyond the trace."""
         vertices = self.vertices
         cell = np.clip(np.searchsorted(vertices, radius, side="right") - 1, 0, len(vertices) - 2)
         t = (radius - vertices[cell]) / (vertices[cell + 1] - vertices[cell])
@@ -143,14 +143,14 @@ class Surface:
 
     Attributes:
         tractions: piecewise linear functions; their nodes are the candidates for contact.
-        compliance: C, moments of u_z, and of u_r, under each pressure, and each tangential traction, shape (2 n, 2 n);
-            Z_p alone, shape (n, n), without tangential tractions.
+        compliance: C, moments of u_z and u_r under each pressure and each tangential traction, shape (2 n, 2 n);
+            only Z_p, shape (n, n), without tangential tractions.
         resultants: ``w_i = int phi_i 2 pi r dr``, shape (n,).
         base_forces: force on the base under each traction, shape (n,) or (2 n,).
         top: polynomials on the whole top of the mesh.
-        top_displacements: u_z at its nodes under each traction, shape (t, n) or (t, 2 n).
+        top_displacements: u_z at the nodes of ``top`` under each traction, shape (t, n) or (t, 2 n).
         unknowns: size of the linear system.
-        fingerprint: of the mesh.
+        fingerprint: hash of the mesh.
         poissons_ratio: nu at the surface.
     """
 
@@ -166,7 +166,7 @@ class Surface:
 
     @property
     def radii(self) -> FloatArray:
-        """Candidates for contact."""
+        """Radii of the candidates for contact, shape (n,)."""
         return self.tractions.radii
 
     def moments(self, values: FloatArray) -> FloatArray:
@@ -184,15 +184,15 @@ def strip_section(
     outside: float = 1.0,
     stride: int = STRIDE,
 ) -> tuple[Parts, Section]:
-    """A section with ``cells`` equal traction cells on the strip, lengths by its radius.
+    """Section with ``cells`` equal traction cells on the strip, lengths in units of its radius.
 
     Away from the strip the mesh errs like growth^7, the contact set like 1 / cells^2. With growth proportional to
     cells^(-1/3) both fall alike.
 
     Args:
         layer: layer of the scene.
-        radius: of the strip [m].
-        cells: of the tractions; a mesh cell covers ``STRIP_ORDER / stride`` of them.
+        radius: radius of the strip [m].
+        cells: number of traction cells; a mesh cell covers ``STRIP_ORDER / stride`` of them.
         kinks: radii [m] that become vertices.
         settings: numerical settings; their growth is replaced.
         outside: growth for `STRIP_CELLS` cells.
@@ -206,7 +206,7 @@ def strip_section(
 
 
 def strip_loads(layer: DiscreteLayer, stride: int, *, tangential: bool = False) -> tuple[FloatArray, TraceSpace]:
-    """Nodal forces of each hat function, first as pressures, then as tangential tractions, and the space of the hats.
+    """Nodal forces of each hat function, as pressure and then as tangential traction, and the space of the hats.
 
     The forces have shape (size, n), or (size, 2 n) with tangential tractions.
     """

@@ -82,9 +82,9 @@ class ManufacturedProblem:
     """The manufactured solution on an irregular mesh of the unit square.
 
     Attributes:
-        pair: elements.
+        pair: elements of displacement and pressure.
         poissons_ratio: nu.
-        cells: number along each side.
+        cells: number of cells along each side.
     """
 
     pair: ElementPair
@@ -93,7 +93,7 @@ class ManufacturedProblem:
 
     @cached_property
     def layer(self) -> DiscreteLayer:
-        """The discrete layer."""
+        """The layer discretised with ``cells`` cells along each side."""
         return uniform_layer(irregular_section(self.cells), self.pair, self.poissons_ratio)
 
     @property
@@ -103,10 +103,12 @@ class ManufacturedProblem:
 
     @property
     def _is_incompressible(self) -> bool:
+        """Whether nu = 1/2."""
         return self.poissons_ratio == 0.5
 
     @cached_property
     def _shear_and_bulk(self) -> tuple[float, float]:
+        """Shear modulus mu and bulk modulus K over E*; K is infinite at nu = 1/2."""
         shear, compressibility = (float(values[0, 0]) for values in self.layer.moduli)
         return shear, 1 / compressibility if compressibility else np.inf
 
@@ -117,7 +119,7 @@ class ManufacturedProblem:
         return np.asarray(solenoidal if self._is_incompressible else solenoidal + gradient)
 
     def pressure(self, r: FloatArray, z: FloatArray) -> FloatArray:
-        """Exact p."""
+        """Exact pressure p, of the shape of r."""
         if self._is_incompressible:
             return np.asarray(np.cos(r) * np.cos(z))
         return np.asarray(-self._shear_and_bulk[1] * (4 * r**2 - r**4 / 4) * np.sin(z))
@@ -145,7 +147,7 @@ class ManufacturedProblem:
         exact = self.displacement(*points), self.pressure(*points)
         difference = pressure - exact[1]
         if self._is_incompressible:
-            # The level of the pressure has the pointwise error at the vertex that holds it.
+            # The level of the pressure has the pointwise error at the vertex where the pressure is prescribed.
             difference -= np.sum(difference * weight) / weight.sum()
         pairs = ((np.asarray(field) - exact[0], exact[0]), (difference, exact[1]))
         u_error, p_error = (float(np.sqrt(np.sum(d**2 * weight) / np.sum(e**2 * weight))) for d, e in pairs)
@@ -156,7 +158,7 @@ class ManufacturedProblem:
         layer, space = self.layer, self.layer.space
 
         def work(v: Any, w: Any) -> Any:
-            """``f . v``."""
+            """Integrand ``2 pi r f . v`` of the virtual work of the body force."""
             force = self.force(*w.x)
             return (force[0] * v[0] + force[1] * v[1]) * weak_forms.measure(w)
 
@@ -171,10 +173,10 @@ class ManufacturedProblem:
         return np.asarray(solver.solve_displaced(values[:, None]) + solver.solve_loaded(loads))[:, 0]
 
     def _with_pressure_level(self, prescribed: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Held unknowns and values, with the exact pressure at the first vertex and boundary values without net flux.
+        """Prescribed unknowns and values: the exact pressure at the first vertex, boundary values without net flux.
 
-        With u given on the whole boundary the level of the pressure is free. The interpolated boundary values have a
-        little net flux, which would enter as a source at that vertex, with an error of the pressure of order h^3.
+        With u given on the whole boundary the level of the pressure is free. Interpolated boundary values have a small
+        net flux, which would enter as a source at that vertex, with an error of the pressure of order h^3.
         """
         first = self.layer.space.displacement_count
         prescribed = np.append(prescribed, first)

@@ -1,4 +1,4 @@
-r"""The weak forms as they stand on paper, in scikit-fem's words: the definition that `assembly` must equal.
+r"""The weak forms in the notation of scikit-fem: the definition that `assembly` must equal.
 
 Strain of an axisymmetric displacement (u_r, u_z) at radius r: in-plane ``sym grad u`` and hoop ``u_r / r``.
 With e(u) the deviator of this strain in three dimensions, mu the shear modulus, K the bulk modulus and the pressure
@@ -21,7 +21,7 @@ from skfem.helpers import ddot, div, grad, sym_grad
 
 
 def bilinear(form: Callable[..., Any]) -> BilinearForm:
-    """scikit-fem's form of an integrand, typed."""
+    """Typed decorator that turns an integrand into a form of scikit-fem."""
     return BilinearForm(form)
 
 
@@ -54,7 +54,7 @@ def volume(u: Any, v: Any, w: Any) -> Any:
 
 @bilinear
 def constraint(u: Any, q: Any, w: Any) -> Any:
-    """``- q div u``."""
+    """``- q div u``, which couples pressure and displacement."""
     return -q * divergence(u, w) * measure(w)
 
 
@@ -74,7 +74,7 @@ def displacement_gradient(u: Any, v: Any, w: Any) -> Any:
 def membrane(u: Any, v: Any, w: Any) -> Any:
     """``(2 mu / r) u_r v_r`` on the outer edge of layers with a face that slides; keyword mu.
 
-    It stands for the layer beyond the edge. Far away each sliding sheet is in plane stress with u_r = C / r. Hence
+    It replaces the layer beyond the edge. Far away each sliding sheet is in plane stress with u_r = C / r. Hence
     sigma_rr = E/(1 - nu^2) (u_r,r + nu u_r/r) = -2 mu u_r / r, at every depth and every nu.
     """
     return 2 * w.mu / w.x[0] * u[0] * v[0] * measure(w)

@@ -13,7 +13,7 @@ from itertools import pairwise
 import numpy as np
 
 from contact import ElasticBase, ElasticLayer, LayerStack, Scene, UnsupportedSceneError
-from contact.answer.one_circle import Circle, never_touches_beside, refuse_touching
+from contact.answer.one_circle import Circle, cannot_touch_outside, refuse_touching
 from contact.records.validation import FloatArray
 from mdr.contact_surface import Surface
 
@@ -96,7 +96,7 @@ def _radii(surface: Surface) -> FloatArray:
 
 def is_touched_nowhere(scene: Scene) -> bool:
     """Whether no touch outside the contact is possible: convex indenters on one layer, or on stiffening layers."""
-    return never_touches_beside(scene) or (scene.indenter.is_convex and _stiffens_downwards(scene.layer))
+    return cannot_touch_outside(scene) or (scene.indenter.is_convex and _stiffens_downwards(scene.layer))
 
 
 def refuse_touching_outside(scene: Scene, surface: Surface) -> None:

@@ -30,7 +30,7 @@ from contact import (
     StageLog,
     UnsupportedSceneError,
 )
-from contact.answer.friction import told_of_friction
+from contact.answer.friction import friction_notes
 from contact.answer.inside import InteriorFields, KnownContact
 from contact.answer.solution import Setting, StatedErrors
 from contact.records.validation import FloatArray
@@ -88,7 +88,7 @@ def solve_elastic(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
         error_estimate=errors,
         cost=log.cost(unknowns=springs.punches.unknowns(float(radius.max()) / springs.unit)),
         stages=log.records,
-        notes=told_of_friction(scene.layer, state.radius),
+        notes=friction_notes(scene.layer, state.radius),
         fields=PathFields(scene, springs, state.radius, state.depth, flat_punch, settings),
     )
 

@@ -21,7 +21,7 @@ from scipy.interpolate import CubicSpline
 from bem.flat_punch import FlatPunchSource
 from contact import ContactPath, IndentationDepths, NormalForces, NotConvergedError, Scene, StageLog
 from contact import UnsupportedSceneError as Unsupported
-from contact.answer.friction import told_of_friction
+from contact.answer.friction import friction_notes
 from contact.answer.solution import Setting, StatedErrors
 from contact.records.validation import FloatArray
 from contact.scene.shapes import Flat, Raised, Shape
@@ -108,7 +108,7 @@ def solve_shape(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[str
         error_estimate=StatedErrors(_errors(scene, path, expansion, fields), "mdr"),
         cost=log.cost(unknowns=0),
         stages=log.records,
-        notes=(NOTE, *told_of_friction(scene.layer, expansion.radius)),
+        notes=(NOTE, *friction_notes(scene.layer, expansion.radius)),
         fields=fields,
     )
 

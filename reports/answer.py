@@ -17,7 +17,7 @@ from contact import (
     StageRecord,
 )
 from contact.answer.evidence import SYMBOLS
-from contact.answer.friction import told_of_friction
+from contact.answer.friction import friction_notes
 from contact.answer.small_strains import depth_note, depths_of
 from contact.answer.solution import scene_line
 from contact.records.units import prefix_for
@@ -148,7 +148,7 @@ def solution_notes(solution: Solution) -> list[tuple[str, str]]:
     warning = depth_note(solution.scene, depths_of(solution))
     replaced: tuple[str, ...] = ()
     if isinstance(solution.scene.layer, Layer) and isinstance(solution, ContactPath):
-        replaced = told_of_friction(solution.scene.layer, solution.contact_radius)
+        replaced = friction_notes(solution.scene.layer, solution.contact_radius)
     notes = [("note", note) for note in solution.notes if note not in (warning, *replaced)]
     return [("warning", warning), *notes] if warning else notes
 

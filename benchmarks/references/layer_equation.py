@@ -1,12 +1,11 @@
-"""Flat punches and profiles on layers from the Fredholm equation of the kernel, written down in extended precision.
+"""Flat punches and profiles on layers from the Fredholm equation of the kernel, in extended precision.
 
 With lengths in units of the thickness and stresses in units of E*, the Abel density phi of a contact of radius a obeys
 
     phi(x) - (2/pi) int_0^a L(x, t) phi(t) dt = W(x),    L(x, t) = int_0^inf (1 - chi(k)) cos(k x) cos(k t) dk,
 
 with W = 1 for the flat punch at unit depth and W = g(x), the half-space transform of Eq. (15), for a profile; the
-kernel chi is that of Eqs. (29) and (31). Nothing here is shared with the solvers: neither code, nor quadrature, nor
-precision.
+kernel chi is that of Eqs. (29) and (31). The solvers share neither code nor quadrature nor precision with this module.
 """
 
 from collections.abc import Callable, Sequence
@@ -17,11 +16,11 @@ from mpmath import mp, mpf
 
 Function = Callable[[mpf], mpf]
 
-# Working precision in decimal digits; the kernel as printed loses ten of them at small wavenumbers.
+# Working precision in decimal digits; the printed formula of the kernel loses ten of them at small wavenumbers.
 DIGITS = 34
-# Wavenumbers beyond this are left out: 1 - chi has fallen to exp(-2 k) k^2, below 1e-19.
+# Largest wavenumber: beyond it 1 - chi, which falls like k^2 exp(-2 k), is below 1e-19.
 LARGEST_WAVENUMBER = 24
-# Panels in k are this wide, so that the nearest poles of chi, about one away from the axis, do not slow the rule down.
+# Width of panels in k: the nearest poles of chi, at a distance of about one from the axis, do not limit convergence.
 PANEL = mpf(1) / 2
 # Gauss nodes on each panel.
 NODES = 16
@@ -49,21 +48,21 @@ def gauss(low: mpf, high: mpf, count: int) -> tuple[list[mpf], list[mpf]]:
 
 
 def _legendre(count: int, x: mpf) -> tuple[mpf, mpf]:
-    """P_n and its derivative."""
-    before, now = mpf(1), x
+    """Legendre polynomial P_n and its derivative at x."""
+    previous, current = mpf(1), x
     for n in range(2, count + 1):
-        before, now = now, ((2 * n - 1) * x * now - (n - 1) * before) / n
-    return now, count * (x * now - before) / (x**2 - 1)
+        previous, current = current, ((2 * n - 1) * x * current - (n - 1) * previous) / n
+    return current, count * (x * current - previous) / (x**2 - 1)
 
 
 @dataclass(frozen=True)
 class DensityInDigits:
-    """phi of one right-hand side: W plus a smooth part, known at Gauss nodes and continued by the equation itself.
+    """Abel density phi of one right-hand side W: W plus a smooth part, evaluated by the equation at any x.
 
     Attributes:
-        value: phi(x).
-        slope: phi'(x) - W'(x).
-        total: int_0^a phi dx.
+        value: Function phi(x).
+        slope: Function phi'(x) - W'(x).
+        total: Integral int_0^a phi dx.
     """
 
     value: Function
@@ -72,7 +71,13 @@ class DensityInDigits:
 
 
 class Contact:
-    """One contact radius a (over the thickness) on one layer."""
+    """Discrete equation for one contact radius on one layer.
+
+    Args:
+        ratio: Contact radius over thickness, a/h.
+        poissons_ratio: Poisson's ratio of a bonded layer; None for an unbonded layer.
+        nodes: Number of Gauss nodes on [0, a].
+    """
 
     def __init__(self, ratio: mpf, poissons_ratio: mpf | None, nodes: int) -> None:
         self.a = mpf(ratio)
@@ -89,83 +94,85 @@ class Contact:
             self._matrix[i, i] += 1
 
     def density(self, source: Function, breaks: Sequence[mpf] = ()) -> DensityInDigits:
-        """Solve for a right-hand side W that is smooth but for roots of x - b at ``breaks`` b."""
-        places, weights = self._rule(breaks)
-        given = [w * source(t) for t, w in zip(places, weights, strict=True)]
-        # Moments int W(t) cos(k t) dt, so that the smooth part alone is left unknown.
-        moments = [mp.fdot(given, [mp.cos(k * t) for t in places]) for k in self._k]
+        """Density phi of a right-hand side W(x) that is smooth except for roots of x - b at ``breaks`` b."""
+        nodes, weights = self._rule(breaks)
+        loaded = [w * source(t) for t, w in zip(nodes, weights, strict=True)]
+        # Moments int W(t) cos(k t) dt, so that only the smooth part is unknown.
+        moments = [mp.fdot(loaded, [mp.cos(k * t) for t in nodes]) for k in self._k]
         smooth = self._solved([self._applied(moments, row) for row in self._cos])
         loads = [w * s for w, s in zip(self._w, smooth, strict=True)]
-        total = [m + mp.fdot(loads, [row[n] for row in self._cos]) for n, m in enumerate(moments)]
+        all_moments = [m + mp.fdot(loads, [row[n] for row in self._cos]) for n, m in enumerate(moments)]
         return DensityInDigits(
-            value=lambda x: source(x) + self._applied(total, [mp.cos(k * x) for k in self._k]),
-            slope=lambda x: self._applied(total, [-k * mp.sin(k * x) for k in self._k]),
-            total=mp.fsum(given) + mp.fsum(loads),
+            value=lambda x: source(x) + self._applied(all_moments, [mp.cos(k * x) for k in self._k]),
+            slope=lambda x: self._applied(all_moments, [-k * mp.sin(k * x) for k in self._k]),
+            total=mp.fsum(loaded) + mp.fsum(loads),
         )
 
     @property
     def first_order(self) -> mpf:
-        """(2/pi) int (1 - chi) dk."""
+        """Coefficient alpha = (2/pi) int (1 - chi) dk, first order of kbar in a/h."""
         return mp.fsum(self._weight)
 
     def _applied(self, moments: Sequence[mpf], row: Sequence[mpf]) -> mpf:
+        """(2/pi) int (1 - chi) moments(k) row(k) dk."""
         return mp.fdot(moments, [w * c for w, c in zip(self._weight, row, strict=True)])
 
     def _solved(self, right: list[mpf]) -> list[mpf]:
+        """Values at the Gauss nodes that solve the discrete equation."""
         return list(mp.lu_solve(self._matrix, mp.matrix(right)))
 
     def _wavenumbers(self, poissons_ratio: mpf | None) -> tuple[list[mpf], list[mpf]]:
-        """Nodes k, and weights that hold (2/pi) (1 - chi(k))."""
+        """Nodes k, and quadrature weights times (2/pi) (1 - chi(k))."""
         width = PANEL / (1 + self.a / 8)
         nodes, weights = gauss(mpf(0), mpf(1), NODES)
         k = [width * (n + x) for n in range(int(LARGEST_WAVENUMBER / width) + 1) for x in nodes]
-        own = [width * w for _ in range(len(k) // NODES) for w in weights]
-        return k, [2 / mp.pi * w * (1 - chi(q, poissons_ratio)) for q, w in zip(k, own, strict=True)]
+        panel_weights = [width * w for _ in range(len(k) // NODES) for w in weights]
+        return k, [2 / mp.pi * w * (1 - chi(q, poissons_ratio)) for q, w in zip(k, panel_weights, strict=True)]
 
     def _rule(self, breaks: Sequence[mpf]) -> tuple[list[mpf], list[mpf]]:
-        """Places and weights on [0, a], with x = b + s^2 beyond each break b, where the root is smooth in s."""
+        """Nodes and weights on [0, a], with x = b + s^2 beyond each break b, where roots of x - b are smooth in s."""
         ends = [mpf(0), *breaks, self.a]
-        places, weights = gauss(ends[0], ends[1], 2 * len(self._x))
+        nodes, weights = gauss(ends[0], ends[1], 2 * len(self._x))
         for b, end in pairwise(ends[1:]):
             s, w = gauss(mpf(0), mp.sqrt(end - b), 2 * len(self._x))
-            places = places + [b + v**2 for v in s]
+            nodes = nodes + [b + v**2 for v in s]
             weights = weights + [2 * v * u for v, u in zip(s, w, strict=True)]
-        return places, weights
+        return nodes, weights
 
 
 def punch(ratio: float | str, poissons_ratio: str | None, nodes: int) -> tuple[Contact, DensityInDigits]:
-    """The flat punch at unit depth."""
+    """Discrete equation of a contact radius, and the density of the flat punch at unit depth."""
     nu = None if poissons_ratio is None else mpf(poissons_ratio)
     contact = Contact(mpf(ratio), nu, nodes)
     return contact, contact.density(lambda x: mpf(1))
 
 
 def stiffness(ratio: str, nu: str | None, nodes: int) -> mpf:
-    """kbar = k_N/(2 E* a)."""
+    """Stiffness kbar = k_N/(2 E* a) of the flat punch."""
     contact, flat = punch(ratio, nu, nodes)
     return flat.total / contact.a
 
 
 def spring(ratio: mpf | str, nu: str | None, nodes: int) -> mpf:
-    """cbar = c_N/E* = phi(a)^2 of the flat punch."""
+    """Spring stiffness cbar = c_N/E* = phi(a)^2 of the flat punch."""
     contact, flat = punch(ratio, nu, nodes)
     return flat.value(contact.a) ** 2
 
 
 def pressed(contact: Contact, flat: DensityInDigits, profile: DensityInDigits) -> tuple[mpf, mpf]:
-    """Depth at which phi vanishes at the contact's edge, and the force over E*; lengths in thicknesses."""
+    """Depth at which phi vanishes at the contact edge, and force over E*; lengths over the thickness."""
     depth = profile.value(contact.a) / flat.value(contact.a)
     return depth, 2 * (depth * flat.total - profile.total)
 
 
 def paraboloid(ratio: str, nu: str | None, nodes: int) -> tuple[mpf, mpf]:
-    """delta R/h^2 and F R/(E* h^3), from g = x^2/R."""
+    """Depth delta R/h^2 and force F R/(E* h^3) of a paraboloid, from g = x^2/R."""
     contact, flat = punch(ratio, nu, nodes)
     return pressed(contact, flat, contact.density(lambda x: x**2))
 
 
 def truncated_cone(ratio: str, nu: str | None, nodes: int) -> tuple[mpf, mpf]:
-    """delta/(a tan) and F/(E* a^2 tan) for b = a/2, from g = x arccos(b/x) beyond b."""
+    """Depth delta/(a tan) and force F/(E* a^2 tan) of a truncated cone, b = a/2, from g = x arccos(b/x) beyond b."""
     contact, flat = punch(ratio, nu, nodes)
     b = contact.a / 2
     profile = contact.density(lambda x: x * mp.acos(b / x) if x > b else mpf(0), (b,))
@@ -174,7 +181,7 @@ def truncated_cone(ratio: str, nu: str | None, nodes: int) -> tuple[mpf, mpf]:
 
 
 def pressure(ratio: str, nu: str | None, nodes: int, places: Sequence[str]) -> list[mpf]:
-    """p/p_mean of the flat punch at r/a, Eq. (9): with t^2 = r^2 + y^2 no root is left under the integral."""
+    """Pressure p/p_mean of the flat punch at r/a = ``places``, Eq. (9), with t^2 = r^2 + y^2 to remove the root."""
     contact, flat = punch(ratio, nu, nodes)
     mean = 2 * flat.total / contact.a**2
     values = []
@@ -189,15 +196,16 @@ def pressure(ratio: str, nu: str | None, nodes: int, places: Sequence[str]) -> l
 
 
 def first_order(nu: str | None) -> mpf:
-    """alpha = (2/pi) int (1 - chi) dq, the first coefficient of kbar in a/h."""
+    """Coefficient alpha = (2/pi) int (1 - chi) dq, first order of kbar in a/h."""
     contact = Contact(mpf("0.01"), None if nu is None else mpf(nu), 4)
     return contact.first_order
 
 
 def largest_elongation(nu: str, near: str, nodes: int) -> tuple[mpf, mpf]:
-    """a/h where (a/h)/cbar is largest, Eq. (42), and the root of that maximum."""
+    """Ratio a/h at which (a/h)/cbar is largest, Eq. (42), and the square root of that maximum."""
 
     def logarithm(x: mpf) -> mpf:
+        """ln((a/h)/cbar) at x = a/h."""
         return mp.log(x / spring(x, nu, nodes))
 
     step = mpf("1e-6")

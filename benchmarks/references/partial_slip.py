@@ -15,11 +15,11 @@ over (-1, 1), phi even, psi odd,
 R_D Carlson's integral; G 1 = (2 t/pi) K(sqrt(1-t^2)). That psi is continuous at k gives mu. Where beta is small this is
 Spence's ln((1+k)/(1-k))/(2k) = (mu/beta) K(sqrt(1-k^2)). Outside the punch the transform of the surface is -beta H psi,
 from which the depth of a paraboloid follows, delta = a^2/(2 R I). Sinc quadrature on logarithmic points towards k and 1
-resolves the powers of the distance to them; principal values take every second point. Double precision: twelve digits
-repeat on other points. Nothing is shared with the solvers.
+resolves the powers of the distance to them; principal values use every second point. In double precision twelve digits
+are equal on other points. The solvers share no code with this module.
 
-Source: D. A. Spence, J. Elasticity 5 (1975) 297; V. I. Mossakovskii, J. Appl. Math. Mech. 27 (1963) 418. Their printed
-numbers were not at hand; limits of no coupling and of full stick are checked.
+Source: D. A. Spence, J. Elasticity 5 (1975) 297; V. I. Mossakovskii, J. Appl. Math. Mech. 27 (1963) 418. Checks are
+the limits of no coupling and of full stick, not their printed numbers.
 """
 
 from dataclasses import dataclass
@@ -29,26 +29,26 @@ from scipy.special import ellipk, elliprd, sici
 
 from contact.records.validation import FloatArray
 
-# Distance of the points in the logarithm of their distance to k: with 0.25 and 0.3 thirteen digits are the same.
+# Step of the points in the logarithm of their distance to k: with 0.25 and 0.3 thirteen digits are equal.
 STEP = 0.25
-# Reach of the points in the logarithm of the distance to k: what lies nearer counts with the root of its distance.
+# Range of the points in the logarithm of the distance to k; nearer points contribute like the root of their distance.
 REACH = 60.0
-# Rounds of the fixed-point iteration; it contracts by about beta times the larger of beta and mu.
+# Largest number of fixed-point iterations; they contract by about beta times the larger of beta and mu.
 MOST_ROUNDS = 400
-# Change of mu and phi at which it ends.
+# Change of mu and phi at which the iteration ends.
 SETTLED = 1e-13
 
 
 @dataclass(frozen=True)
 class PartialSlip:
-    """The contact of one nu and c/a.
+    """Numbers of the contact with one nu and c/a.
 
     Attributes:
-        coefficient: mu.
-        depth: delta R/a^2 of a paraboloid of radius R; 1 without friction.
-        force: F of a paraboloid over that of Hertz at the same depth.
-        stiffness: k_N of the flat punch over 2 E* a.
-        heat: dissipated by a paraboloid over F delta.
+        coefficient: Coefficient of friction mu.
+        depth: Depth delta R/a^2 of a paraboloid of radius R; 1 without friction.
+        force: Force F of a paraboloid over that of Hertz at the same depth.
+        stiffness: Stiffness k_N of the flat punch over 2 E* a.
+        heat: Energy dissipated by a paraboloid over F delta.
     """
 
     coefficient: float
@@ -60,7 +60,14 @@ class PartialSlip:
 
 @dataclass(frozen=True)
 class _Points:
-    """Points t on one stretch between its ends, with distances to both that have all their digits."""
+    """Quadrature points t of one interval, with distances to both ends free of cancellation, shape (n,) each.
+
+    Attributes:
+        t: Points.
+        left: Distances to the lower end.
+        right: Distances to the upper end.
+        weight: Derivatives dt/dz by the variable z = ln(left/right) of the quadrature.
+    """
 
     t: FloatArray
     left: FloatArray
@@ -69,13 +76,13 @@ class _Points:
 
     @classmethod
     def between(cls, low: float, high: float, places: FloatArray, shift: float) -> "_Points":
-        """At logarithmic places, of which the one at ``shift`` lies in the middle."""
+        """Points of [low, high] at values z = places - shift of ln(left/right)."""
         z, length = places - shift, high - low
         left, right = length / (1.0 + np.exp(-z)), length / (1.0 + np.exp(z))
         return cls(np.where(z < 0.0, low + left, high - right), left, right, left * right / length)
 
     def principal(self, step: float, z: FloatArray) -> FloatArray:
-        """(1/pi) PV int f/(t - x) over the stretch itself: every second point, without cancelling differences."""
+        """Matrix (n, n) of (1/pi) PV int f/(t - x) dt on the interval, by every second point, without cancellation."""
         there, here = z[None, :] / 2.0, z[:, None] / 2.0
         odd = (np.arange(z.size)[None, :] - np.arange(z.size)[:, None]) % 2 == 1
         apart = np.where(odd, np.sinh(there - here), 1.0)
@@ -83,7 +90,7 @@ class _Points:
 
 
 class HalfSpaceContact:
-    """The discrete equations for one k = c/a, on points this far apart in their logarithm."""
+    """Discrete equations for one k = c/a, on points with a ``step`` of the logarithmic variable."""
 
     def __init__(self, share: float, step: float) -> None:
         self.k, self.step = share, step
@@ -91,13 +98,18 @@ class HalfSpaceContact:
         places: FloatArray = np.asarray(step * np.arange(-count, count + 1), dtype=np.float64)
         outer = np.asarray(step * np.arange(-count, count + 1 + max(0, round(shift / step))), dtype=np.float64)
         self.stuck = _Points.between(-share, share, places, 0.0)
-        # Shifted, so that both stretches have the same distances to k.
+        # Shifted, so that both intervals have the same distances to k.
         self.slid = _Points.between(share, 1.0, outer, shift)
         self._transform_parts(places, outer - shift)
         self._slip_parts()
 
     def _transform_parts(self, inner: FloatArray, outer: FloatArray) -> None:
-        """Matrices of H between stretches; ``mirrored`` ones belong to -1 < t < -k."""
+        """Matrices of H between the sticking and the sliding interval; ``mirrored`` ones are those of -1 < t < -k.
+
+        Args:
+            inner: Values of ln(left/right) at the points of the sticking interval, shape (n,).
+            outer: Values of ln(left/right) at the points of the sliding interval, shape (m,).
+        """
         unit = self.step / np.pi
         stuck, slid, k = self.stuck, self.slid, self.k
         self.stuck_to_stuck, self.slid_to_slid = stuck.principal(self.step, inner), slid.principal(self.step, outer)
@@ -107,7 +119,7 @@ class HalfSpaceContact:
         self.mirrored_to_slid = -unit * slid.weight / (slid.t + slid.t[:, None])
         self.stuck_to_k, self.slid_to_k = -unit * stuck.weight / stuck.right, unit * slid.weight / slid.left
         self.mirrored_to_k = -unit * slid.weight / (slid.t + k)
-        # H of 1; that of t is 2/pi + t times it.
+        # H 1 on both intervals and at k; H t = 2/pi + t H 1.
         self.of_one = [
             np.log((stuck.right + 1.0 - k) / (stuck.left + 1.0 - k)) / np.pi,
             np.log(slid.right / (1.0 + slid.t)) / np.pi,
@@ -115,7 +127,7 @@ class HalfSpaceContact:
         ]
 
     def _slip_parts(self) -> None:
-        """G less the identity, on the sliding points and at k: indefinite integrals by Stenger's sinc rule."""
+        """Matrices of G - 1 at the sliding points and at k: indefinite integrals by Stenger's sinc rule."""
         t, weight = self.slid.t, self.step * self.slid.weight / self.slid.t**2
         ahead = np.arange(t.size)[None, :] - np.arange(t.size)[:, None]
         self.beyond = 0.5 + sici(np.pi * ahead)[0] / np.pi
@@ -126,7 +138,7 @@ class HalfSpaceContact:
         self.slip_of_one_at_k = 2.0 / np.pi * self.k * ellipk(1.0 - self.k**2)
 
     def transform(self, stuck: FloatArray, slid: FloatArray, parity: int) -> tuple[FloatArray, FloatArray, float]:
-        """H of a function that vanishes at k, on both stretches and at k."""
+        """H f on both intervals and at k, of a function f of given parity that vanishes at k."""
         return (
             self.stuck_to_stuck @ stuck + (self.slid_to_stuck + parity * self.mirrored_to_stuck) @ slid,
             self.stuck_to_slid @ stuck + (self.slid_to_slid + parity * self.mirrored_to_slid) @ slid,
@@ -134,34 +146,36 @@ class HalfSpaceContact:
         )
 
     def solve(self, poissons_ratio: float) -> PartialSlip:
-        """The coefficient for which c/a is k, and what follows.
+        """Coefficient of friction for which c/a = k, and the numbers of this contact.
 
         Raises:
-            ArithmeticError: the iteration does not settle.
+            ArithmeticError: the iteration does not converge.
         """
         beta = (1.0 - 2.0 * poissons_ratio) / (2.0 - 2.0 * poissons_ratio)
-        # phi less its value at k, that value, and mu.
+        # phi - phi(k) on both intervals, phi(k), and mu.
         inner, outer, at_k, mu = np.zeros_like(self.stuck.t), np.zeros_like(self.slid.t), 1.0, 0.0
         for _ in range(MOST_ROUNDS):
             first, second, third = self.transform(inner, outer, 1)
             slipping = outer + self.slip @ outer + at_k * self.slip_of_one
             slipping_at_k = float(self.slip_at_k @ outer) + at_k * self.slip_of_one_at_k
-            before, mu = mu, -beta * (third + at_k * self.of_one[2]) / slipping_at_k
+            last_mu, mu = mu, -beta * (third + at_k * self.of_one[2]) / slipping_at_k
             shear, sheared = -beta * (first + at_k * self.of_one[0]), mu * slipping
-            # psi = slope t and a rest that vanishes at k.
+            # psi = slope t + a remainder that vanishes at k.
             slope = mu * slipping_at_k / self.k
-            raised = self.transform(shear - slope * self.stuck.t, sheared - slope * self.slid.t, -1)
-            places = (self.stuck.t, self.slid.t, self.k)
-            full = [
-                1.0 + beta * (rest + slope * (2.0 / np.pi + place * log))
-                for rest, place, log in zip(raised, places, self.of_one, strict=True)
+            transforms = self.transform(shear - slope * self.stuck.t, sheared - slope * self.slid.t, -1)
+            points = (self.stuck.t, self.slid.t, self.k)
+            phi = [
+                1.0 + beta * (rest + slope * (2.0 / np.pi + point * log))
+                for rest, point, log in zip(transforms, points, self.of_one, strict=True)
             ]
-            moved = abs(full[2] - at_k) + abs(mu - before)
-            inner, outer, at_k = full[0] - full[2], full[1] - full[2], full[2]
-            if moved < SETTLED:
-                slid = sheared + beta * (second + at_k * self.of_one[1])
-                return self._numbers(beta, mu, (full[0], full[1]), (shear, sheared), slid)
-        raise ArithmeticError(f"partial slip at nu = {poissons_ratio:g}, c/a = {self.k:g} does not settle: {moved:.1g}")
+            change = abs(phi[2] - at_k) + abs(mu - last_mu)
+            inner, outer, at_k = phi[0] - phi[2], phi[1] - phi[2], phi[2]
+            if change < SETTLED:
+                slip = sheared + beta * (second + at_k * self.of_one[1])
+                return self._numbers(beta, mu, (phi[0], phi[1]), (shear, sheared), slip)
+        raise ArithmeticError(
+            f"partial slip at nu = {poissons_ratio:g}, c/a = {self.k:g} does not settle: {change:.1g}"
+        )
 
     def _numbers(
         self,
@@ -169,30 +183,32 @@ class HalfSpaceContact:
         mu: float,
         phi: tuple[FloatArray, FloatArray],
         psi: tuple[FloatArray, FloatArray],
-        moved: FloatArray,
+        slip: FloatArray,
     ) -> PartialSlip:
         """k_N is int phi; delta = a^2/(2 R I), I = 1/2 - (beta/pi) int psi (-ln(1-t^2)/t^3 - 1/t) dt.
 
-        A paraboloid's psi is that of all its increments, t^2 int_t^1 psi/s^3 ds; its work on the slip is the heat.
+        For a paraboloid psi is the sum over all increments, t^2 int_t^1 psi/s^3 ds; its work on the slip is the heat.
         """
         stuck, slid = self.step * self.stuck.weight / 2.0, self.step * self.slid.weight
         stiffness = float(stuck @ phi[0] + slid @ phi[1])
-        inside = _beside(np.abs(self.stuck.t), -np.log1p(-(self.stuck.t**2)))
-        beside = _beside(self.slid.t, -np.log(self.slid.right) - np.log1p(self.slid.t))
-        total = 0.5 - beta / np.pi * float(stuck @ (np.abs(psi[0]) * inside) + slid @ (psi[1] * beside))
+        sticking_kernel = _depth_kernel(np.abs(self.stuck.t), -np.log1p(-(self.stuck.t**2)))
+        sliding_kernel = _depth_kernel(self.slid.t, -np.log(self.slid.right) - np.log1p(self.slid.t))
+        total = 0.5 - beta / np.pi * float(
+            stuck @ (np.abs(psi[0]) * sticking_kernel) + slid @ (psi[1] * sliding_kernel)
+        )
         grown = self.slid.t**2 * (self.beyond @ (slid * psi[1] / self.slid.t**3))
-        heat = -1.2 * float(slid @ (grown * moved)) / stiffness
+        heat = -1.2 * float(slid @ (grown * slip)) / stiffness
         return PartialSlip(float(mu), 1.0 / (2.0 * total), stiffness * (2.0 * total) ** 0.5, stiffness, heat)
 
 
-def _beside(t: FloatArray, log: FloatArray) -> FloatArray:
-    """-ln(1-t^2)/t^3 - 1/t, by its series where that cancels."""
+def _depth_kernel(t: FloatArray, log: FloatArray) -> FloatArray:
+    """Function -ln(1-t^2)/t^3 - 1/t from ``log`` = -ln(1-t^2), by its series at small t."""
     small = t < 0.05
-    away = np.where(small, 1.0, t)
+    safe_t = np.where(small, 1.0, t)
     series = sum(t ** (2 * n - 1) / (n + 1) for n in range(1, 8))
-    return np.asarray(np.where(small, series, log / away**3 - 1.0 / away))
+    return np.asarray(np.where(small, series, log / safe_t**3 - 1.0 / safe_t))
 
 
 def partial_slip(poissons_ratio: float, share: float, step: float = STEP) -> PartialSlip:
-    """The contact that sticks on this share of its radius."""
+    """Numbers of the contact that sticks in r < ``share`` a."""
     return HalfSpaceContact(share, step).solve(poissons_ratio)

@@ -1,4 +1,4 @@
-"""Which reference numbers there are; ``python -m benchmarks.references.table`` computes them."""
+"""List of the reference numbers; ``python -m benchmarks.references.table`` computes them."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ from benchmarks.references import layer_equation, partial_slip, sphere_impact
 
 PLACE = Path(__file__).parents[2] / "cases" / "library" / "reference_numbers.toml"
 LAYERS: dict[str, str | None] = {f"bonded nu={nu}": nu for nu in ("0.3", "0.4", "0.45", "0.5")} | {"unbonded": None}
-# Gauss nodes that give at least twelve digits up to this a/h.
+# Number of Gauss nodes for at least twelve digits, by a/h.
 NODES = {"0.1": 16, "0.2": 16, "0.5": 18, "1": 20, "2": 24, "5": 34, "10": 50}
 PRESSURE_AT = ("0", "0.2", "0.4", "0.6", "0.8", "0.9", "0.95")
 PARABOLOIDS = {
@@ -26,13 +26,13 @@ CONES = {
     "unbonded": ("1", "2", "5"),
 }
 ELONGATIONS = {"0.5": "0.46", "0.45": "0.6", "0.4": "0.914"}
-# Thickness [mm] of the impacted layers; zero stands for the half-space.
+# Thickness [mm] of the layers under impact; zero is the half-space.
 THICKNESSES = ("0", "1", "2", "3")
-# Time steps to the largest depth: 200 leave 1.3e-8 of a restitution; on the half-space 400 and 800 agree to 4e-10.
+# Time steps until the largest depth: with 200 restitutions err by 1.3e-8; with 400 and 800 they agree to 4e-10.
 STEPS = 400
-# Poisson's ratio and c/a of paraboloids that stick in part: mu, delta R/a^2, F over Hertz's, heat over F delta follow.
+# Poisson's ratio and c/a of paraboloids with partial slip; the numbers are mu, delta R/a^2, F/F_Hertz, heat/(F delta).
 PARTIAL_SLIPS = (("0", "0.3"), ("0", "0.9"), ("0.3", "0.3"), ("0.3", "0.7"), ("0.45", "0.5"), ("0.49", "0.6"))
-# Digits that are written; where fewer are repeated, two more than those, so that their rounding does not count.
+# Written digits, and the digits written beyond `Entry.digits` if those are ten or fewer.
 KEPT, GUARD = 14, 2
 
 HEAD = """# Reference numbers, computed by `python -m benchmarks.references.table` in extended precision; do not edit.
@@ -47,9 +47,9 @@ class Entry:
 
     Attributes:
         kind: section of ``reference_numbers.toml``.
-        name: within the section.
-        compute: returns the numbers; takes nodes (or steps) to add to the usual ones.
-        digits: that a computation with other nodes repeats.
+        name: name within the section.
+        compute: function that returns the numbers, from the nodes (or steps) to add to the usual ones.
+        digits: number of digits that agree with a computation on other nodes.
     """
 
     kind: str
@@ -59,7 +59,7 @@ class Entry:
 
 
 def entries() -> Iterator[Entry]:
-    """Return every entry, those of one kind together."""
+    """All entries, sorted by kind."""
     for label, nu in LAYERS.items():
         for ratio in ("0.2", "1", "2"):
             yield _entry("stiffness", label, ratio, _single(layer_equation.stiffness, ratio, nu))
@@ -82,7 +82,10 @@ def entries() -> Iterator[Entry]:
 
 
 def _entry(kind: str, label: str, ratio: str, compute: Callable[[int], list[mpf]]) -> Entry:
+    """Entry of a layer at a ratio a/h, with the nodes of `NODES`."""
+
     def with_nodes(more: int) -> list[mpf]:
+        """Numbers with ``more`` nodes than usual."""
         return compute(NODES[ratio] + more)
 
     # The equation of a thin incompressible layer magnifies roundings: one digit less at a/h = 10.
@@ -116,14 +119,14 @@ def _impact(thickness: str, more: int) -> list[mpf]:
         springs = sphere_impact.SphereSprings()
         if thickness != "0":
             springs = sphere_impact.springs_of(mpf(thickness) / 1000, _springs())
-        found = sphere_impact.impact(springs, steps)
-    return [found.restitution, found.peak_force]
+        answer = sphere_impact.impact(springs, steps)
+    return [answer.restitution, answer.peak_force]
 
 
 def _partial_slip(nu: str, share: str, more: int) -> list[mpf]:
-    """In double precision, on points that lie farther apart by ``more`` hundredths."""
-    found = partial_slip.partial_slip(float(nu), float(share), partial_slip.STEP + more / 100)
-    return [mpf(value) for value in (found.coefficient, found.depth, found.force, found.heat)]
+    """mu, depth, force and heat in double precision, with a step that is larger by ``more`` hundredths."""
+    answer = partial_slip.partial_slip(float(nu), float(share), partial_slip.STEP + more / 100)
+    return [mpf(value) for value in (answer.coefficient, answer.depth, answer.force, answer.heat)]
 
 
 @cache
@@ -133,7 +136,7 @@ def _springs() -> tuple[list[mpf], list[mpf]]:
 
 
 def computed(entry: Entry, more: int = 0) -> list[mpf]:
-    """The numbers of an entry, on so many more nodes than usual."""
+    """Numbers of an entry with ``more`` nodes than usual."""
     with mp.workdps(layer_equation.DIGITS):
         return entry.compute(more)
 
@@ -145,8 +148,8 @@ def main() -> None:
         if entry.kind != kind:
             kind = entry.kind
             lines.append(f"\n[{kind}]\n")
-        kept = KEPT if entry.digits > 10 else entry.digits + GUARD
-        values = ", ".join(mp.nstr(value, kept, strip_zeros=False) for value in computed(entry))
+        digits = KEPT if entry.digits > 10 else entry.digits + GUARD
+        values = ", ".join(mp.nstr(value, digits, strip_zeros=False) for value in computed(entry))
         lines.append(f'"{entry.name}" = [{values}]\n')
     PLACE.write_text("".join(lines), encoding="utf-8")
 

@@ -1,5 +1,5 @@
-"""What an answer is, and what a method must offer.
+"""Answers of methods, and the interface of a method.
 
-Enters: arrays that a method computed. Leaves: a `Solution` with stated errors, stages and cost, read by cases and
+Input: arrays that a method computed. Output: a `Solution` with stated errors, stages and cost, used by cases and
 reports. Read `solution` first.
 """

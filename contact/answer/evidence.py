@@ -1,4 +1,4 @@
-"""Arrays of an answer with their stated errors. A non-finite number is refused here, so NaN never travels."""
+"""Arrays of an answer with their stated errors. Non-finite numbers are refused."""
 
 from __future__ import annotations
 
@@ -43,26 +43,26 @@ Force: TypeAlias = Annotated[float, Quantity("", "N")]
 
 
 class StatedErrors(Mapping[str, FloatArray]):
-    """Stated errors by quantity; those of surface fields may be functions, computed when they are first read.
+    """Stated errors by quantity. Errors of surface fields may be functions, which are evaluated at the first access.
 
     Args:
         errors: Arrays, or functions without arguments that return them.
-        method: Name of the method, for refusals.
+        method: Name of the method, for error messages.
     """
 
     def __init__(self, errors: Mapping[str, ArrayLike | Callable[[], FloatArray]], method: str) -> None:
         self._method = method
-        given: Any = errors._errors if isinstance(errors, StatedErrors) else errors
-        self._errors: dict[str, Any] = dict(given)
+        entries: Any = errors._errors if isinstance(errors, StatedErrors) else errors
+        self._errors: dict[str, Any] = dict(entries)
         for name in [name for name, error in self._errors.items() if not callable(error)]:
             self[name]
 
     @one_thread
     def __getitem__(self, name: str) -> FloatArray:
-        """The error of one quantity, read-only.
+        """Stated relative error of one quantity, read-only.
 
         Raises:
-            NotConvergedError: If it is not finite.
+            NotConvergedError: If the error is not finite.
         """
         error = self._errors[name]
         frozen = finite(f"error of {name}", error() if callable(error) else error, self._method)
@@ -79,13 +79,13 @@ class StatedErrors(Mapping[str, FloatArray]):
         return repr(dict(self))
 
     def __reduce__(self) -> tuple[type[StatedErrors], tuple[dict[str, FloatArray], str]]:
-        """Computed values alone travel to other processes."""
+        """Pickle the computed values, since functions cannot be pickled."""
         return StatedErrors, (dict(self), self._method)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class Evidence:
-    """Numbers of an answer, what was solved, how, and how accurate it is.
+    """Numbers of an answer with scene, method, settings, stated errors and cost.
 
     Subclasses annotate their arrays and numbers with a `Quantity`.
     """
@@ -104,7 +104,7 @@ class Evidence:
     notes: tuple[str, ...] = ()
 
     def __init_subclass__(cls) -> None:
-        """List the annotated arrays and numbers, with their symbols and units."""
+        """Register the annotated arrays and numbers of the subclass with their symbols and units."""
         for name, hint in cls.__annotations__.items():
             if isinstance(quantity := (*getattr(hint, "__metadata__", ()), None)[0], Quantity):
                 UNITS[name] = quantity.unit
@@ -130,19 +130,19 @@ class Evidence:
         return len(getattr(self, self.ARRAYS[0]))
 
     def scale(self, quantity: str) -> FloatArray:
-        """Magnitude to which a relative error of this quantity refers; its largest along a path that crosses zero.
+        """Magnitude to which a relative error of this quantity refers, shape (n,): the largest |q| along the path.
 
-        A residual that a method publishes among its errors, and that is no quantity of the answer, refers to one.
+        The scale of a residual in `error_estimate`, which is no quantity of the answer, is one.
         """
         values = self._magnitude(quantity)
         return np.full(values.shape, values.max(initial=0.0))
 
     def _magnitude(self, quantity: str) -> FloatArray:
-        """|q|, shape (n,); one, shape (1,), for what is no quantity of the answer."""
+        """|q|, shape (n,); one, shape (1,), if the answer has no quantity of this name."""
         return np.abs(np.atleast_1d(np.asarray(getattr(self, quantity, 1.0), dtype=np.float64)))
 
     def uncertainty(self, quantity: str) -> FloatArray:
-        """Absolute error estimate in the quantity's own unit.
+        """Absolute stated error of a quantity in its SI unit, shape (n,).
 
         Raises:
             InvalidInput: If the method states no error for this quantity.
@@ -153,10 +153,10 @@ class Evidence:
         return self.error_estimate[quantity] * self.scale(quantity)
 
     def refuse_step(self, step: int) -> None:
-        """Refuse a number of a state that the answer does not have.
+        """Refuse an index of a state that the answer does not have.
 
         Raises:
-            InvalidInput: If it is no whole number, or beyond the states.
+            InvalidInput: If the index is no whole number, or outside the states.
         """
         is_whole = isinstance(step, int | np.integer) and not isinstance(step, bool)
         if not (is_whole and -len(self) <= step < len(self)):
@@ -164,15 +164,15 @@ class Evidence:
 
 
 def finite(name: str, values: ArrayLike, method: str) -> FloatArray:
-    """A read-only float64 copy.
+    """Read-only float64 copy of finite values.
 
     Raises:
         NotConvergedError: If an entry is not finite.
     """
     array = np.array(values, dtype=np.float64)
     if not np.isfinite(array).all():
-        bad = np.argwhere(~np.isfinite(array))[0]
-        place = ", ".join(str(i) for i in bad)
-        raise NotConvergedError(f"{method}: {name} is {array[tuple(bad)]} at entry ({place}); refused as an answer")
+        first = np.argwhere(~np.isfinite(array))[0]
+        place = ", ".join(str(i) for i in first)
+        raise NotConvergedError(f"{method}: {name} is {array[tuple(first)]} at entry ({place}); refused as an answer")
     array.setflags(write=False)
     return array

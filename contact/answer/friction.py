@@ -1,4 +1,4 @@
-"""A note of frictionless answers on thin soft layers: how much dry friction may raise the force."""
+"""Note of frictionless answers on thin incompressible layers: an upper bound of the force with dry friction."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ _SLIDES = {"bonded": 0.75, "unbonded": 0.5}
 _COEFFICIENT = 0.1
 
 
-def told_of_friction(layer: ElasticLayer, radius: FloatArray) -> tuple[str, ...]:
-    """A note on the force with friction, on thin soft layers under frictionless contacts of these radii [m]; or none.
+def friction_notes(layer: ElasticLayer, radius: FloatArray) -> tuple[str, ...]:
+    """Note on the force with friction, for frictionless contacts of these radii [m] on thin incompressible layers.
 
     With u_r1 the radial displacement under the frictionless unit punch, F <= F_0/(1 - mu max |u_r1|) by reciprocity. On
-    several layers the slip depends on all of them, and has no bound without solving.
+    several layers the slip depends on all of them and has no such bound. Other layers have no note.
     """
     ratio, nu = float(np.max(radius, initial=0.0)) / layer.surface.thickness, layer.surface.poissons_ratio
     if nu < _NEARLY_INCOMPRESSIBLE or ratio < _THIN or not isinstance(layer, Layer | LayerStack):

@@ -1,4 +1,4 @@
-"""Displacement and stress inside the body under one contact."""
+"""Displacement and stress inside the layer under one contact."""
 
 from __future__ import annotations
 
@@ -19,27 +19,27 @@ from contact.scene.scene import Scene
 
 Searched: TypeAlias = Literal["von_mises", "interface_shear"]
 
-# Points closer to a sharp edge than this share of the contact radius count as on it; half of it admits larger stresses.
+# Points closer to a sharp edge than this share of the contact radius are refused. With half of it larger stresses pass.
 SURFACE = 1e-11
 # Depths larger by this share than an interface's lie below it; within 32 roundings they are the interface.
 _BELOW = 1e-13
 # Points deeper than a layer by so many roundings of its thickness lie on its base.
 _ROUNDED = 4.0 * float(np.finfo(float).eps)
-# Points of the first look along r and z; half as many may miss a maximum, twice as many take four times as long.
+# Samples of the first search along r and z; half as many may miss a maximum, twice as many take four times as long.
 _SAMPLES = 40
 # Where the surface has sharp edges, the search begins this share of the contact radius below.
 _BELOW_EDGES = 1e-9
-# So many of the best points of the first look are followed to their maximum.
+# Number of the best samples from which maxima are searched.
 _STARTS = 3
-# Places of a closer look around the best point, over its width, which is halved each time.
+# Points around the best one, over the width of the search, which is halved in each step, shape (2, 25).
 _CLOSER = np.stack(np.meshgrid(*[np.linspace(-1.0, 1.0, 5)] * 2)).reshape(2, -1)
-# Last width over the rectangle: within it, values near a maximum are equal to a rounding.
+# Final width of the search over the rectangle: within it values near a maximum are equal to rounding.
 _LAST = 1e-9
 
 
 @dataclass(frozen=True)
 class Extreme:
-    """The largest value of a field.
+    """Largest value of a field, and its place.
 
     Attributes:
         radius: Radius r [m].
@@ -84,7 +84,7 @@ class InsideFields:
 
     @property
     def von_mises(self) -> FloatArray:
-        """sqrt(3 J_2) [Pa]."""
+        """Von Mises stress sqrt(3 J_2) [Pa]."""
         rr, tt, zz, rz = self.radial_stress, self.hoop_stress, self.axial_stress, self.shear_stress
         return np.sqrt(((rr - tt) ** 2 + (tt - zz) ** 2 + (zz - rr) ** 2) / 2.0 + 3.0 * rz**2)
 
@@ -108,8 +108,8 @@ class KnownContact(NamedTuple):
     Attributes:
         radius: Contact radius a [m], with all digits of a prescribed one.
         radius_error: Relative error of the contact radius.
-        density_error: Relative error of the Abel density of its pressure, by default of the pressure itself.
-        edge_error: Error of that density's value at the edge, over E* [m].
+        density_error: Relative error of the Abel density of the pressure, or of the pressure itself.
+        edge_error: Error of the Abel density at the contact edge, over E* [m].
     """
 
     radius: float
@@ -119,21 +119,21 @@ class KnownContact(NamedTuple):
 
 
 class InteriorFields(Protocol):
-    """Fields of a method inside the body under one equilibrium."""
+    """Fields of a method inside the layer under one equilibrium."""
 
     def at(self, radius: FloatArray, depth: FloatArray) -> InsideFields:
-        """At points of shape (n,) inside the body."""
+        """Fields at points [m] of shape (n,) inside the layer."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Inside:
-    """The body under one equilibrium of a path.
+    """The layer under one equilibrium of a path.
 
     Attributes:
         fields: Fields of the method that solved the equilibrium.
         scene: The problem that was solved.
         contact_radius: Contact radius a [m] of the equilibrium.
-        singular_edge: Whether its pressure is infinite at the edge though the scene does not say so.
+        singular_edge: Whether the pressure at the edge is infinite although neither indenter nor adhesion makes it so.
     """
 
     fields: InteriorFields
@@ -146,7 +146,7 @@ class Inside:
         """Fields at points [m] of any shape, depth counted from the undeformed surface.
 
         Raises:
-            InvalidInput: A point outside the layer, or where a stress is infinite; no numbers, or shapes that differ.
+            InvalidInput: A point lies outside the layer or where a stress is infinite, is no number, or shapes differ.
         """
         r, z = _points(radius, depth)
         if (wrong := ~(np.isfinite(r) & (r >= 0.0))).any():
@@ -168,13 +168,13 @@ class Inside:
 
     @one_thread
     def largest(self, what: Searched) -> Extreme:
-        """Place and value of the largest "von_mises" stress or "interface_shear", by a search of the whole body.
+        """Place and value of the largest "von_mises" stress or "interface_shear", by a search of the whole layer.
 
         Raises:
-            InvalidInput: Where the maximum is infinite: edges of flat punches, kinks of compressible layers' indenters.
+            InvalidInput: The maximum is infinite, at an edge of a flat punch or a kink on a compressible layer.
         """
         if what not in ("von_mises", "interface_shear"):
-            raise InvalidInput(f"largest({what!r}): ask for 'von_mises' or 'interface_shear'")
+            raise InvalidInput(f"largest({what!r}): choose 'von_mises' or 'interface_shear'")
         faces, a, thickness = self._faces, self.contact_radius, self.scene.layer.thickness
         if what == "von_mises":
             self._refuse_infinite_maximum()
@@ -209,11 +209,12 @@ class Inside:
         return [*edges, a] if isinstance(indenter, FlatPunch) or adheres or self.singular_edge else edges
 
     def _refuse_infinite_maximum(self) -> None:
+        """Refuse a contact at a sharp edge of which the von Mises stress is infinite."""
         edges = self._edges
         if edges and (edges[-1] == self.contact_radius or self.scene.layer.surface.poissons_ratio < 0.5):
             raise InvalidInput(
-                f'largest("von_mises"): it is infinite at the sharp edge r = {edges[-1]:g} m of the surface; ask for '
-                "fields at points of interest"
+                f'largest("von_mises"): it is infinite at the sharp edge r = {edges[-1]:g} m of the surface; use '
+                "at(radius, depth) at points of interest"
             )
 
 
@@ -223,7 +224,7 @@ _NOTHING = InsideFields(**dict.fromkeys(_FIELDS, np.zeros(0)), error_estimate=_E
 
 
 def _largest(radii: ArrayLike, depths: ArrayLike, value: Callable[[FloatArray, FloatArray], FloatArray]) -> Extreme:
-    """Place and value of the largest value on a rectangle: all points first, then ever closer looks at the best."""
+    """Place and value of the maximum on a rectangle: samples first, then grids of falling width around the best."""
     points = np.stack(np.meshgrid(radii, depths)).reshape(2, -1)
     low, high = points.min(axis=1, keepdims=True), points.max(axis=1, keepdims=True)
     values = value(*points)
@@ -232,18 +233,18 @@ def _largest(radii: ArrayLike, depths: ArrayLike, value: Callable[[FloatArray, F
         best, top = points[:, [start]], values[start]
         width = (high - low) / (np.sqrt(values.size) - 1.0)
         while np.any(width > _LAST * (high - low)):
-            around = np.unique(np.clip(best + width * _CLOSER, low, high), axis=1)
-            closer = value(*around)
-            i = int(np.argmax(closer))
-            if closer[i] > top:
-                best, top = around[:, [i]], closer[i]
+            grid = np.unique(np.clip(best + width * _CLOSER, low, high), axis=1)
+            refined = value(*grid)
+            i = int(np.argmax(refined))
+            if refined[i] > top:
+                best, top = grid[:, [i]], refined[i]
             width = width / 2.0
         extremes.append(Extreme(float(best[0, 0]), float(best[1, 0]), float(top)))
     return max(extremes, key=lambda extreme: extreme.value)
 
 
 def _points(radius: ArrayLike, depth: ArrayLike) -> list[FloatArray]:
-    """Real coordinates of one shape, not yet known to be finite."""
+    """Radius and depth as real arrays of one shape; they may be non-finite."""
     given = {"radius": radius, "depth": depth}
     for name, value in given.items():
         if np.ma.is_masked(value):

@@ -1,4 +1,4 @@
-"""What every method is: a frozen record of numerical settings with one verb, `solve`."""
+"""Interface of a method: a frozen record of numerical settings that solves scenes."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class Unsupported:
     """The method does not model the scene. False in a condition.
 
     Attributes:
-        reason: What is missing, in words a user can act on.
+        reason: What the method does not model, and a remedy.
     """
 
     reason: str
@@ -37,14 +37,14 @@ Support: TypeAlias = Supported | Unsupported
 
 
 def other_layer(method: str, layer: ElasticLayer) -> Unsupported | None:
-    """The refusal of a method that models plain layers only; None for those."""
+    """Refusal of other layers by a method that models one uniform `Layer` only; None for a `Layer`."""
     if isinstance(layer, Layer):
         return None
-    return Unsupported(f"{method} models one uniform layer or a half-space, not a {type(layer).__name__}; ask mdr")
+    return Unsupported(f"{method} models one uniform layer or a half-space, not a {type(layer).__name__}; use mdr")
 
 
 def not_round(method: str, scene: Scene, where: str = "") -> Unsupported | None:
-    """The refusal of a shape by a method that models it only there; None for bodies of revolution."""
+    """Refusal of a `Shape` by a method that models it only ``where``; None for bodies of revolution."""
     if not isinstance(scene.indenter, Shape):
         return None
     name = type(scene.indenter).__name__
@@ -70,4 +70,4 @@ class Method(Protocol):
         """
 
     def refined(self) -> Self:
-        """A copy of the method with half the discretisation length."""
+        """A copy of the method with half the size of cells."""

@@ -1,4 +1,4 @@
-"""Zero depth and zero force without adhesion: nothing touches, and no method need compute it."""
+"""Steps of zero depth or force without adhesion: there is no contact, and all quantities are zero."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ F = TypeVar("F", bound=Callable[..., Any])
 
 
 def without_contact(solve: F) -> F:
-    """A `solve` that computes the steps that press only, and answers zeros for the others."""
+    """A `solve` that computes only steps of positive depth or force, and returns zeros for the others."""
 
     @functools.wraps(solve)
     def wrapped(method: Any, scene: Scene) -> Any:
-        """The method's answer with the steps that do not press filled in."""
+        """The answer of the method, with zeros at steps of zero depth or force."""
         loading = scene.loading
         adheres = scene.effect(Adhesion) is not None
         if adheres or not isinstance(loading, IndentationDepths | NormalForces) or np.all(loading.values):
@@ -42,11 +42,11 @@ def without_contact(solve: F) -> F:
 
 @dataclasses.dataclass(frozen=True)
 class _PressedFields:
-    """Fields of the steps that press, by their numbers in the whole path.
+    """Fields of the steps with contact, by their index in the whole path.
 
     Attributes:
-        fields: Fields of the method, which solved the pressed steps alone.
-        numbers: Number of each step of the path among the pressed ones; that of a step without contact is never used.
+        fields: Fields of the method, which solved the steps with contact only.
+        numbers: Index of each step of the path among those with contact; unused for a step without contact.
     """
 
     fields: Any
@@ -63,10 +63,10 @@ class _PressedFields:
 
 
 def _with_zeros(path: ContactPath, scene: Scene, presses: BoolArray) -> ContactPath:
-    """The path with zeros at the steps that do not press."""
+    """The path with zeros at the steps without contact."""
 
     def with_zeros(values: FloatArray) -> FloatArray:
-        """One value per step of the scene from one per pressed step; anything else unchanged."""
+        """One value per step of the scene from one per step with contact; other arrays are returned unchanged."""
         if np.size(values) != presses.sum():
             return values
         every = np.zeros(presses.size)

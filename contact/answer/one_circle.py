@@ -1,6 +1,7 @@
-"""Whether an indenter touches the surface outside its circle of contact, where its answer would be silently wrong.
+"""Whether an indenter touches the surface outside its circle of contact: then the answer would be silently wrong.
 
-An indenter whose slope never falls (`Profile.is_convex`) cannot on one uniform layer. Contact grows by flat punches,
+An indenter whose slope never falls (`Profile.is_convex`) cannot touch there on one uniform layer. Contact
+grows by flat punches,
 
     gap(r; a) = int_a^r [1 - U(r; x)] g'(x) dx,    U: displacement of the surface outside a unit punch of radius x,
 
@@ -9,7 +10,7 @@ profile is a sum of truncated cones, gaps at one contact radius add up, and g of
 half-space because r f' does not fall, on thin incompressible layers because f exceeds its mean within r, and in between
 as computed (`tests/verification/test_one_circle.py`). A profile that is only monotone can touch: a step on its flank.
 Any profile can where layers differ: g falls over a stretch of radii under a stiff film on a soft base.
-The same integral says that, where g rises within the largest contact, the largest contact has the smallest gaps.
+By the same integral the largest contact has the smallest gaps if g rises within it.
 """
 
 from __future__ import annotations
@@ -27,14 +28,14 @@ from contact.scene.scene import Scene
 
 # Samples between two neighbouring breakpoints of the profile, the outer one included.
 SAMPLES = 6
-# A profile without an end is sampled out to so many contact radii.
+# Largest sampled radius of a profile without an end, in contact radii.
 FARTHEST = 1e3
-# Distances from the edge, over the smaller of contact radius and thickness, where a bulge is looked for.
+# Distances from the edge, over the smaller of contact radius and thickness, at which a bulge is sampled.
 PROBES = np.geomspace(0.01, 10.0, 16)
-# Heights above so many times the highest bulge at the probes are out of its reach. A bulge is as wide as it is far from
-# the edge, and the distances of two probes differ by a factor of 1.6, so that one of them sees most of it.
+# Heights above this multiple of the highest bulge at the probes are out of its reach. The width of a bulge equals its
+# distance from the edge. Distances of two probes differ by a factor of 1.6, so that one of them lies near its top.
 REACH = 2.0
-# Narrowings of the place of a smallest gap, each by a factor of eight.
+# Number of steps that narrow the place of a smallest gap, each by a factor of eight.
 NARROWINGS = 3
 
 
@@ -46,7 +47,7 @@ class Circle:
         contact_radius: Contact radius a [m].
         indentation_depth: Depth delta [m].
         displacement: Surface displacement w [m] at radii [m] beyond a, shape (n,).
-        tolerance: Overlap [m] that is still an error of the displacement.
+        tolerance: Largest overlap [m] that may be an error of the displacement.
     """
 
     contact_radius: float
@@ -64,7 +65,7 @@ class Circle:
         return gap
 
 
-def never_touches_beside(scene: Scene) -> bool:
+def cannot_touch_outside(scene: Scene) -> bool:
     """Whether the indenter cannot touch the surface outside the contact: it is convex, on one uniform layer."""
     return scene.indenter.is_convex and scene.layer.is_uniform
 
@@ -73,9 +74,9 @@ def refuse_touching(scene: Scene, circles: Iterable[Circle]) -> None:
     """Refuse circles outside which the indenter would touch.
 
     Raises:
-        UnsupportedSceneError: With the contact radius and the radius of the deepest overlap.
+        UnsupportedSceneError: The indenter touches outside; the message has the contact radius and the place.
     """
-    if never_touches_beside(scene):
+    if cannot_touch_outside(scene):
         return
     for circle in circles:
         where = touching_radius(scene, circle)
@@ -84,7 +85,7 @@ def refuse_touching(scene: Scene, circles: Iterable[Circle]) -> None:
 
 
 def no_single_circle(contact_radius: float, fault: str) -> UnsupportedSceneError:
-    """The refusal of a contact radius [m], in the words of all methods; the fault says what would happen, and where."""
+    """Error of a contact of a radius [m] with a fault, such as "would touch at r = 2 m"; common to all methods."""
     circle = f"a contact of radius {contact_radius:g} m {fault}: it is no single circle"
     return UnsupportedSceneError(f"{circle}; smooth the profile or press less")
 
@@ -96,7 +97,7 @@ def refuse_touching_path(path: ContactPath) -> ContactPath:
 
 
 def _circle(path: ContactPath, step: int) -> Circle:
-    """A step of a path; it may overlap by the error of its depth, and by that of its radius at the slope there."""
+    """Contact circle of a step of a path; its tolerance is the stated error of the depth plus that of the radius."""
     radius, depth = float(path.contact_radius[step]), float(path.indentation_depth[step])
     errors = path.error_estimate
     height = max(abs(depth), float(path.scene.indenter.height(radius)))
@@ -107,12 +108,12 @@ def _circle(path: ContactPath, step: int) -> Circle:
 def touching_radius(scene: Scene, circle: Circle) -> float | None:
     """Radius [m] of the deepest overlap outside a contact, or None."""
     a, profile = circle.contact_radius, scene.indenter
-    if never_touches_beside(scene) or not 0.0 < a < profile.max_radius:
+    if cannot_touch_outside(scene) or not 0.0 < a < profile.max_radius:
         return None
     r = _radii(profile, a)
     gap = profile.height(r) - circle.indentation_depth
     bulge = REACH * max(0.0, -float(circle.displacement(a + min(a, scene.layer.thickness) * PROBES).min()))
-    # Within reach of a bulge, and around minima, the gap itself is computed, not the height above the contact's depth.
+    # Within reach of a bulge and around minima the gap itself replaces the height above the indentation depth.
     places, computed = np.flatnonzero(gap <= bulge), np.zeros(r.size, dtype=bool)
     while places.size:
         gap[places], computed[places] = circle.gap(profile, r[places]), True
@@ -126,7 +127,7 @@ def touching_radius(scene: Scene, circle: Circle) -> float | None:
 
 
 def _radii(profile: Profile, contact_radius: float) -> FloatArray:
-    """The contact's edge, breakpoints beyond it, and radii between each and the one before."""
+    """Sample radii [m]: the contact edge, the breakpoints beyond it, and `SAMPLES` radii per interval between them."""
     ends = [contact_radius, *(r for r in profile.breakpoints if r > contact_radius)]
     if profile.max_radius == np.inf:
         ends += list(np.geomspace(ends[-1], FARTHEST * ends[-1], 10 * SAMPLES)[1:])
@@ -137,7 +138,7 @@ def _radii(profile: Profile, contact_radius: float) -> FloatArray:
 
 
 def _minima(gap: FloatArray) -> list[int]:
-    """Inner samples no higher than their neighbours, from which a parabola may fall to zero between them."""
+    """Indices of inner samples that are minima, and from which a parabola between samples may fall to zero."""
     inner = gap[1:-1]
     is_lowest = (inner <= gap[:-2]) & (inner <= gap[2:])
     may_touch = inner <= np.maximum(gap[:-2], gap[2:]) - inner
@@ -145,7 +146,7 @@ def _minima(gap: FloatArray) -> list[int]:
 
 
 def _narrowed(profile: Profile, circle: Circle, low: float, high: float) -> tuple[float, float]:
-    """The smallest gap between two radii, and where it is."""
+    """Smallest gap [m] between two radii [m], and its radius [m]."""
     for _ in range(NARROWINGS):
         r = np.linspace(low, high, 18)[1:-1]
         gap = circle.gap(profile, r)

@@ -25,7 +25,7 @@ class OneThread(ContextDecorator):
         self._threads_before: dict[str, tuple[Any, int]] = {}
 
     def __enter__(self) -> None:
-        """Set every loaded BLAS to one thread, and store its number of threads before."""
+        """Set every loaded BLAS to one thread, and store its previous number of threads."""
         with self._lock:
             self._inside += 1
             for library in _loaded_libraries("scipy.linalg._flapack" in sys.modules):
@@ -34,7 +34,7 @@ class OneThread(ContextDecorator):
                     library.set_num_threads(1)
 
     def __exit__(self, *error: object) -> None:
-        """Give each BLAS its former number of threads back if no other context is open."""
+        """Restore the previous number of threads of each BLAS if no other context is open."""
         with self._lock:
             self._inside -= 1
             if self._inside == 0:
@@ -45,7 +45,7 @@ class OneThread(ContextDecorator):
 
 @cache
 def _loaded_libraries(with_scipy: bool) -> tuple[Any, ...]:
-    """The BLAS libraries of this process, looked up once before and once after SciPy has loaded its own."""
+    """The BLAS libraries of this process, determined once before and once after SciPy has loaded its own."""
     from threadpoolctl import ThreadpoolController  # type: ignore[import-untyped]  # noqa: PLC0415 - ships no types
 
     return tuple(ThreadpoolController().select(user_api="blas").lib_controllers)

@@ -30,7 +30,7 @@ from contact.records.validation import FloatArray
 from contact.scene.effects import Adhesion
 from contact.scene.shapes import Shape
 
-# Quantities whose magnitude is that of another one.
+# Quantities whose errors are relative to another quantity.
 _SCALED_BY = {"surface_displacement": "indentation_depth", "stick_radius": "contact_radius"}
 
 
@@ -38,32 +38,32 @@ class Fields(Protocol):
     """Surface fields of one equilibrium."""
 
     def pressure(self, radius: FloatArray, step: int) -> FloatArray:
-        """p(r) [Pa], zero outside the contact."""
+        """Pressure p(r) [Pa] at radii [m] of one step, zero outside the contact."""
 
     def surface_displacement(self, radius: FloatArray, step: int) -> FloatArray:
-        """w(r) [m], positive into the layer."""
+        """Surface displacement w(r) [m] at radii [m] of one step, positive into the layer."""
 
 
 class ShapedFields(Protocol):
     """Fields of one equilibrium under a `Shape`."""
 
     def outline(self, angle: FloatArray, step: int) -> FloatArray:
-        """a(phi) [m]."""
+        """Outline a(phi) [m] of the contact in directions [rad], of one step."""
 
     def pressure(self, radius: FloatArray, step: int, angle: FloatArray) -> FloatArray:
-        """p(r, phi) [Pa], zero outside the contact."""
+        """Pressure p(r, phi) [Pa] at radii [m] and directions [rad] of one step, zero outside the contact."""
 
 
 class InstantFields(Protocol):
-    """Fields of a method at the instants of a history."""
+    """Fields of a method inside the layer at the instants of a history."""
 
     def inside(self, step: int) -> InteriorFields:
-        """At one of them, at which something touches; `singular_edge` says whether the pressure is infinite there."""
+        """Fields at an instant of contact; their `singular_edge` is True if the pressure at the edge is infinite."""
 
 
 @dataclass(frozen=True)
 class SampledFields:
-    """Surface fields at stored radii; other radii are refused, never interpolated.
+    """Surface fields at stored radii; other radii are refused, since interpolation would have an unknown error.
 
     Attributes:
         radius: Stored radii r [m], shape (m,) or (n, m): m radii for each of n steps, increasing.
@@ -76,14 +76,15 @@ class SampledFields:
     displacements: FloatArray
 
     def pressure(self, radius: FloatArray, step: int) -> FloatArray:
-        """p [Pa] at stored radii."""
+        """Pressure p [Pa] at stored radii [m]."""
         return self._at(self.pressures, radius, step)
 
     def surface_displacement(self, radius: FloatArray, step: int) -> FloatArray:
-        """w [m] at stored radii."""
+        """Surface displacement w [m] at stored radii [m]."""
         return self._at(self.displacements, radius, step)
 
     def _at(self, values: FloatArray, radius: FloatArray, step: int) -> FloatArray:
+        """Entries of ``values`` (n, m) of one step at stored radii."""
         stored = np.broadcast_to(self.radius, values.shape)[step]
         places = np.minimum(np.searchsorted(stored, radius), stored.size - 1)
         missing = radius[stored[places] != radius]
@@ -102,13 +103,13 @@ def sampled(
     step: int,
     *angle: FloatArray,
 ) -> FloatArray:
-    """A surface field of one step at radii [m], of a shape in directions [rad]; zero where nothing touches.
+    """Surface field of one step at radii [m], under a `Shape` also at directions [rad]; zero without contact.
 
     Raises:
-        InvalidInput: The method gave no fields, the answer has no such step, or a radius is negative or not finite.
+        InvalidInput: The answer has no such field or step, or a radius is negative or not finite.
     """
     if not hasattr(fields, name):
-        raise InvalidInput(f"{answer.method} gave no surface fields of this name ({name}); ask a method that does")
+        raise InvalidInput(f"{answer.method} gave no surface fields of this name ({name}); use a method that does")
     answer.refuse_step(step)
     r = np.asarray(radius, dtype=np.float64)
     if not np.all(np.isfinite(r) & (r >= 0.0)):
@@ -128,11 +129,16 @@ class ContactPath(Solution):
         indentation_depth: Depth delta [m], shape (n,).
         normal_force: Normal force F_N [N], shape (n,).
         contact_stiffness: Stiffness k_N = dF/d(delta) at fixed radius [N/m], shape (n,).
-        fields: Pressure and displacement at the surface, where the method gives them.
+        fields: Pressure and displacement at the surface; None if the method gives none.
     """
 
     OFFERS: ClassVar[tuple[str, ...]] = ("pressure(radius, step)", "surface_displacement(radius, step)")
-    ASKED: ClassVar[tuple[str, ...]] = ("contact_radius", "indentation_depth", "normal_force", "contact_stiffness")
+    ACCURACY_OF: ClassVar[tuple[str, ...]] = (
+        "contact_radius",
+        "indentation_depth",
+        "normal_force",
+        "contact_stiffness",
+    )
 
     contact_radius: Radii
     indentation_depth: Depths
@@ -143,8 +149,8 @@ class ContactPath(Solution):
     def scale(self, quantity: str) -> FloatArray:
         """Magnitude to which relative errors of a quantity refer, in its SI unit, shape (n,).
 
-        Without adhesion |q| of each step. With adhesion q may cross zero, and the magnitude is the largest |q| along
-        the path. Some quantities refer to another one:
+        Without adhesion it is |q| of each step. With adhesion q may cross zero, and it is the largest |q| along the
+        path. Errors of some quantities are relative to another one:
 
         - pressure and tangential traction: mean pressure |F|/(pi a^2), with adhesion the largest
           max(|F|, k_N |delta|)/(pi a^2) along the path,
@@ -160,6 +166,7 @@ class ContactPath(Solution):
         return super().scale(quantity) if self._adheres or not hasattr(self, quantity) else self._magnitude(quantity)
 
     def _mean_pressure(self) -> FloatArray:
+        """Scale of pressures [Pa], see `scale`, shape (n,); zero without contact."""
         force, area = np.abs(self.normal_force), np.pi * self.contact_radius**2
         if self._adheres:
             force = np.maximum(force, self.contact_stiffness * np.abs(self.indentation_depth))
@@ -173,7 +180,7 @@ class ContactPath(Solution):
     def pressure(self, radius: ArrayLike, step: int = 0, angle: ArrayLike = 0.0) -> FloatArray:
         """Contact pressure p(r) [Pa] of one step at radii [m], zero outside the contact.
 
-        Under a `Shape` it depends on the direction too: an angle [rad] for all radii or one for each.
+        Under a `Shape` it depends on the direction, too: ``angle`` [rad] is one for all radii or one per radius.
         """
         shape = np.shape(radius)
         along = (np.broadcast_to(angle, shape or 1),) if isinstance(self.scene.indenter, Shape) else ()
@@ -187,7 +194,7 @@ class ContactPath(Solution):
         """Distance a(phi) [m] of the edge from the axis at directions [rad]; the contact radius of a circle.
 
         Raises:
-            InvalidInput: If the answer has no such step, or came from a file, which keeps no outline of a `Shape`.
+            InvalidInput: If the answer has no such step, or was read from a file, which has no outline of a `Shape`.
         """
         self.refuse_step(step)
         phi = np.asarray(angle, dtype=np.float64)
@@ -202,18 +209,18 @@ class ContactPath(Solution):
         """Stresses and displacements inside the layer at one step: `.at(radius, depth)`, `.largest("von_mises")`.
 
         Raises:
-            InvalidInput: If the path has no such step, or nothing touches there.
+            InvalidInput: If the path has no such step, or the step has no contact.
             UnsupportedSceneError: If the method gives no fields inside.
         """
         inside = getattr(self.fields, "inside", None)
         if inside is None:
-            raise UnsupportedSceneError(f"{self.method} gives no fields inside the body; ask mdr or fem")
+            raise UnsupportedSceneError(f"{self.method} gives no fields inside the body; use mdr or fem")
         self.refuse_step(step)
         if "pressure" not in self.error_estimate:
             raise InvalidInput(f"{self.method} states no error of this pressure, nor of the fields that follow inside")
         radius = float(self.contact_radius[step])
         if radius == 0.0:
-            raise InvalidInput(f"step = {step}: nothing touches; ask for a step that presses")
+            raise InvalidInput(f"step = {step}: nothing touches; choose a step with contact")
         names = ("contact_radius", "pressure")
         errors = (np.broadcast_to(self.error_estimate.get(name, 0.0), len(self))[step] for name in names)
         fields = inside(step % len(self), KnownContact(radius, *map(float, errors)))
@@ -247,10 +254,10 @@ class ContactPath(Solution):
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class FrictionPath(ContactPath):
-    """Equilibria with friction, each reached by loading alone.
+    """Equilibria with friction, each reached by monotonic loading.
 
     Attributes:
-        stick_radius: Radius of the outermost point that sticks [m], shape (n,); the contact's own under full stick.
+        stick_radius: Radius of the outermost point that sticks [m], shape (n,); the contact radius under full stick.
         dissipated_energy: Energy turned into heat since the first touch [J], shape (n,).
     """
 
@@ -268,7 +275,7 @@ class FrictionPath(ContactPath):
         return sampled(self, self.fields, "tangential_traction", radius, step)
 
     def slip(self, radius: ArrayLike, step: int = 0) -> FloatArray:
-        """Slip [m] at radii [m]: outward sliding of the surface since it touched there, zero outside."""
+        """Slip [m] at radii [m]: outward displacement of each surface point since it touched, zero outside."""
         return sampled(self, self.fields, "slip", radius, step)
 
 
@@ -282,14 +289,14 @@ class ForcePath(Solution):
         contact_stiffness: Stiffness dF/d(delta) [N/m], shape (n,).
     """
 
-    ASKED: ClassVar[tuple[str, ...]] = ("indentation_depth", "normal_force", "contact_stiffness")
+    ACCURACY_OF: ClassVar[tuple[str, ...]] = ("indentation_depth", "normal_force", "contact_stiffness")
 
     indentation_depth: Depths
     normal_force: Forces
     contact_stiffness: Stiffnesses
 
     def scale(self, quantity: str) -> FloatArray:
-        """The quantity's own magnitude."""
+        """Magnitude |q| of each state, to which relative errors refer, shape (n,)."""
         return self._magnitude(quantity)
 
 
@@ -298,8 +305,8 @@ class CriticalPoint:
     """A state where the equilibrium branch gains or loses stability.
 
     Attributes:
-        control: "displacement", "force" or "machine" (the displacement of one that gives way).
-        kind: "pull-off", "snap-in" or "start" (detachment begins at a punch's edge).
+        control: Prescribed quantity: "displacement", "force" or "machine" (displacement of a compliant machine).
+        kind: Kind of the state: "pull-off", "snap-in" or "start" (detachment begins at the edge of a punch).
         contact_radius: Contact radius a [m].
         indentation_depth: Depth delta [m].
         normal_force: Normal force F_N [N].
@@ -321,12 +328,12 @@ class DetachmentPath(Solution):
         indentation_depth: Depth delta [m], shape (n,).
         normal_force: Normal force F_N [N], shape (n,).
         stable_displacement_control: Whether the state is stable at prescribed depth, shape (n,).
-        stable_force_control: Whether it is stable at prescribed force, shape (n,).
-        pull_off_force: Largest tensile force on the way, as a (negative) F_N [N], under the scene's control.
+        stable_force_control: Whether the state is stable at prescribed force, shape (n,).
+        pull_off_force: Largest tensile force until contact is lost, as a (negative) F_N [N], under the scene's control.
         pull_off_depth: Depth delta [m] where contact is lost under the scene's control.
         pull_off_contact_radius: Contact radius a [m] where contact is lost.
         force_at_loss: Normal force F_N [N] just before contact is lost; the tension is often less than the largest.
-        critical_points: All changes of stability under either control, and under that of a machine that gives way.
+        critical_points: All changes of stability under either control, and under that of a compliant machine.
     """
 
     CURVE_ALONE: ClassVar[bool] = True
@@ -352,7 +359,7 @@ class DetachmentPath(Solution):
         return {"critical_points": tuple(CriticalPoint(**point) for point in json.loads(tree["critical_points"]))}
 
 
-DetachmentPath.ASKED = (*DetachmentPath.ARRAYS, *DetachmentPath.SCALARS)
+DetachmentPath.ACCURACY_OF = (*DetachmentPath.ARRAYS, *DetachmentPath.SCALARS)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
@@ -363,11 +370,11 @@ class HistoryPath(Solution):
         time: Time t [s], shape (n,).
         indentation_depth: Depth delta [m], shape (n,).
         normal_force: Normal force F_N [N], shape (n,).
-        contact_radius: Contact radius a [m], shape (n,); zero where the indenter is free.
-        fields: Fields inside the body at the instants, where the method gives them.
+        contact_radius: Contact radius a [m], shape (n,); zero at instants without contact.
+        fields: Fields inside the layer at the instants; None if the method gives none.
     """
 
-    ASKED: ClassVar[tuple[str, ...]] = ("indentation_depth", "normal_force")
+    ACCURACY_OF: ClassVar[tuple[str, ...]] = ("indentation_depth", "normal_force")
 
     time: Times
     indentation_depth: Depths
@@ -376,20 +383,20 @@ class HistoryPath(Solution):
     fields: InstantFields | None = None
 
     def inside(self, step: int = 0) -> Inside:
-        """The body at one instant: `.at(radius, depth)` and `.largest("von_mises")`.
+        """Fields inside the layer at one instant: `.at(radius, depth)` and `.largest("von_mises")`.
 
         Stresses follow from the pressure of the instant, displacements from the whole history.
 
         Raises:
-            InvalidInput: If the path has no such step, or nothing touches then.
+            InvalidInput: If the path has no such step, or there is no contact at that instant.
             UnsupportedSceneError: If the method gives no fields inside.
         """
         if self.fields is None:
-            raise UnsupportedSceneError(f"{self.method} gives no fields inside the body under a history; ask mdr")
+            raise UnsupportedSceneError(f"{self.method} gives no fields inside the body under a history; use mdr")
         self.refuse_step(step)
         radius, instant = float(self.contact_radius[step]), float(self.time[step])
         if radius <= 0.0:
-            raise InvalidInput(f"step = {step}: nothing touches at t = {instant:g} s; ask for an instant of contact")
+            raise InvalidInput(f"step = {step}: nothing touches at t = {instant:g} s; choose an instant of contact")
         fields = self.fields.inside(step % len(self))
         singular = getattr(fields, "singular_edge", False)
         return Inside(fields=fields, scene=self.scene, contact_radius=radius, singular_edge=singular)
@@ -397,12 +404,12 @@ class HistoryPath(Solution):
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class FrictionHistory(HistoryPath):
-    """Response to a prescribed history of depth or force, at its own instants; dry friction does not depend on time.
+    """Response to a prescribed history of depth or force, at the given instants; dry friction is independent of time.
 
     Attributes:
         stick_radius: Radius of the outermost point that sticks [m], shape (n,).
         dissipated_energy: Energy turned into heat since the first touch [J], shape (n,).
-        surface: Tractions at the surface at each instant, where the method gives them.
+        surface: Tractions at the surface at each instant; None if the method gives none.
     """
 
     OFFERS: ClassVar[tuple[str, ...]] = ("pressure(radius, step)", "tangential_traction(radius, step)")
@@ -435,14 +442,14 @@ class ImpactHistory(Solution):
         dissipated_energy: Dissipated energy [J], shape (n,). Energy stored below a point of the surface when the
             contact leaves it does no more work on the indenter. MDR counts it as dissipated at once, finite elements
             as stored until it has relaxed.
-        peak_force: Largest force max F_N [N], between samples too.
+        peak_force: Largest force max F_N [N], also between samples.
         peak_depth: Largest depth max delta [m].
         peak_contact_radius: Largest contact radius max a [m].
     """
 
     CURVE_ALONE: ClassVar[bool] = True
     OFFERS: ClassVar[tuple[str, ...]] = ("energy_residual",)
-    ASKED: ClassVar[tuple[str, ...]] = ("coefficient_of_restitution", "peak_force", "peak_depth")
+    ACCURACY_OF: ClassVar[tuple[str, ...]] = ("coefficient_of_restitution", "peak_force", "peak_depth")
 
     time: Times
     indentation_depth: Depths

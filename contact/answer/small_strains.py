@@ -1,4 +1,4 @@
-"""How deep the indenter is pressed, in thicknesses: small strains are assumed, and no layer is thinner than nothing."""
+"""Limits of small strains: depths of a tenth of the thickness have a note, depths of the thickness are refused."""
 
 from __future__ import annotations
 
@@ -23,20 +23,20 @@ F = TypeVar("F", bound=Callable[..., Any])
 # Depth over thickness from which an answer has a note: the usual limit of an indentation test. At 0.2 the force of a
 # layer with nu = 0.3 is 5 % off, at 0.05 about 1 %.
 NOTED_SHARE = 0.1
-# Depth over thickness that is refused: there the indenter has reached the base of an undeformed layer.
+# Depth over thickness from which an answer is refused: the indenter has reached the base of the undeformed layer.
 REFUSED_SHARE = 1.0
-# An elastic base so many times as stiff as the surface is a base that an indenter cannot pass; a softer one gives way.
+# Least ratio of the moduli of elastic base and surface at which the base limits the depth; a softer one yields.
 _STIFF_BASE = 10.0
 
 
 def depth_share(scene: Scene, depth: ArrayLike) -> float:
     """Largest magnitude of the depth [m] over the thickness of the layer; 0 for half-spaces and soft bases."""
-    # Rounded, so that 0.5 um are a tenth of 5 um.
+    # Rounded, so that 0.5 um / 5 um equals 0.1.
     return round(float(np.max(np.abs(depth), initial=0.0)) / _thickness(scene.layer), 12)
 
 
 def depth_note(scene: Scene, depth: ArrayLike) -> str:
-    """The note of an answer at these depths [m]; empty where small strains are no concern."""
+    """Note of an answer with these depths [m]; empty below `NOTED_SHARE` of the thickness."""
     share = depth_share(scene, depth)
     if share < NOTED_SHARE:
         return ""
@@ -47,10 +47,10 @@ def depth_note(scene: Scene, depth: ArrayLike) -> str:
 
 
 def refuse_deep(scene: Scene, depth: ArrayLike) -> None:
-    """Refuse depths [m] from the thickness of the layer on, unless the scene is `beyond_small_strains`.
+    """Refuse depths [m] of the thickness of the layer or more, unless the scene is `beyond_small_strains`.
 
     Raises:
-        UnsupportedSceneError: With depth, thickness and remedy.
+        UnsupportedSceneError: A depth is too large; the message has depth, thickness and remedy.
     """
     share = depth_share(scene, depth)
     if share >= REFUSED_SHARE and not scene.beyond_small_strains:
@@ -63,11 +63,11 @@ def refuse_deep(scene: Scene, depth: ArrayLike) -> None:
 
 
 def within_small_strains(solve: F) -> F:
-    """A `solve` that refuses depths from the thickness on, and adds a note to answers at a tenth of it or more."""
+    """A `solve` that refuses depths of the thickness or more, and adds a note to answers at a tenth of it or more."""
 
     @functools.wraps(solve)
     def wrapped(method: Any, scene: Scene) -> Any:
-        """The method's answer with its note."""
+        """The answer of the method with a note on its depth."""
         match scene.loading:
             case IndentationDepths(values=depth) | DepthHistory(depth=depth):
                 refuse_deep(scene, depth)
@@ -77,10 +77,10 @@ def within_small_strains(solve: F) -> F:
 
 
 def with_depth_note(answer: Any) -> Any:
-    """The answer with a note on its depth, where it has a depth that needs one.
+    """The answer with a `depth_note`, if its depths need one.
 
     Raises:
-        UnsupportedSceneError: As `refuse_deep` does.
+        UnsupportedSceneError: A depth is the thickness or more, see `refuse_deep`.
     """
     if not isinstance(answer, Solution):
         return answer
@@ -92,12 +92,13 @@ def with_depth_note(answer: Any) -> Any:
 
 
 def depths_of(answer: Solution) -> FloatArray:
-    """All depths [m] of an answer, the peak of an impact among them; empty where it has none."""
+    """All depths [m] of an answer, with the peak of an impact; empty for an answer without depths."""
     depths = [getattr(answer, name, ()) for name in ("indentation_depth", "peak_depth")]
     return np.concatenate([np.ravel(values) for values in depths])
 
 
 def _thickness(layer: ElasticLayer) -> float:
+    """Thickness [m] that limits the depth; infinite for half-spaces and layers on soft bases."""
     base = getattr(layer, "support", None)
     if isinstance(base, ElasticBase) and base.youngs_modulus < _STIFF_BASE * layer.surface.youngs_modulus:
         return math.inf

@@ -1,6 +1,6 @@
-"""What every answer offers: a few lines of text, a curve, tables, HTML and a file.
+"""Base of every answer, with output as text, curve, tables, HTML and file.
 
-matplotlib, pandas, xarray and h5py are imported when they are asked for.
+matplotlib, pandas, xarray and h5py are imported at first use.
 """
 
 from __future__ import annotations
@@ -33,13 +33,13 @@ if TYPE_CHECKING:
 
 __all__ = ["Setting", "Solution", "StatedErrors", "scene_line"]
 
-# A line shows so many sublayers of a stack.
+# Largest number of sublayers of a stack in one line.
 _MOST_RECORDS: Final = 3
-# Draws answers; all that draws imports matplotlib.
+# Module that draws answers; it imports matplotlib.
 _DRAWING: Final = "reports.answer_plot"
 _EVERYWHERE: Final = ("uncertainty(quantity)", "error_estimate", "settings", "stages", "cost")
 _SCHEMA: Final = "contact-verification/solution/2"
-# Files of the first layout differ in one entry, which only detachments have.
+# Files of layout 1 differ in one entry, which only detachments have.
 _READABLE: Final = (_SCHEMA, "contact-verification/solution/1")
 
 
@@ -51,24 +51,24 @@ class Solution(Evidence):
         scene: The problem that was solved.
         method: Name of the method.
         settings: Numerical settings of the method.
-        error_estimate: Own estimate of each quantity's relative error, shape (n,) or scalar; relative to `scale`.
+        error_estimate: Stated error of each quantity, relative to its `scale`, shape (n,) or scalar.
         cost: Seconds, memory, unknowns, counters.
-        stages: Which computations ran.
-        notes: What a reader should know before relying on the numbers.
+        stages: Names, calls and times of the computations.
+        notes: Limits of validity and accuracy, one sentence each.
     """
 
     CURVE_ALONE: ClassVar[bool] = False
-    """Whether the method chose the states, so that they are drawn as a line."""
+    """Whether the method chooses the states: they are drawn as a line without points."""
     OFFERS: ClassVar[tuple[str, ...]] = ()
-    """Further verbs and fields of the answer, as `repr` lists them."""
-    ASKED: ClassVar[tuple[str, ...]] = ()
-    """Quantities that a requested accuracy applies to."""
+    """Further methods and fields of the answer in its `repr`."""
+    ACCURACY_OF: ClassVar[tuple[str, ...]] = ()
+    """Quantities to which a required accuracy applies."""
 
     def inside(self, step: int = 0) -> Inside:
-        """The body under one step, where the answer is a path of equilibria.
+        """Fields inside the layer at one step; answers with such fields override it.
 
         Raises:
-            InvalidInput: Here always.
+            InvalidInput: Always in this base class.
         """
         raise InvalidInput(
             f"{type(self).__name__}: fields inside are those of equilibria; prescribe radii, depths or forces without "
@@ -76,7 +76,7 @@ class Solution(Evidence):
         )
 
     def stated_error(self, name: str) -> FloatArray | None:
-        """Absolute stated error of a quantity, one per value; None if the method states none."""
+        """Absolute stated error of a quantity in its SI unit, shape (n,); None if the method states none."""
         if name not in self.error_estimate:
             return None
         return np.broadcast_to(self.uncertainty(name), np.shape(np.atleast_1d(getattr(self, name))))
@@ -84,7 +84,7 @@ class Solution(Evidence):
     # -- text ----------------------------------------------------------------------------------------------------------
 
     def __repr__(self) -> str:
-        """A few lines: method, scene, first and last values with units and stated errors, what to look at next."""
+        """Lines with method, scene, first and last values, units, stated errors, and further methods and fields."""
         derived = [name for name in self.error_estimate if isinstance(getattr(self, name, None), float)]
         names = dict.fromkeys([*self.ARRAYS, *self.SCALARS, *derived])
         lines = [f"{type(self).__name__} by {self.method}, {self._states()}", f"  scene: {scene_line(self.scene)}"]
@@ -94,6 +94,7 @@ class Solution(Evidence):
         return "\n".join([*lines, f"  next: {', '.join(f'.{offer}' for offer in offers)}"])
 
     def _states(self) -> str:
+        """Number of states as text."""
         return f"{len(self)} {'state' if len(self) == 1 else 'states'}"
 
     def _cells(self, name: str) -> tuple[str, str]:
@@ -103,7 +104,7 @@ class Solution(Evidence):
         return numbers, "no error stated" if stated is None else f"+- {_ends(stated, '{:.1g}')}"
 
     def _repr_html_(self) -> str:
-        """First and last values with units and stated errors, and the curve where matplotlib is installed."""
+        """HTML with first and last values, units and stated errors, and the curve if matplotlib is installed."""
         rows = [(name.replace("_", " "), *self._cells(name)) for name in (*self.ARRAYS, *self.SCALARS)]
         table = "<tr><th>quantity</th><th>first ... last</th><th>stated error</th></tr>"
         table += "".join(f"<tr>{''.join(f'<td>{escape(cell)}</td>' for cell in row)}</tr>" for row in rows)
@@ -115,12 +116,12 @@ class Solution(Evidence):
     # -- curve ---------------------------------------------------------------------------------------------------------
 
     def plot(self, y: str | None = None, x: str | None = None, axes: Any = None) -> Any:
-        """Draws one array of the answer over another, with units, and the stated error as a band.
+        """Draw one array of the answer over another, with units, and the stated error as a band.
 
         Args:
-            y: Name of the array on the vertical axis; by default the force, or the depth where the force is prescribed.
-            x: Name of the array on the horizontal axis; by default the time, or the depth where there is no time.
-            axes: Where to draw; by default on new axes.
+            y: Name of the array on the vertical axis; by default the force, or the depth if the force is prescribed.
+            x: Name of the array on the horizontal axis; by default the time, or the depth if there is no time.
+            axes: Axes of matplotlib to draw on; new axes by default.
 
         Returns:
             The axes of matplotlib.
@@ -132,7 +133,7 @@ class Solution(Evidence):
         return _imported(_DRAWING).plot(self, y, x, axes)
 
     def _svg(self) -> str:
-        """The curve of `plot` as inline SVG; empty where matplotlib is missing."""
+        """The curve of `plot` as inline SVG; empty if matplotlib is not installed."""
         try:
             return str(_imported(_DRAWING).inline_svg(self))
         except ImportError:
@@ -141,7 +142,7 @@ class Solution(Evidence):
     # -- tables --------------------------------------------------------------------------------------------------------
 
     def to_dataframe(self) -> pd.DataFrame:
-        """One row per state in SI, stated errors as columns `.._uncertainty`; units and scalars stand in `attrs`.
+        """One row per state in SI, stated errors as columns `.._uncertainty`; units and scalars are in `attrs`.
 
         Raises:
             ImportError: If pandas is not installed.
@@ -166,10 +167,11 @@ class Solution(Evidence):
         return arrays
 
     def _head(self) -> dict[str, Any]:
+        """Method and scene, for the attributes of tables."""
         return {"method": self.method, "scene": scene_line(self.scene)}
 
     def _columns(self) -> dict[str, Any]:
-        """Arrays (n,) with their stated errors, in SI, and whether states are stable."""
+        """Arrays (n,) with their stated errors, in SI, and flags of stability."""
         columns = {name: values for name, values in vars(self).items() if isinstance(values, np.ndarray)}
         stated = {f"{name}_uncertainty": self.stated_error(name) for name in self.ARRAYS}
         return columns | {name: values for name, values in stated.items() if values is not None}
@@ -177,17 +179,18 @@ class Solution(Evidence):
     # -- files ---------------------------------------------------------------------------------------------------------
 
     def save(self, path: str | Path) -> None:
-        """Write the answer to an HDF5 file, without the fields that it can still compute.
+        """Write the answer to an HDF5 file, without fields that are computed on demand.
 
         Raises:
             InvalidInput: If the file cannot be written.
         """
-        # Only answers that are written or read pay for the import of h5py.
+        # h5py takes long to import; only answers that are written or read need it.
         from contact.files.storage import write_tree  # noqa: PLC0415
 
         write_tree(path, self._tree())
 
     def _tree(self) -> dict[str, Any]:
+        """Entries of the file of the answer."""
         texts = {
             "scene": scene_to_mapping(self.scene),
             "cost": dataclasses.asdict(self.cost),
@@ -206,7 +209,7 @@ class Solution(Evidence):
 
     @classmethod
     def load(cls, path: str | Path) -> Self:
-        """Read an answer that `save` wrote; every number equals the stored one.
+        """Read an answer that `save` wrote, with equal numbers.
 
         Raises:
             InvalidInput: If the file is damaged, no stored answer, or one of another kind.
@@ -223,6 +226,7 @@ class Solution(Evidence):
 
     @classmethod
     def _of_tree(cls, tree: Mapping[str, Any]) -> Any:
+        """The answer from the entries of its file; the inverse of `_tree`."""
         if tree.get("schema") not in _READABLE:
             raise InvalidInput(f"schema = {shown(tree.get('schema'))}: this version reads {' and '.join(_READABLE)}")
         kinds = {kind_of_answer.__name__: kind_of_answer for kind_of_answer in _subclasses(cls)}
@@ -247,19 +251,20 @@ class Solution(Evidence):
 
     @classmethod
     def _further(cls, tree: Mapping[str, Any]) -> dict[str, Any]:
-        """Fields of this kind of answer that are no arrays."""
+        """Fields of this kind of answer that are no arrays, from the entries of its file."""
         return {}
 
 
 def _subclasses(cls: type[Any]) -> list[type[Any]]:
+    """The class and all classes derived from it."""
     return [cls, *(kind for direct in cls.__subclasses__() for kind in _subclasses(direct))]
 
 
 def _imported(name: str) -> Any:
-    """A module of an extra.
+    """Import a module that an extra installs.
 
     Raises:
-        ImportError: With what to install.
+        ImportError: The module is not installed; the message has the command that installs it.
     """
     try:
         return import_module(name)
@@ -268,18 +273,19 @@ def _imported(name: str) -> Any:
 
 
 def scene_line(scene: Scene) -> str:
-    """The scene in one line, however long its arrays are."""
+    """Text of the scene in one line; long arrays are abbreviated."""
     return ", ".join(_call(part) for part in (scene.layer, scene.indenter, scene.loading, *scene.effects))
 
 
 def _call(item: Record) -> str:
+    """Text of a record as a call of its class, with units and without fields that are None."""
     parts = ((field.name, getattr(item, field.name)) for field in dataclasses.fields(item))
     fields = (f"{name}={_value(value, unit_of(type(item), name))}" for name, value in parts if value is not None)
     return f"{type(item).__name__}({', '.join(fields)})"
 
 
 def _value(value: object, unit: str | None) -> str:
-    """A field's value: numbers with their unit and a prefix, at most three records of a list."""
+    """Text of a field: numbers with their unit and a prefix, at most `_MOST_RECORDS` records of a list."""
     if isinstance(value, Record):
         return _call(value)
     if isinstance(value, tuple) and all(isinstance(entry, Record) for entry in value):
@@ -297,5 +303,6 @@ def _value(value: object, unit: str | None) -> str:
 
 
 def _ends(values: FloatArray, form: str) -> str:
+    """Text of the first and the last value; only one if their texts are equal."""
     first, last = form.format(values[0]), form.format(values[-1])
     return first if first == last else f"{first} ... {last}"

@@ -1,4 +1,4 @@
-"""Stage log: which computations ran, how often and for how long. The raw data of the effect ledger and of all cost."""
+"""Stage log: names, numbers of calls and times of the computations in a solve; the data of all costs."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ class StageRecord:
     """One kind of computation within one solve.
 
     Attributes:
-        name: What was computed, such as "flat_punch_data".
+        name: Name of the computation, such as "flat_punch_data".
         calls: Number of calls.
-        wall_seconds: Own wall time [s]; time inside nested stages is theirs.
-        cpu_seconds: Own processor time [s].
-        bytes: Size of the arrays it made, as far as the method declares them.
+        wall_seconds: Wall time [s] without that of nested stages.
+        cpu_seconds: Processor time [s] without that of nested stages.
+        bytes: Size of the arrays of the stage, as far as the method declares them.
     """
 
     name: str
@@ -42,8 +42,8 @@ class Cost:
     Attributes:
         wall_seconds: Wall time [s].
         cpu_seconds: Processor time [s] of all threads, and of processes that the method started and that have ended.
-        peak_memory_bytes: High-water mark of the process so far, and of the largest process that it started; meaningful
-            in a process of its own.
+        peak_memory_bytes: Peak memory of the process since its start, plus that of the largest process that it started;
+            meaningful if the process does nothing else.
         unknowns: Size of the largest system solved.
         counters: Deterministic counts (factorisations, iterations, transforms, steps).
     """
@@ -56,7 +56,7 @@ class Cost:
 
 
 class StageLog:
-    """Collects stage times and counters during one solve. Nested stages are timed apart from their parents."""
+    """Stage times and counters of one solve. The time of a nested stage does not count for its parent."""
 
     def __init__(self) -> None:
         self._tallies: dict[str, list[float]] = {}  # calls, wall seconds, processor seconds, bytes
@@ -85,7 +85,7 @@ class StageLog:
         self._tallies[self._open[-1]][3] += sum(sizes)
 
     def _settle(self) -> None:
-        """Add the time since the last mark to the innermost open stage."""
+        """Add the time since the last call to the innermost open stage."""
         now = _now()
         if self._open:
             tally = self._tallies[self._open[-1]]
@@ -102,7 +102,7 @@ class StageLog:
         )
 
     def cost(self, *, unknowns: int) -> Cost:
-        """Cost since the log was made."""
+        """Cost since the log was created, for a system of ``unknowns`` unknowns."""
         wall, cpu = _now()
         return Cost(
             wall_seconds=wall - self._start[0],
@@ -114,6 +114,7 @@ class StageLog:
 
 
 def _now() -> tuple[float, float]:
+    """Wall and processor time [s]."""
     return time.perf_counter(), processor_seconds()
 
 
@@ -126,7 +127,7 @@ def processor_seconds() -> float:
 
 
 def peak_memory_bytes() -> int:
-    """High-water mark of this program's resident memory, plus that of the largest process it started; 0 on Windows."""
+    """Peak resident memory [bytes] of this process, plus that of the largest process it started; 0 on Windows."""
     if resource is None:
         return 0
     # `getrusage` counts bytes on macOS and kilobytes elsewhere.

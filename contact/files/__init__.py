@@ -1,5 +1,5 @@
 """Scenes and answers in files: TOML, its schema, and HDF5.
 
-Enters: a path or an open file. Leaves: the same records that Python code builds, or one clear error. Read
+Input: a path or an open file. Output: the same records that Python code builds, or one error with a remedy. Read
 `scene_file` first.
 """

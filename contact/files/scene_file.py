@@ -1,4 +1,4 @@
-"""Scenes as nested tables, so that they can be written in TOML and kept in HDF5 and JSON, and their JSON Schema."""
+"""Scenes as nested tables, for files in TOML, HDF5 and JSON, and their JSON Schema."""
 
 from __future__ import annotations
 
@@ -34,13 +34,14 @@ def load_scene(path: str | Path) -> Scene:
 
 
 def _tables(file: Path) -> dict[str, Any]:
+    """Tables of a TOML file."""
     try:
         text = read_bytes(file, "a scene").decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise InvalidInput(f"{file}: not a text file in UTF-8 (byte {error.start}); save it in UTF-8") from None
     if not text.strip():
         raise InvalidInput(f"{file}: the file is empty; a scene needs [layer], [indenter] and [loading]")
-    import tomllib  # noqa: PLC0415  # scenes written in Python do not pay for it
+    import tomllib  # noqa: PLC0415  # scenes written in Python do not need it
 
     try:
         return tomllib.loads(text)
@@ -56,10 +57,10 @@ def scene_from_mapping(mapping: Mapping[str, Any], folder: Path | None = None) -
 
     Args:
         mapping: Tables layer, indenter, loading and effects; numbers may have units, as in "5 um".
-        folder: That CSV files are named relative to; None where no file may be named.
+        folder: Folder of the CSV files that the scene names; None if it may name no file.
 
     Raises:
-        InvalidInput: All that is wrong, a line each: path of the offending entry, its value and the remedy.
+        InvalidInput: One line per problem: path of the offending entry, its value and the remedy.
     """
     if not isinstance(mapping, Mapping):
         raise InvalidInput(f"{shown(mapping)}: a scene is a table of layer, indenter, loading and effects")
@@ -67,7 +68,7 @@ def scene_from_mapping(mapping: Mapping[str, Any], folder: Path | None = None) -
 
 
 def _read(mapping: Mapping[str, Any], reading: Reading) -> Scene:
-    """The scene; where some dimensional numbers have units, all need one (0 and inf excepted)."""
+    """Scene of a mapping. If one dimensional number has a unit, all need one (0 and inf excepted)."""
     scene = read(Scene, _with_modulus(mapping, reading), "scene", reading)
     if reading.bare and reading.example:
         read(Scene, _with_modulus(mapping, reading), "scene", dataclasses.replace(reading, units_required=True))
@@ -75,7 +76,7 @@ def _read(mapping: Mapping[str, Any], reading: Reading) -> Scene:
 
 
 def _with_modulus(mapping: Mapping[str, Any], reading: Reading) -> Mapping[str, Any]:
-    """The tables of a scene; the modulus of a plain layer may be left out where a viscoelastic effect gives it."""
+    """Tables of a scene, with E of a `Layer` from its viscoelastic effect if the table has none."""
     layer, effects = mapping.get("layer"), mapping.get("effects")
     if not isinstance(layer, Mapping) or {"kind", "youngs_modulus"} & layer.keys() or not isinstance(effects, list):
         return mapping
@@ -87,21 +88,21 @@ def _with_modulus(mapping: Mapping[str, Any], reading: Reading) -> Mapping[str, 
         model = read(names[models[0]["kind"]], models[0], "effect", Reading(reading.folder))
         shear = model.relaxation.instantaneous_modulus
     except InvalidInput:
-        shear = 1.0  # the scene itself refuses the effect, with its place
+        shear = 1.0  # validation of the scene refuses the effect, with its path
     ratio = layer.get("poissons_ratio")
     nu = ratio if isinstance(ratio, int | float) and 0 <= ratio <= 0.5 else 0.5
     return {**mapping, "layer": {**layer, "youngs_modulus": Derived(2 * (1 + nu) * shear)}}
 
 
 def uses_units(path: str | Path) -> bool:
-    """Whether some number of a scene file has a unit."""
+    """Whether any number of a scene file has a unit."""
     reading = Reading(Path(path).parent)
     _read(_tables(Path(path)), reading)
     return bool(reading.example)
 
 
 def scene_to_mapping(scene: AnyScene) -> dict[str, Any]:
-    """The scene as nested dictionaries of plain numbers, strings and lists; nothing is lost."""
+    """The scene as nested dictionaries of numbers, strings and lists; `scene_from_mapping` restores it exactly."""
     flags = {"beyond_small_strains": True} if scene.beyond_small_strains else {}
     return flags | {
         "layer": table_of(scene.layer),
@@ -112,7 +113,7 @@ def scene_to_mapping(scene: AnyScene) -> dict[str, Any]:
 
 
 def table_of(item: Record) -> dict[str, Any]:
-    """A record's fields as numbers, texts, lists and tables; fields that are None are left out."""
+    """Fields of a record as numbers, texts, lists and tables; fields that are None are omitted."""
     values = ((field.name, getattr(item, field.name)) for field in dataclasses.fields(item))
     table = {name: _written(value) for name, value in values if value is not None}
     if isinstance(item, Layer) and item.is_half_space:
@@ -123,16 +124,17 @@ def table_of(item: Record) -> dict[str, Any]:
 
 
 def _written(value: object) -> Any:
+    """Value of a field as a number, text, list or table."""
     if isinstance(value, tuple):
         return [_written(part) for part in value]
     if isinstance(value, Record):
         return table_of(value)
     if isinstance(value, np.ndarray):
         return value.tolist()
-    # JSON has no infinity: it stands there as the text that the records read.
+    # JSON has no infinity: it is written as a text that records accept.
     return "inf" if isinstance(value, float) and math.isinf(value) else value
 
 
 def scene_schema() -> dict[str, Any]:
-    """The JSON Schema of what `load_scene` reads; relations between entries are checked by `load_scene` alone."""
+    """JSON Schema of scene files; only `load_scene` checks relations between entries."""
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **TypeAdapter(Scene).json_schema()}

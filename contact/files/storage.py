@@ -1,4 +1,4 @@
-"""HDF5 storage: nested mappings of arrays to a file and back without loss. The only user of h5py."""
+"""HDF5 storage of nested mappings of arrays, without loss of digits. No other module imports h5py."""
 
 from __future__ import annotations
 
@@ -17,20 +17,20 @@ from contact.records.errors import InvalidInput, shown
 Tree: TypeAlias = Mapping[str, Any]
 
 SEAL = b"contact-verification sha256 "  # a file begins with it, before the digest of its content
-# HDF5 leaves so many bytes to its user before its own; 512 is the smallest block that its format allows.
+# Bytes of the block before the content of HDF5, which is free for its user; 512 is the smallest that HDF5 allows.
 _BLOCK = 512
 
 
 def write_tree(path: str | Path, tree: Tree) -> None:
-    """Write nested mappings of arrays and scalars; the file appears complete or not at all.
+    """Write nested mappings of arrays and scalars; the file is complete or not written at all.
 
-    The file begins with a digest of its content (in the block that HDF5 leaves to its user), so that a damaged file is
-    refused before one number is read from it.
+    It begins with a digest of its content (in the user block of HDF5), so that a damaged file is refused before any
+    number is read.
 
     Raises:
         InvalidInput: If the folder cannot be written, the disk is full, or an entry is of another type.
     """
-    # The whole file is made in memory: HDF5 itself crashes when a disk fills up under it.
+    # The whole file is built in memory: HDF5 itself crashes on a full disk.
     with h5py.File("tree", "w", track_order=True, userblock_size=_BLOCK, driver="core", backing_store=False) as root:
         _write(root, tree)
         root.flush()
@@ -39,11 +39,12 @@ def write_tree(path: str | Path, tree: Tree) -> None:
 
 
 def _seal(content: bytes) -> bytes:
-    """The first block of a whole file."""
+    """First block of a file with this content: mark and digest."""
     return (SEAL + hashlib.sha256(content).hexdigest().encode()).ljust(_BLOCK, b"\0")
 
 
 def _write(group: h5py.Group, tree: Tree) -> None:
+    """Write arrays as datasets, scalars as attributes and mappings as groups of a group."""
     for name, value in tree.items():
         if isinstance(value, Mapping):
             _write(group.create_group(name, track_order=True), value)
@@ -54,14 +55,14 @@ def _write(group: h5py.Group, tree: Tree) -> None:
             if isinstance(value, np.ndarray):
                 group.create_dataset(name, data=value, track_times=False)
             else:
-                group.attrs[name] = h5py.Empty("f8") if value is None else value  # HDF5 knows no None
+                group.attrs[name] = h5py.Empty("f8") if value is None else value  # HDF5 has no None
         except (ValueError, TypeError, OverflowError, KeyError) as error:
-            # HDF5 holds no integer beyond 64 bits, no text with a zero byte and no objects of Python.
+            # HDF5 stores no integer beyond 64 bits, no text with a zero byte and no objects of Python.
             raise InvalidInput(f"{group.name}/{name} = {shown(value)}: cannot be stored ({error!s:.160})") from None
 
 
 def read_tree(path: str | Path) -> dict[str, Any]:
-    """Read what `write_tree` wrote.
+    """Nested mappings from a file that `write_tree` wrote.
 
     Raises:
         InvalidInput: If the file is missing, was not written by `write_tree`, or is damaged.
@@ -81,6 +82,7 @@ def read_tree(path: str | Path) -> dict[str, Any]:
 
 
 def _read(group: h5py.Group) -> dict[str, Any]:
+    """Nested mappings of a group; the inverse of `_write`."""
     tree = {name: _scalar(value) for name, value in group.attrs.items()}
     for name, item in group.items():
         tree[name] = _read(item) if isinstance(item, h5py.Group) else np.asarray(item[()])
@@ -88,6 +90,7 @@ def _read(group: h5py.Group) -> dict[str, Any]:
 
 
 def _scalar(value: Any) -> Any:
+    """Python value of an attribute; None for an empty one."""
     if isinstance(value, h5py.Empty):
         return None
     return value.item() if isinstance(value, np.generic) else value

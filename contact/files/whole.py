@@ -9,12 +9,12 @@ from contact.records.errors import InvalidInput
 
 
 def write_whole(path: Path, content: str | bytes) -> None:
-    """Write a text or bytes so that a reader finds the old file or the new one, never a part (fsync, rename).
+    """Write a text or bytes so that readers get the old file or the new one, never a part (fsync, rename).
 
-    A link stays a link; a device or pipe is written to as it stands.
+    The target of a link is written; a device or pipe is written directly.
 
     Raises:
-        InvalidInput: If the folder is missing or the disk is full; nothing is left of the file then.
+        InvalidInput: If the folder is missing or the disk is full; no partial file remains.
     """
     data = content.encode("utf-8") if isinstance(content, str) else content
     target = path.resolve()
@@ -29,6 +29,7 @@ def write_whole(path: Path, content: str | bytes) -> None:
 
 
 def _replace(path: Path, data: bytes) -> None:
+    """Write a temporary file in the same folder, then rename it to ``path``."""
     unfinished = path.with_name(f".{path.name}.{os.getpid()}.partial")
     try:
         with unfinished.open("wb") as stream:

@@ -1,4 +1,4 @@
-"""The three ways a computation may say no, each naming what to do next, in text that a terminal never obeys."""
+"""The three errors of a computation. Messages have a remedy and no control characters."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from collections.abc import Mapping
 import numpy as np
 from pydantic_core import PydanticCustomError
 
-# An error shows so many characters of an offending value: about one line of a terminal.
+# Largest number of characters of an offending value in a message: about one line of a terminal.
 SHOWN = 80
-# Kind of an error whose lines name parts of a value.
+# Type of a validation error with one line per part of a value.
 OF_PARTS = "of_parts"
 
 
@@ -28,7 +28,7 @@ def _acts(character: str) -> bool:
 
 
 def shown(value: object) -> str:
-    """The value as an error message shows it: at most 80 characters, however large it is."""
+    """Text of a value for error messages, of at most `SHOWN` characters and an ellipsis."""
     head = value[: SHOWN + 1] if isinstance(value, str | bytes) else value
     try:
         text = np.array2string(head, threshold=8) if isinstance(head, np.ndarray) else repr(head)
@@ -39,8 +39,8 @@ def shown(value: object) -> str:
 
 
 def refused(*lines: str) -> PydanticCustomError:
-    """Error that a validator raises: one line for each part of its value, which begins with the name of the part."""
-    return PydanticCustomError(OF_PARTS, "{told}", {"lines": lines, "told": "; ".join(lines)})
+    """Error for a validator to raise, with one line per part of its value; a line begins with the name of the part."""
+    return PydanticCustomError(OF_PARTS, "{text}", {"lines": lines, "text": "; ".join(lines)})
 
 
 class ContactError(Exception):
@@ -55,14 +55,14 @@ class InvalidInput(ContactError, ValueError):
 
 
 class UnsupportedSceneError(ContactError):
-    """The scene is valid, but the method asked does not model it; the message says what does."""
+    """The scene is valid, but the method does not model it; the message has the reason and a remedy."""
 
 
 class NotConvergedError(ContactError, ArithmeticError):
     """An iteration or a solve missed its tolerance; no number is returned in its place.
 
     Args:
-        message: What did not converge, and what may be changed.
+        message: What did not converge, and the remedy.
         residuals: Name of each monitored residual and its last value, dimensionless.
     """
 

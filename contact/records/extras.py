@@ -1,11 +1,11 @@
-"""Which extra of this distribution installs a package that is missing."""
+"""Extras of this distribution, by the packages that they install."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from typing import Final
 
-# What every reason says if only a package or a program is missing: what could not be asked is not compared.
+# Words in every reason for a missing package or program, by which other modules recognise it.
 NOT_INSTALLED: Final = "is not installed"
 
 EXTRA_OF: Final[Mapping[str, str]] = {
@@ -24,7 +24,7 @@ EXTRA_OF: Final[Mapping[str, str]] = {
 
 
 def missing_extra(error: BaseException) -> str:
-    """Install command of the extra for want of which an import failed; empty for any other error."""
+    """Install command of the extra that a failed import needs; empty for any other error."""
     package = (error.name or "").partition(".")[0] if isinstance(error, ModuleNotFoundError) else ""
     extra = EXTRA_OF.get(package)
     return f"{package} {NOT_INSTALLED}: pip install 'contact-verification[{extra}]'" if extra else ""

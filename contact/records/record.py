@@ -32,11 +32,11 @@ from pydantic_core import ArgsKwargs
 from contact.records.errors import OF_PARTS, SHOWN, InvalidInput, printable, shown
 from contact.records.units import Unit
 
-# Validators are built when the first record of a class is made: scenes use few of the classes.
+# Validators are built with the first record of a class: scenes use few of the classes.
 _CONFIG = pydantic.ConfigDict(arbitrary_types_allowed=True, extra="forbid", strict=True, defer_build=True)
-# Frozen by `Record` itself: methods that are generated for each class take a tenth of the time of `import contact`.
+# `Record` itself makes records frozen: methods generated per class would take a tenth of the time of `import contact`.
 _OPTIONS: Any = {"kw_only": True, "eq": False, "repr": False, "config": _CONFIG}
-# Other names that books and users give to fields.
+# Usual other names of fields, for error messages.
 _SYNONYMS = {
     "base": "support",
     "substrate": "support",
@@ -46,11 +46,11 @@ _SYNONYMS = {
     "mu": "coefficient",
     "gamma": "work_of_adhesion",
 }
-# Problems named in one error; half as many hide problems of an ordinary scene, twice as many fill a screen.
+# Largest number of problems in one error; half as many omit problems of an ordinary scene, twice fill a screen.
 _MOST_LINES = 8
 # Prefix of a union's members in the paths of pydantic's errors; paths are shown without them.
 _TAG = "kind:"
-# Type of pydantic's error of a name that no field has.
+# Type of pydantic's error for an unknown field name.
 _UNKNOWN = "unexpected_keyword_argument"
 
 
@@ -62,7 +62,7 @@ class _RecordType(ABCMeta):
 
         def __init__(cls, *args: Any, **kwargs: Any) -> None:
             super().__init__(*args, **kwargs)
-            if inspect.get_annotations(cls):  # classes without fields of their own are left as they are: that is faster
+            if inspect.get_annotations(cls):  # classes without new fields need no dataclass, which saves time
                 pydantic.dataclasses.dataclass(cls, **_OPTIONS)
 
         def __call__(cls, *args: Any, **kwargs: Any) -> Any:
@@ -77,10 +77,11 @@ class _RecordType(ABCMeta):
 
         @__signature__.setter
         def __signature__(cls, of_pydantic: object) -> None:
-            """Pydantic's own signature lists validators."""
+            """Ignore the signature of pydantic, which lists validators."""
 
 
 def _parameter(field: dataclasses.Field[Any]) -> inspect.Parameter:
+    """Parameter of the constructor for a field, with its plain type."""
     return inspect.Parameter(
         field.name,
         inspect.Parameter.KEYWORD_ONLY if field.kw_only else inspect.Parameter.POSITIONAL_OR_KEYWORD,
@@ -90,18 +91,18 @@ def _parameter(field: dataclasses.Field[Any]) -> inspect.Parameter:
 
 
 class Record(metaclass=_RecordType):
-    """Base of all records: frozen, keyword-only dataclasses with equality, hash and change by copying, by content.
+    """Base of all records: frozen, keyword-only dataclasses; equality and hash are those of the content.
 
     Raises:
-        InvalidInput: At construction, one line for each offending field.
+        InvalidInput: A field is wrong at construction; one line per offending field.
     """
 
     NAMED: ClassVar[bool] = False
-    """Whether files name the record by the entry `kind`."""
+    """Whether the table of the record in files has the entry `kind`."""
     SHORTHANDS: ClassVar[Mapping[str, Any]] = {}
     """Entries of files that replace fields, with their JSON schemas."""
     REPLACED: ClassVar[Mapping[str, str]] = {}
-    """Fields that files may leave out, with the shorthand that replaces them; "" for another part of the scene."""
+    """Fields that files may omit, with the shorthand that replaces them; "" for another part of the scene."""
 
     if not TYPE_CHECKING:  # type checkers know that records are frozen
 
@@ -116,6 +117,7 @@ class Record(metaclass=_RecordType):
         return f"{type(self).__qualname__}({', '.join(fields)})"
 
     def _content(self) -> tuple[Any, ...]:
+        """Class and field values in a hashable form, for equality and hash."""
         values = [getattr(self, field.name) for field in dataclasses.fields(self)]
         return type(self), *[value.tobytes() if isinstance(value, np.ndarray) else value for value in values]
 
@@ -137,14 +139,14 @@ class Record(metaclass=_RecordType):
     @model_validator(mode="before")
     @classmethod
     def _without_kind(cls, given: Any) -> Any:
-        """The fields without the entry `kind` that chose the class."""
+        """The fields of a table without its entry `kind`."""
         if isinstance(given, Mapping) and given.get("kind") == cls.kind():
             return {name: value for name, value in given.items() if name != "kind"}
         return given
 
     @classmethod
     def __get_pydantic_json_schema__(cls, core: Any, handler: Any) -> dict[str, Any]:
-        """The schema of pydantic, with `kind`, shorthands and each field's line of the docstring."""
+        """JSON schema of pydantic, with `kind`, shorthands and the line of the docstring per field."""
         schema: dict[str, Any] = handler.resolve_ref_schema(handler(core))
         text = inspect.cleandoc(cls.__doc__ or "")
         lines = dict(re.findall(r"^ *(\w+): (.*)", text, re.MULTILINE))
@@ -170,17 +172,18 @@ class OneOf:
     """Annotation of a field: an instance of its class, or a table whose entry `kind` names one of these records."""
 
     def __init__(self, *kinds: type[Record], plain: type[Record] | None = None) -> None:
-        """`plain` is meant where the table has no kind."""
+        """Records by their `kind`; a table without this entry is of the class ``plain``."""
         self.kinds, self.plain = kinds, plain
         self.names = {cls.kind(): cls for cls in kinds}
 
     def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> Any:
-        """A union of the kinds, by their names."""
+        """Schema of the union of all kinds, chosen by their names."""
         members = [Annotated[cls, Tag(f"{_TAG}{cls.kind()}")] for cls in self.kinds]
         instance = Annotated[SkipJsonSchema[InstanceOf[source]], Tag(f"{_TAG}instance")]
         return handler.generate_schema(Annotated[Union[*members, instance], Discriminator(self._tag)])
 
     def _tag(self, value: object) -> str:
+        """Tag of the member of the union that validates a value."""
         if not isinstance(value, Mapping):
             return f"{_TAG}instance"
         kind = value.get("kind")
@@ -189,10 +192,10 @@ class OneOf:
 
 
 def read(cls: type[R], table: Mapping[str, Any], name: str, context: object = None) -> R:
-    """A record from nested tables of a file.
+    """Record from nested tables of a file.
 
     Raises:
-        InvalidInput: One line for each problem, with its place in the tables; `name` is that of the whole.
+        InvalidInput: One line per problem, with its path in the tables; ``name`` stands for all of them.
     """
     try:
         return cast(R, _adapter(cls).validate_python(table, strict=False, context=context))
@@ -212,24 +215,26 @@ def unit_of(cls: type[Record], field: str) -> str | None:
 
 @functools.cache
 def _units(cls: type[Record]) -> dict[str, str]:
+    """SI units of the fields of a record class, by name; without fields of pure numbers."""
     hints = get_type_hints(cls, include_extras=True)
     return {name: part.name for name, hint in hints.items() for part in _parts(hint) if isinstance(part, Unit)}
 
 
 def _parts(annotation: Any) -> Iterable[Any]:
+    """An annotation and all its nested arguments."""
     yield annotation
     for part in get_args(annotation):
         yield from _parts(part)
 
 
 def describe(error: pydantic.ValidationError, cls: type[Record], place: str, top: str = "") -> str:
-    """One line for each problem: path of the field below a place, its value, what is required and the remedy.
+    """One line per problem: path of the field, its value, the requirement and the remedy.
 
     Args:
         error: Error that pydantic raised.
-        cls: The record that was to be made.
+        cls: Class of the record.
         place: Beginning of every path.
-        top: Name of the whole in a message that is not about one field; by default the place.
+        top: Name of the record in a message that is not about one field; by default the place.
     """
     lines: list[str] = []
     details = error.errors(include_url=False)
@@ -253,7 +258,7 @@ def _names(cls: type[Record]) -> list[str]:
 
 
 def _class_at(cls: type[Record], steps: Sequence[str | int]) -> type[Record]:
-    """The record below some steps of a path of pydantic's."""
+    """Class of the record that the steps of a path of pydantic lead to."""
     offered: dict[str, type[Record]] = {}
     for step in map(str, steps):
         if step.startswith(_TAG):
@@ -266,8 +271,8 @@ def _class_at(cls: type[Record], steps: Sequence[str | int]) -> type[Record]:
 
 
 def _meant(cls: type[Record], path: Sequence[str | int]) -> str:
-    """The field that an unknown name at the end of a path stands for; empty if none is close."""
-    from difflib import get_close_matches  # noqa: PLC0415  # records without errors do not pay for it
+    """Field name closest to an unknown name at the end of a path; empty if none is close."""
+    from difflib import get_close_matches  # noqa: PLC0415  # only records with errors need it
 
     names, written = _names(_class_at(cls, path[:-1])), str(path[-1])
     close = [_SYNONYMS.get(written, ""), *get_close_matches(written, names, n=1)]
@@ -275,7 +280,7 @@ def _meant(cls: type[Record], path: Sequence[str | int]) -> str:
 
 
 def _no_such(cls: type[Record], path: Sequence[str | int]) -> str:
-    """The remedy for a name that no field has: the closest name, or all of them."""
+    """Remedy for an unknown field name: the closest name, or all names."""
     if meant := _meant(cls, path):
         return f"no such field; write {meant} instead"
     names = ", ".join(_names(_class_at(cls, path[:-1])))
@@ -283,11 +288,12 @@ def _no_such(cls: type[Record], path: Sequence[str | int]) -> str:
 
 
 def _below(place: str, step: str | int) -> str:
-    """The place of an entry below another, as in layer.sublayers[0].thickness."""
+    """Path of an entry of a table or list, as in layer.sublayers[0].thickness."""
     return f"{place}[{step}]" if isinstance(step, int) else f"{place}.{_key(step)}" if place else _key(step)
 
 
 def _lines(place: str, detail: dict[str, Any], *, in_file: bool, is_whole: bool) -> list[str]:
+    """Lines of a message for one error of pydantic: path, value, requirement and remedy."""
     value, kind = detail["input"], detail["type"]
     if kind == "union_tag_invalid":
         known = sorted({*re.findall(rf"{_TAG}(\w+)", detail["ctx"]["expected_tags"])} - {"instance"})
@@ -308,5 +314,5 @@ def _lines(place: str, detail: dict[str, Any], *, in_file: bool, is_whole: bool)
 
 
 def _key(name: object) -> str:
-    """A key as messages show it."""
+    """A key as text for messages."""
     return printable(name[:SHOWN]) if isinstance(name, str) else shown(name)

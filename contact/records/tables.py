@@ -19,14 +19,14 @@ from numpy.typing import NDArray
 from contact.records.errors import InvalidInput, printable, shown
 from contact.records.units import factor_of
 
-# Larger files are refused: they are no scene and no table, or a device without an end.
+# Largest size of a file; larger ones are no scenes or tables, or a device without an end.
 MAX_BYTES: Final = 32_000_000
-# Longer lists are refused: they are mistakes, never measurements.
+# Largest number of entries of a list; longer ones are mistakes, not measurements.
 MAX_ENTRIES: Final = 1_000_000
 _UNIT = r"(?:[fpnumkM]?[mNVs]|kgf|Pa|%|[nu]n|[NU][MN])"
 _HEAD: Final = re.compile(rf"(?P<name>.*?)[\s_/:,]*[\[(<]?\s*(?<![A-Za-z0-9])(?P<unit>{_UNIT})\s*[\])>]?")
 _NAMED: Final = re.compile(r"(?P<name>[^\[(]*?)\s*[\[(](?P<unit>[^\])]*)[\])].*")
-# Comments of tables that JPK writes: names and units of the columns, and the spring constant [N/m].
+# Comments in tables of JPK instruments: names and units of the columns, and the spring constant [N/m].
 _COMMENT: Final = re.compile(r"#\s*(columns|units|springConstant):\s*(.*)")
 _SPELLINGS: Final = {"nn": "nN", "un": "uN", "NM": "nm", "UM": "um", "NN": "nN", "UN": "uN", "\u00c5": "angstrom"}
 _GAPS: Final = frozenset({"", "nan", "na", "n/a", "-", "--", "null", "none"})
@@ -40,8 +40,8 @@ class Column:
 
     Attributes:
         name: Head without its unit, empty without a head.
-        unit: Unit as written, with "u" for micro; empty where there is none.
-        values: Shape (n,).
+        unit: Unit as written, with "u" for micro; empty without a unit.
+        values: Numbers, shape (n,).
     """
 
     name: str
@@ -56,7 +56,7 @@ class Table:
     Attributes:
         columns: Columns in the order of the file.
         line: Number of the first line that is not empty.
-        gaps: Numbers of the lines that are left out, since a number is missing there.
+        gaps: Numbers of the lines that are omitted because a number is missing.
         spring_constant: Spring constant of the cantilever [N/m], if a comment of the file has it.
     """
 
@@ -71,18 +71,18 @@ class Table:
 
 
 def column_in_si(table: Mapping[str, Any], unit: str | None, folder: Path | None) -> tuple[NDArray[np.float64], str]:
-    """Numbers of the column that {file, column, unit} names, in SI, and the unit that they were written in.
+    """Numbers in SI of the column that {file, column, unit} names, and their unit in the file.
 
     Args:
-        table: Without a column, the first is meant; without a unit, that of the head, or SI.
+        table: Entries file, column (the first by default) and unit (that of the head, or SI, by default).
         unit: SI unit of the numbers; None for pure numbers.
-        folder: The file is named relative to it; None where no file may be named.
+        folder: Folder of the file; None if the scene may name no file.
 
     Returns:
         Numbers, shape (n,), and their unit, empty for numbers that were in SI.
 
     Raises:
-        InvalidInput: If the file cannot be read, has gaps or no such column, or one in a unit of another kind.
+        InvalidInput: If the file cannot be read, has gaps or no such column, or its unit is of another kind.
     """
     file, column, unit_name = table["file"], table.get("column", 0), table.get("unit", "")
     if folder is None:
@@ -102,7 +102,7 @@ def column_in_si(table: Mapping[str, Any], unit: str | None, folder: Path | None
 
 
 def in_unit(values: NDArray[np.float64], written: str, unit: str | None) -> NDArray[np.float64]:
-    """Numbers in a written unit, empty for SI, as numbers in an SI unit."""
+    """Numbers in the SI unit from numbers in a written unit, which is empty for SI."""
     if not written or unit is None:
         return values
     factor = factor_of(written, unit)
@@ -114,7 +114,7 @@ def read_table(file: Path) -> Table:
     """All columns of a table: tab, semicolon, comma or blanks between them, "#" before comments.
 
     Raises:
-        InvalidInput: With the line, for cells that are no numbers and commas of two meanings.
+        InvalidInput: A cell is no number, or commas are ambiguous; the message has the line.
     """
     texts = enumerate(table_text(file).splitlines(), 1)
     lines = [(number, line) for number, text in texts if (line := text.strip("\ufeff \r\n")).strip()]
@@ -137,7 +137,7 @@ def read_bytes(file: Path, what: str) -> bytes:
     """The content of a file.
 
     Raises:
-        InvalidInput: If the file cannot be read, or is larger than what it should be, as in "a scene".
+        InvalidInput: If the file cannot be read, or is too large for ``what``, such as "a scene".
     """
     try:
         with file.open("rb") as stream:
@@ -166,12 +166,13 @@ def table_text(file: Path) -> str:
 
 
 def _cells(line: str, separator: str) -> list[str]:
+    """Texts of the cells of a line, without blanks and quotes."""
     cells = line.split() if separator == " " else line.split(separator)
     return [cell.strip().strip('"') for cell in cells]
 
 
 def _number(cell: str) -> float | None:
-    """A finite number with a decimal point or comma, not a number for a gap, None for anything else."""
+    """Finite number with a decimal point or comma; NaN for a gap, None for any other text."""
     if cell.lower() in _GAPS:
         return math.nan
     cell = cell.replace(",", ".") if _DECIMAL_COMMA.fullmatch(cell) else cell
@@ -186,7 +187,7 @@ def _are_numbers(line: str, separator: str) -> bool:
 
 
 def _separator(line: str) -> str:
-    """The first of tab, semicolon, comma and blank that makes the cells of a line numbers; empty if none does."""
+    """First of tab, semicolon, comma and blank that divides a line into numbers; empty if none does."""
     separators = [separator for separator in "\t;," if separator in line.strip()]
     return next((separator for separator in (*separators, " ") if _are_numbers(line, separator)), "")
 
@@ -194,7 +195,7 @@ def _separator(line: str) -> str:
 def _heads(
     before: Sequence[str], comments: Mapping[str, str], separator: str, width: int
 ) -> tuple[list[str], list[str]]:
-    """Names and units from the lines before the numbers: the last ones with as many cells."""
+    """Names and units of ``width`` columns from the last lines before the numbers with as many cells."""
     of_jpk = [comments.get(key, "").split() for key in ("columns", "units")]
     if all(len(words) == width for words in of_jpk):
         return of_jpk[0], of_jpk[1]
@@ -213,12 +214,13 @@ def _heads(
 
 
 def plain_unit(unit: str) -> str:
-    """A unit in usual letters."""
+    """Unit in ASCII spelling, with "u" for micro."""
     unit = unit.strip().replace("\u00b5", "u").replace("\u03bc", "u")
     return _SPELLINGS.get(unit, unit)
 
 
 def _bare_unit(cell: str) -> str:
+    """Unit of a cell that has nothing else; empty for other cells."""
     cell = plain_unit(cell.strip("[]()<> "))
     return cell if re.fullmatch(_UNIT, cell) else ""
 
@@ -233,7 +235,7 @@ def name_and_unit(cell: str) -> tuple[str, str]:
 
 
 def _check_commas(file: Path, row: tuple[int, list[str]], separator: str, heads: Sequence[str]) -> None:
-    """Refuse rows in which a comma may be a decimal one or stand between columns."""
+    """Refuse rows in which a comma may be a decimal comma or a separator of columns."""
     line, cells = row
     whole = all(re.fullmatch(r"[-+]?\d+", cell) for cell in cells)
     if separator == "," and whole and len(cells) > 2 and not all(heads):
@@ -246,7 +248,7 @@ def _check_commas(file: Path, row: tuple[int, list[str]], separator: str, heads:
 def _values(
     file: Path, rows: Sequence[tuple[int, list[str]]], width: int
 ) -> tuple[NDArray[np.float64], tuple[int, ...]]:
-    """Numbers, shape (n, width), without rows that have gaps, and the lines of those."""
+    """Numbers, shape (n, width), of the rows without gaps, and the line numbers of rows with gaps."""
     values, gaps = [], []
     for line, cells in rows:
         numbers = [_number(cell) for cell in (cells[:-1] if len(cells) == width + 1 and cells[-1] == "" else cells)]

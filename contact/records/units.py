@@ -1,4 +1,4 @@
-"""Units: numbers written with one, such as "5 um" or "1 kPa", in SI, and prefixes for numbers in SI."""
+"""Units: conversion of texts such as "5 um" or "1 kPa" to SI, and prefixes for numbers in SI."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from contact.records.errors import InvalidInput, shown
 if TYPE_CHECKING:
     from pint import UnitRegistry
 
-# What each SI unit measures, and an example of it, as messages say it.
+# Kind of quantity and example of each SI unit, for messages.
 MEASURES: Final = {
     "m": ("a length", "5 um"),
     "Pa": ("a pressure", "1 kPa"),
@@ -28,7 +28,7 @@ MEASURES: Final = {
     "N/m": ("a stiffness", "0.05 N/m"),
     "rad": ("an angle", "30 deg"),
 }
-# A number, then letters with one-digit powers: nothing that takes long to evaluate.
+# A number, then letters with one-digit powers: texts that are quick to evaluate.
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d{1,3})?"
 _UNIT = r"[^\W\d_]{1,16}(?:(?:\^|\*\*)-?\d)?"
 _UNITS = rf"{_UNIT}(?:\s*[ */]\s*{_UNIT}){{0,3}}"
@@ -39,16 +39,16 @@ PREFIXES: Final = ((1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (
 
 @dataclass(frozen=True)
 class Unit:
-    """Says, in the annotation of a field, in which SI unit its numbers are."""
+    """SI unit of the numbers of a field, in its annotation."""
 
     name: str
 
 
 def in_si(value: object, unit: str) -> Any:
-    """The value in SI if it is a text with a number and a unit; anything else is returned as it came.
+    """Number in SI from a text with a number and a unit; other values are returned unchanged.
 
     Raises:
-        InvalidInput: If the text has a unit of another kind, or one that nobody knows.
+        InvalidInput: If the unit is unknown or of another kind.
     """
     match = _QUANTITY.fullmatch(value) if isinstance(value, str) and len(value) <= 80 else None
     if match is None:
@@ -61,7 +61,7 @@ def in_si(value: object, unit: str) -> Any:
 
 
 def read_quantity(text: str, unit: str, place: str) -> Any:
-    """As `in_si`, for texts outside records: messages begin with the place and the text."""
+    """Number in SI from a text, by `in_si`; messages begin with the place and the text."""
     try:
         return in_si(text, unit)
     except InvalidInput as error:
@@ -78,7 +78,7 @@ def factor_of(written: str, unit: str) -> Decimal:
     remedy = f'must be {kind}; write a number in {unit}, or as in "{example}"'
     if not _UNIT_ALONE.fullmatch(written):
         raise InvalidInput(f"{shown(written)} is no unit, {remedy}")
-    # Only files that name a unit pay for this import.
+    # Only files with units need this import.
     import pint  # noqa: PLC0415
 
     try:
@@ -91,7 +91,7 @@ def factor_of(written: str, unit: str) -> Decimal:
 
 @functools.lru_cache(maxsize=1)
 def _registry() -> UnitRegistry[Decimal]:
-    """Units of the library's own table; decimal, so that 5 um is the double closest to 5e-6."""
+    """Units of pint with decimal numbers, so that 5 um is the double closest to 5e-6."""
     import pint  # noqa: PLC0415  # see `factor_of`
 
     return pint.UnitRegistry(non_int_type=Decimal)

@@ -1,7 +1,7 @@
-"""Types of fields: each validator states what is required and the remedy; `Record` adds value and place.
+"""Types of fields. An error of a validator has the requirement and the remedy; `Record` adds value and place.
 
 Numbers of fields with a unit may be texts with one. Vectors may be single numbers, lists, ranges and columns of CSV
-files as well. Files that mix numbers with and without units are read a second time by `UnitsRequired`.
+files as well. Files that mix numbers with and without units are read again with `Reading.units_required`.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ Numbers: TypeAlias = float | Sequence[float] | Sequence[np.floating[Any]] | np.n
 if TYPE_CHECKING:
 
     class Vector:
-        """A field given as `Numbers` and read as a read-only float64 array, shape (n,)."""
+        """A field whose input is `Numbers` and whose value is a read-only float64 array, shape (n,)."""
 
         @overload
         def __get__(self, owner: None, kind: object) -> Self: ...
@@ -53,7 +53,7 @@ else:
     # At run time the validators below convert, and the field is the array or the number itself.
     Vector, Scalar = FloatArray, float
 
-# Magnitudes outside these are refused, whatever their unit: products of four of them still fit into double precision.
+# Range of magnitudes in any unit: products of four of them fit into double precision.
 SMALLEST, LARGEST = 1e-75, 1e75
 RANGE = frozenset({"start", "stop", "count", "spacing"})
 COLUMN = frozenset({"file", "column", "unit"})
@@ -63,7 +63,7 @@ Checked: TypeAlias = tuple[Any, ...]
 
 
 class Derived(float):
-    """A number that follows from others of the scene, and so needs no unit."""
+    """A number derived from others of the scene, which needs no unit."""
 
 
 @dataclass
@@ -71,10 +71,10 @@ class Reading:
     """Settings for reading the numbers of one scene, and a record of whether they have units.
 
     Attributes:
-        folder: CSV files are named relative to it; None where no file may be named.
+        folder: Folder of CSV files; None if the scene may name no file.
         units_required: Whether numbers without a unit are refused.
-        example: The first number with a unit; empty where there was none.
-        bare: Whether some dimensional number, neither zero nor infinite, had no unit.
+        example: First number with a unit; empty before one is read.
+        bare: Whether a dimensional number, neither zero nor infinite, had no unit.
     """
 
     folder: Path | None = None
@@ -83,10 +83,10 @@ class Reading:
     bare: bool = False
 
     def note(self, value: object, unit: str) -> None:
-        """Note a dimensional number, and the unit that it was written with.
+        """Record whether a dimensional number has a unit, which is empty if not.
 
         Raises:
-            ValueError: If it has no unit where the other numbers of the scene have one.
+            ValueError: If the number has no unit although other numbers of the scene have one.
         """
         if unit:
             self.example = self.example or shown(value)
@@ -104,10 +104,10 @@ def _is_number(value: object) -> bool:
 
 
 def read_number(value: object, remedy: str, unit: str | None, reading: Reading | None) -> float:
-    """A number, or a text with a number and its unit, in SI.
+    """Number in SI from a number, or from a text with a number and its unit.
 
     Raises:
-        ValueError: If it is neither, or too large for double precision.
+        ValueError: If the value is neither, or too large for double precision.
     """
     number = value if unit is None else in_si(value, unit)
     if unit is not None and reading is not None:
@@ -121,14 +121,14 @@ def read_number(value: object, remedy: str, unit: str | None, reading: Reading |
 
 
 def _in_bounds(number: float, remedy: str) -> float:
-    """A number that is zero, infinite, or of a magnitude whose products neither overflow nor vanish."""
+    """The number, if it is zero, infinite, or of a magnitude between `SMALLEST` and `LARGEST`; else a ValueError."""
     if number != 0.0 and math.isfinite(number) and not SMALLEST <= abs(number) <= LARGEST:
         raise ValueError(f"must have a magnitude between {SMALLEST:g} and {LARGEST:g}; use other units, and {remedy}")
     return number
 
 
 def _written(unit: str | None, *, infinite: bool = False) -> dict[str, Any]:
-    """JSON Schema of a number, or of a text for it."""
+    """JSON schema of a number, which may be a text if it has a unit or may be infinite."""
     if unit is None and not infinite:
         return {"type": "number"}
     return {"type": ["number", "string"], "pattern": r"^\s*[-+.\d]|^inf$" if infinite else r"^\s*[-+.\d]"}
@@ -143,7 +143,7 @@ def number(
     above: bool = False,
     infinite: bool = False,
 ) -> Checked:
-    """A number in [low, high], or above zero; infinity, where allowed, may be the text "inf"."""
+    """Validator and schema of a number in [low, high], or above ``low``; infinity may be the text "inf"."""
     if math.isfinite(high):
         required = f"lie in [{low:g}, {high:g}]"
     elif above:
@@ -152,7 +152,7 @@ def number(
         required = f"be at least {low:g}" if infinite else f"be finite and at least {low:g}"
 
     def validate(value: object, info: ValidationInfo) -> float:
-        """The number, or one error with what is required and the remedy."""
+        """The number in SI; an error has the requirement and the remedy."""
         si_value = math.inf if infinite and value == "inf" else read_number(value, remedy, unit, info.context)
         if not (low <= si_value <= high and (infinite or math.isfinite(si_value)) and (si_value > low or not above)):
             raise ValueError(f"must {required}; {remedy}")
@@ -164,12 +164,12 @@ def number(
 
 
 def positive(remedy: str, unit: str | None = None) -> Checked:
-    """A finite number above zero."""
+    """Validator and schema of a finite number above zero."""
     return number(remedy, unit, above=True)
 
 
 def in_range(low: float, high: float, remedy: str, unit: str | None = None) -> Checked:
-    """A finite number in the closed interval [low, high]; `LARGEST` is the largest where it has no upper end."""
+    """Validator and schema of a finite number in [low, high]; without an upper end it is at most `LARGEST`."""
     return number(remedy, unit, low=low, high=high)
 
 
@@ -182,7 +182,7 @@ def as_vector(value: object, remedy: str, unit: str | None, reading: Reading | N
     """A read-only vector of finite numbers from a number, a list, a range or a column, shape (n,).
 
     Raises:
-        ValueError: If it is none of these, empty, too long, or holds a number that is not finite.
+        ValueError: If the value is none of these, empty, too long, or has a number that is not finite.
     """
     value = _written_out(value, unit, reading)
     if _is_number(value) or (isinstance(value, str) and unit is not None and in_si(value, unit) is not value):
@@ -208,7 +208,7 @@ def as_vector(value: object, remedy: str, unit: str | None, reading: Reading | N
 
 
 def _written_out(value: object, unit: str | None, reading: Reading | None) -> object:
-    """The numbers of a range or of a column; anything else is returned as it came."""
+    """Numbers of a range or of a column of a file; other values are returned unchanged."""
     if isinstance(value, Mapping) and value and value.keys() <= RANGE:
         return range_of(value, unit, reading)
     if isinstance(value, Mapping) and "file" in value and value.keys() <= COLUMN:
@@ -220,7 +220,7 @@ def _written_out(value: object, unit: str | None, reading: Reading | None) -> ob
 
 
 def range_of(table: Mapping[str, Any], unit: str | None, reading: Reading | None = None) -> FloatArray:
-    """Values from start to stop, both included, evenly spaced or by equal factors.
+    """Values from start to stop, both included, with equal differences or equal factors, shape (count,).
 
     Raises:
         ValueError: If an end or the count is missing or wrong.
@@ -240,6 +240,7 @@ def range_of(table: Mapping[str, Any], unit: str | None, reading: Reading | None
 
 
 def _end(value: object, unit: str | None, name: str, reading: Reading | None) -> float:
+    """Start or stop of a range in SI; errors begin with its ``name``."""
     try:
         end = read_number(value, f"give one up to {LARGEST:g}, or a text with its unit", unit, reading)
     except ValueError as error:
@@ -257,10 +258,10 @@ def vector(
     above: float = -math.inf,
     increasing: bool = False,
 ) -> Checked:
-    """Finite numbers, each at least or above a bound, and strictly increasing where asked."""
+    """Validator and schema of finite numbers at least ``least``, above ``above``, and increasing if so required."""
 
     def validate(value: object, info: ValidationInfo) -> FloatArray:
-        """The vector, read-only; an error names the first offending entry."""
+        """The read-only vector in SI; an error has the first offending entry."""
         values = as_vector(value, remedy, unit, info.context)
         for required, wrong in (
             (f"be at least {least:g}", values < least),

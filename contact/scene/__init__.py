@@ -1,5 +1,5 @@
-"""What a scene is: layer, indenter, loading, effects.
+"""Scenes: layer, indenter, loading, effects.
 
-Enters: lengths, moduli, loads in SI units. Leaves: a frozen `Scene` that knows no mesh, no tolerance and no method.
-Read `scene` first.
+Input: lengths, moduli, loads in SI units. Output: a frozen `Scene`, without mesh, tolerance and method. Read `scene`
+first.
 """

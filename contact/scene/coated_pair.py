@@ -28,8 +28,8 @@ class CoatedPair(Record):
         youngs_modulus: Young's modulus E [Pa] of both coatings.
         poissons_ratio: Poisson's ratio nu of both coatings.
         support: Interface of each coating to its body, "bonded" or "unbonded".
-        loading: What is prescribed, depths being the approach of the two bodies.
-        effects: Effects that are modelled, as in a `Scene`.
+        loading: Prescribed quantity as in a `Scene`; depths are approaches of the two bodies.
+        effects: Effects as in a `Scene`.
     """
 
     first_radius: _Radius

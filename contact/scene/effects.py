@@ -1,4 +1,4 @@
-"""Effects that a scene may list. None listed means bare elastic frictionless contact, and nothing else is computed."""
+"""Effects of a scene. Without effects contact is elastic and frictionless."""
 
 from __future__ import annotations
 
@@ -40,12 +40,12 @@ class Relaxation:
 
     @property
     def instantaneous_modulus(self) -> float:
-        """G_inf + sum_j G_j [Pa]."""
+        """Instantaneous shear modulus G_inf + sum_j G_j [Pa]."""
         return float(self.long_term_modulus + math.fsum(self.moduli))
 
 
 class Viscoelasticity(Effect):
-    """Base of the linear viscoelastic effects; all of them are one relaxation function."""
+    """Base of the linear viscoelastic effects, each given by a relaxation function of shear."""
 
     @property
     def relaxation(self) -> Relaxation:
@@ -76,7 +76,7 @@ class Friction(Effect):
 
     @property
     def is_stick(self) -> bool:
-        """Whether nothing slides."""
+        """Whether friction prevents all sliding (infinite coefficient)."""
         return math.isinf(self.coefficient)
 
 
@@ -93,7 +93,7 @@ class KelvinVoigt(Viscoelasticity):
 
     @property
     def relaxation(self) -> Relaxation:
-        """G constant in time, and a dashpot eta; no branches."""
+        """Shear relaxation with constant G and a dashpot eta, without branches."""
         return Relaxation(
             long_term_modulus=self.shear_modulus, moduli=np.empty(0), times=np.empty(0), viscosity=self.viscosity
         )
@@ -104,8 +104,8 @@ class StandardSolid(Viscoelasticity):
 
     Attributes:
         long_term_shear_modulus: Long-term modulus G_inf [Pa].
-        maxwell_shear_modulus: Modulus G_1 [Pa].
-        viscosity: Viscosity eta [Pa s] of the Maxwell element; it relaxes in eta / G_1.
+        maxwell_shear_modulus: Modulus G_1 [Pa] of the Maxwell element.
+        viscosity: Viscosity eta [Pa s] of the Maxwell element; its relaxation time is eta / G_1.
     """
 
     long_term_shear_modulus: _LongTermModulus
@@ -114,7 +114,7 @@ class StandardSolid(Viscoelasticity):
 
     @property
     def relaxation(self) -> Relaxation:
-        """One branch G_1 with the relaxation time eta / G_1, in addition to G_inf."""
+        """Shear relaxation with G_inf and one branch G_1 of relaxation time eta / G_1."""
         moduli = np.array([self.maxwell_shear_modulus])
         return Relaxation(
             long_term_modulus=self.long_term_shear_modulus, moduli=moduli, times=self.viscosity / moduli, viscosity=0.0
@@ -145,7 +145,7 @@ class PronySeries(Viscoelasticity):
 
     @property
     def relaxation(self) -> Relaxation:
-        """The moduli G_j and times tau_j as given, without G_inf."""
+        """Shear relaxation with G_inf and the branches G_j, tau_j."""
         return Relaxation(
             long_term_modulus=self.long_term_shear_modulus,
             moduli=self.shear_moduli,

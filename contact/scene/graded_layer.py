@@ -44,11 +44,11 @@ class DepthFunction(Record):
         raise TypeError(f"{type(self).__name__} declares no values")
 
     def slope(self, depth: ArrayLike, thickness: float) -> FloatArray:
-        """Derivative by z [1/m]."""
+        """Derivative of the function by z, in its unit per metre, at depths z [m] in a layer of this thickness [m]."""
         raise TypeError(f"{type(self).__name__} declares no slope")
 
     def scaled(self, length: float, value: float) -> Self:
-        """The same function with depths over a length [m], and values over another value."""
+        """The function in other units: depths divided by ``length`` [m], values by ``value``."""
         raise TypeError(f"{type(self).__name__} cannot be scaled")
 
     def breakpoints(self, thickness: float) -> tuple[float, ...]:
@@ -57,7 +57,7 @@ class DepthFunction(Record):
 
 
 class _BetweenFaces(DepthFunction):
-    """Base of those that are given by their values at both faces, whatever the thickness."""
+    """Base of functions of z/h that are given by their values at the surface and at the base."""
 
     surface: Annotated[float, *positive(NO_ZERO, "Pa")]
     base: Annotated[float, *positive("give the modulus in pascals", "Pa")]
@@ -67,7 +67,7 @@ class _BetweenFaces(DepthFunction):
 
 
 class ExponentialDepth(_BetweenFaces):
-    """surface (base/surface)^(z/h).
+    """Exponential function surface (base/surface)^(z/h).
 
     Attributes:
         surface: Value at z = 0.
@@ -82,11 +82,12 @@ class ExponentialDepth(_BetweenFaces):
 
     @property
     def _rate(self) -> float:
+        """ln(base/surface)."""
         return math.log(self.base / self.surface)
 
 
 class LinearDepth(_BetweenFaces):
-    """surface + (base - surface) z/h.
+    """Linear function surface + (base - surface) z/h.
 
     Attributes:
         surface: Value at z = 0.
@@ -101,7 +102,7 @@ class LinearDepth(_BetweenFaces):
 
 
 class PowerLawDepth(DepthFunction):
-    """surface (1 + z/z0)^m.
+    """Power law surface (1 + z/z0)^m.
 
     Attributes:
         surface: Value at z = 0.
@@ -125,7 +126,7 @@ class PowerLawDepth(DepthFunction):
 
 
 class TabulatedDepth(DepthFunction):
-    """Values at given depths, and piecewise cubic between them without overshoot (Fritsch and Carlson 1980).
+    """Piecewise cubic function through values at given depths, without overshoot (Fritsch and Carlson 1980).
 
     Attributes:
         depths: Depths z [m], increasing from zero to at least the layer's thickness, shape (n,).
@@ -146,7 +147,7 @@ class TabulatedDepth(DepthFunction):
 
     @cached_property
     def _curve(self) -> PchipInterpolator:
-        # Only scenes with a table pay for this import.
+        # Only scenes with a table need this import.
         from scipy.interpolate import PchipInterpolator  # noqa: PLC0415
 
         return PchipInterpolator(self.depths, self.values)
@@ -168,9 +169,9 @@ DEPTH_FUNCTIONS: tuple[type[DepthFunction], ...] = (ExponentialDepth, LinearDept
 
 
 def _pure(given: object, info: ValidationInfo) -> object:
-    """Validates Poisson's ratios tabulated against depth: converts their values to a vector without unit, shape (n,).
+    """Table of Poisson's ratios with values as a vector without unit, shape (n,); other input is returned unchanged.
 
-    `TabulatedDepth` alone would read them as moduli in pascals. Other input is returned unchanged.
+    `TabulatedDepth` itself would read the values as moduli in pascals.
     """
     if not isinstance(given, Mapping) or "values" not in given:
         return given
@@ -218,11 +219,12 @@ class GradedLayer(ElasticLayer):
 
     @property
     def surface(self) -> Sublayer:
-        """The material at z = 0, as thick as the whole."""
+        """Uniform layer with the material at z = 0 and the thickness of the graded layer."""
         modulus = float(self.youngs_modulus.at(0.0, self.thickness))
         return Sublayer(thickness=self.thickness, youngs_modulus=modulus, poissons_ratio=float(self.ratio_at(0.0)))
 
     def _ratios(self) -> tuple[float, ...]:
+        """Tabulated Poisson's ratios, or the uniform one."""
         nu = self.poissons_ratio
         return tuple(nu.values.tolist()) if isinstance(nu, TabulatedDepth) else (nu,)
 
@@ -232,12 +234,12 @@ class GradedLayer(ElasticLayer):
         return "graded layer on an elastic base" if self.has_elastic_base else f"graded {self.support} layer"
 
     def ratio_at(self, depth: ArrayLike) -> FloatArray:
-        """nu at depths z [m]."""
+        """Poisson's ratio nu at depths z [m]."""
         nu = self.poissons_ratio
         return nu.at(depth, self.thickness) if isinstance(nu, TabulatedDepth) else np.full(np.shape(depth), nu)
 
     def ratio_slope(self, depth: ArrayLike) -> FloatArray:
-        """d(nu)/dz [1/m]."""
+        """Derivative d(nu)/dz [1/m] at depths z [m]."""
         nu = self.poissons_ratio
         return nu.slope(depth, self.thickness) if isinstance(nu, TabulatedDepth) else np.zeros(np.shape(depth))
 
@@ -248,15 +250,16 @@ class GradedLayer(ElasticLayer):
         return tuple(sorted({z for function in functions for z in function.breakpoints(self.thickness)}))
 
     def in_own_units(self) -> Self:
-        """The same layer with thickness 1 and E* = 1 at the surface."""
+        """Copy of the layer with thickness 1 and E* = 1 at the surface."""
         return self._scaled(self.thickness, self.contact_modulus, thickness=1.0)
 
     def stretched(self, factor: float) -> Self:
-        """The same layer with all depths multiplied by the factor."""
-        # One division for all depths, so that a table that ends at the base still does.
+        """Copy of the layer with all depths multiplied by the factor."""
+        # The thickness is divided like the depths, so that a table that ends at the base still ends there exactly.
         return self._scaled(1.0 / factor, 1.0, thickness=self.thickness / (1.0 / factor))
 
     def _scaled(self, length: float, modulus: float, *, thickness: float) -> Self:
+        """The layer with depths over ``length`` [m], moduli over ``modulus`` [Pa], and a given thickness."""
         nu, support = self.poissons_ratio, self.support
         return self.replace(
             thickness=thickness,

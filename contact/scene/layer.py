@@ -14,7 +14,7 @@ from contact.records.validation import Modulus, PoissonsRatio, PositiveLength, S
 
 Support: TypeAlias = Literal["bonded", "unbonded"]
 Interface: TypeAlias = Literal["bonded", "unbonded"]
-# More sublayers are refused: a graded material is a `GradedLayer`.
+# Largest number of sublayers; materials of more are described by a `GradedLayer`.
 MAX_SUBLAYERS = 1000
 
 
@@ -46,38 +46,38 @@ class ElasticBase(Record):
     interface: Interface = "bonded"
 
     def scaled(self, modulus: float) -> Self:
-        """The same base with its modulus over another one [Pa]."""
+        """Copy of the base with its modulus divided by ``modulus`` [Pa]."""
         return self.replace(youngs_modulus=self.youngs_modulus / modulus)
 
 
 class ElasticLayer(Record):
-    """Base of `Layer`, `LayerStack` and `GradedLayer`: what every layer has."""
+    """Base of `Layer`, `LayerStack` and `GradedLayer`, with their common properties."""
 
     if TYPE_CHECKING:  # at run time properties would hide fields of these names
 
         @property
         def thickness(self) -> float:
-            """h [m], of all sublayers together; infinite for a half-space."""
+            """Thickness h [m] of all sublayers together; infinite for a half-space."""
 
         @property
         def support(self) -> Support | ElasticBase:
-            """The base: rigid, with its interface, or elastic."""
+            """Interface to a rigid base, "bonded" or "unbonded", or an elastic base."""
 
     @property
     def surface(self) -> Layer | Sublayer:
-        """The uniform part that touches the indenter."""
+        """Uniform layer with the material that touches the indenter."""
         raise TypeError(f"{type(self).__name__} declares no surface")
 
     def in_own_units(self) -> Self:
-        """The same layer with thickness 1 and E* = 1; a half-space stays infinite."""
+        """Copy of the layer in units of its thickness and E*; a half-space stays infinite."""
         raise TypeError(f"{type(self).__name__} has no units of its own")
 
     def stretched(self, factor: float) -> ElasticLayer:
-        """The same layer with all depths multiplied by the factor."""
+        """Copy of the layer with all depths multiplied by the factor."""
         raise TypeError(f"{type(self).__name__} cannot be stretched")
 
     def simplest(self) -> ElasticLayer:
-        """The plainest record of the same body."""
+        """The layer as an object of the simplest class that describes it."""
         return self
 
     @property
@@ -87,7 +87,7 @@ class ElasticLayer(Record):
 
     @property
     def is_uniform(self) -> bool:
-        """Whether it is of one material."""
+        """Whether the layer is of one material."""
         return isinstance(self, Layer)
 
     @property
@@ -97,7 +97,7 @@ class ElasticLayer(Record):
 
     @property
     def has_elastic_base(self) -> bool:
-        """Whether it rests on an elastic half-space of another material, and not on a rigid base."""
+        """Whether the base is an elastic half-space of another material, not rigid."""
         return isinstance(self.support, ElasticBase)
 
     @property
@@ -111,18 +111,18 @@ class ElasticLayer(Record):
 
     @property
     def contact_modulus(self) -> float:
-        """E* = E / (1 - nu^2) [Pa] at the surface."""
+        """Contact modulus E* = E / (1 - nu^2) [Pa] at the surface."""
         nu = self.surface.poissons_ratio
         return self.surface.youngs_modulus / ((1.0 - nu) * (1.0 + nu))
 
     @property
     def shear_modulus(self) -> float:
-        """G = E / (2 (1 + nu)) [Pa] at the surface."""
+        """Shear modulus G = E / (2 (1 + nu)) [Pa] at the surface."""
         return self.surface.youngs_modulus / (2.0 * (1.0 + self.surface.poissons_ratio))
 
     @property
     def title(self) -> str:
-        """A few words for headings."""
+        """Short name of the layer for titles."""
         return type(self).__name__
 
 
@@ -153,7 +153,7 @@ class Layer(ElasticLayer):
     @model_validator(mode="before")
     @classmethod
     def _half_space(cls, given: Any) -> Any:
-        """In files `half_space = true` stands for an infinite thickness."""
+        """A table with an infinite thickness from one with `half_space = true`."""
         if not isinstance(given, Mapping) or "half_space" not in given:
             return given
         rest = {name: value for name, value in given.items() if name != "half_space"}
@@ -165,7 +165,7 @@ class Layer(ElasticLayer):
 
     @classmethod
     def half_space(cls, *, youngs_modulus: float, poissons_ratio: float) -> Self:
-        """A layer of infinite thickness; its support no longer matters."""
+        """A layer of infinite thickness; its support has no effect."""
         return cls(thickness=math.inf, youngs_modulus=youngs_modulus, poissons_ratio=poissons_ratio)
 
     @classmethod
@@ -175,7 +175,7 @@ class Layer(ElasticLayer):
 
     @property
     def surface(self) -> Self:
-        """The layer itself: it is uniform."""
+        """The layer itself, since it is uniform."""
         return self
 
     @property
@@ -185,7 +185,7 @@ class Layer(ElasticLayer):
         return f"{below}, nu = {self.poissons_ratio:g}"
 
     def in_own_units(self) -> Self:
-        """The same layer with thickness 1 and E* = 1; a half-space stays infinite."""
+        """Copy of the layer with thickness 1 and E* = 1; a half-space stays infinite."""
         nu = self.poissons_ratio
         return self.replace(thickness=math.inf if self.is_half_space else 1.0, youngs_modulus=(1.0 - nu) * (1.0 + nu))
 
@@ -200,11 +200,11 @@ Supported: TypeAlias = Annotated[
     Annotated[Support, Tag("kind:rigid")] | Annotated[ElasticBase, Tag("kind:elastic")],
     Discriminator(lambda support: "kind:elastic" if isinstance(support, Mapping | ElasticBase) else "kind:rigid"),
 ]
-"""A rigid base, by its interface to the layer, or an elastic one."""
+"""Interface to a rigid base, or an elastic base."""
 
 
 class LayerStack(ElasticLayer):
-    """Uniform layers on top of each other. A scene takes a stack of one on a rigid base as that `Layer`.
+    """Uniform layers on top of each other. In a scene a stack of one on a rigid base becomes a `Layer`.
 
     Attributes:
         sublayers: Layers from the top; the first touches the indenter.
@@ -232,7 +232,7 @@ class LayerStack(ElasticLayer):
 
     @property
     def thickness(self) -> float:
-        """All sublayers together [m]."""
+        """Thickness [m] of all sublayers together."""
         return math.fsum(part.thickness for part in self.sublayers)
 
     @property
@@ -249,13 +249,13 @@ class LayerStack(ElasticLayer):
         return f"stack of {len(self.sublayers)}, {'elastic base' if self.has_elastic_base else self.support}"
 
     def simplest(self) -> ElasticLayer:
-        """A stack of one on a rigid base is a `Layer`."""
+        """The `Layer` that a stack of one on a rigid base is; other stacks are returned unchanged."""
         if len(self.sublayers) > 1 or isinstance(self.support, ElasticBase):
             return self
         return Layer(**vars(self.surface), support=self.support)
 
     def in_own_units(self) -> Self:
-        """The same stack with thickness 1 and E* = 1."""
+        """Copy of the stack with thickness 1 and E* = 1."""
         length, modulus, support = self.thickness, self.contact_modulus, self.support
         sublayers = tuple(
             part.replace(thickness=part.thickness / length, youngs_modulus=part.youngs_modulus / modulus)
@@ -265,5 +265,5 @@ class LayerStack(ElasticLayer):
         return self.replace(sublayers=sublayers, support=base)
 
     def stretched(self, factor: float) -> Self:
-        """The same stack with every sublayer so many times as thick."""
+        """Copy of the stack with all thicknesses multiplied by the factor."""
         return self.replace(sublayers=tuple(part.replace(thickness=part.thickness * factor) for part in self.sublayers))

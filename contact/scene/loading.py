@@ -1,4 +1,4 @@
-"""What is prescribed: contact radii, depths, forces, a detachment, an impact, or a history in time."""
+"""Loadings: prescribed contact radii, depths or forces, a detachment, an impact, or a history in time."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from contact.records.record import Record
 from contact.records.validation import FloatArray, PositiveLength, Scalar, Vector, positive, vector
 
 Controlled: TypeAlias = Literal["displacement", "force", "machine"]
-"""What a detachment prescribes: depth, force, or the displacement of a machine that gives way."""
+"""Quantity that a detachment prescribes: depth, force, or the displacement of a compliant machine."""
 
 
 Instants: TypeAlias = Annotated[Vector, *vector("give instants in seconds that increase", "s", increasing=True)]
@@ -38,9 +38,9 @@ class ContactRadii(Loading):
 class IndentationDepths(Loading):
     """Equilibria at given depths, each reached from the undeformed layer.
 
-    With adhesion a negative depth has two answers: nothing on the way in, since a contact forms at the first touch, and
-    a contact on the way out. MDR and finite elements give the contact; boundary elements follow the values in order,
-    beginning out of contact.
+    With adhesion a negative depth has two answers: no contact during approach, since contact forms at the first touch,
+    and a contact during withdrawal. MDR and finite elements give the contact. Boundary elements follow the values in
+    order, starting without contact.
 
     Attributes:
         values: Depths delta [m], shape (n,); negative only with adhesion.
@@ -62,14 +62,14 @@ class NormalForces(Loading):
 class Detachment(Loading):
     """Slow separation of an adhering indenter.
 
-    A real machine, or the cantilever of a force microscope, gives way by F/K: with its stiffness K, what it prescribes
-    is the displacement delta + F/K of its far end, and contact is lost where that has its least value.
+    A machine, or the cantilever of a force microscope, of stiffness K deflects by F/K. It prescribes the displacement
+    delta + F/K of its far end, and contact is lost at the smallest displacement in equilibrium.
 
     Attributes:
-        control: What the testing machine prescribes: "displacement" (stiff) or "force" (soft).
+        control: Quantity that the testing machine prescribes: "displacement" (stiff) or "force" (soft).
         machine_stiffness: Stiffness K [N/m] of the machine, under displacement control; None if it is rigid.
         initial_contact_radius: Contact radius a [m] where the separation starts. A flat punch starts at its own radius.
-            Other profiles start, when it is omitted, at a radius from which the whole unloading branch is seen.
+            Other profiles start by default at a radius from which the path contains the whole unloading branch.
     """
 
     control: Literal["displacement", "force"] = "displacement"
@@ -89,7 +89,7 @@ class Detachment(Loading):
 
     @property
     def controlled(self) -> Controlled:
-        """Prescribed quantity: the depth, the force, or the displacement of a machine that gives way."""
+        """Prescribed quantity: the depth, the force, or the displacement of a compliant machine."""
         return "machine" if self.machine_stiffness is not None else self.control
 
 
@@ -140,15 +140,16 @@ class ForceHistory(Loading):
 
 
 def _check_lengths(time: FloatArray, values: FloatArray, name: str) -> None:
+    """Refuse a history of fewer than two instants, or without one value per instant."""
     if time.shape != values.shape or time.size < 2:
         sizes = f"got {time.size} instants and {values.size} values"
         raise ValueError(f"a history needs at least two instants and one {name} for each; {sizes}")
 
 
 EquilibriumLoading: TypeAlias = ContactRadii | IndentationDepths | NormalForces
-"""Loadings that a `ContactPath` answers."""
+"""Loadings whose answer is a `ContactPath`."""
 
 HistoryLoading: TypeAlias = DepthHistory | ForceHistory
-"""Loadings that a `HistoryPath` answers."""
+"""Loadings whose answer is a `HistoryPath`."""
 
 LOADINGS = (ContactRadii, IndentationDepths, NormalForces, Detachment, Impact, DepthHistory, ForceHistory)

@@ -1,7 +1,7 @@
 """Rigid indenters: profiles of revolution z = f(r) with f(0) = 0, measured from the tip.
 
-A profile is one class. It says its height and slope at any radius, where its slope jumps (`kinks`), where it is merely
-not analytic (`breakpoints`, kinks included), the radius of its flat end and the radius where it stops.
+Each profile is one class, with height and slope at any radius, the radii where the slope jumps (`kinks`) or the profile
+is not analytic (`breakpoints`, kinks included), the radius of its flat end and the radius where it ends.
 """
 
 from __future__ import annotations
@@ -33,9 +33,9 @@ from contact.records.validation import (
 if TYPE_CHECKING:
     from scipy.interpolate import PchipInterpolator
 
-# Half angles beyond these are no indenter: in radians, a needle and a plane.
+# Range of half angles [rad], from a needle to a plane.
 _NARROWEST, _WIDEST = 1e-3, math.pi / 2 - 1e-6
-# A cubic spline needs four points; with fewer than twice as many there is nothing to average.
+# Fewest points that are smoothed: twice those of a cubic spline, else there is nothing to average.
 _FEWEST_TO_SMOOTH = 8
 
 
@@ -44,15 +44,15 @@ class Profile(Record, ABC):
 
     NAMED = True
     UPRIGHT_END: ClassVar[str] = "the indenter is upright there"
-    """Reason of the message for a radius where the profile is upright."""
+    """Reason in the message for a radius where the slope is infinite."""
 
     @abstractmethod
     def height(self, radius: ArrayLike) -> FloatArray:
-        """f(r) [m], infinite beyond `max_radius`."""
+        """Height f(r) [m] at radii [m], infinite beyond `max_radius`."""
 
     @abstractmethod
     def slope_at(self, radius: ArrayLike) -> FloatArray:
-        """f'(r) [-]; at a kink the value from outside."""
+        """Slope f'(r) [-] at radii [m]; at a kink the value from outside."""
 
     @property
     def kinks(self) -> tuple[float, ...]:
@@ -66,12 +66,12 @@ class Profile(Record, ABC):
 
     @property
     def max_radius(self) -> float:
-        """Radius [m] where the profile ends."""
+        """Radius [m] where the profile ends; infinite without an end."""
         return math.inf
 
     @property
     def ends_upright(self) -> bool:
-        """Whether the slope is infinite where the profile ends: a contact up to there would be infinitely deep."""
+        """Whether the slope is infinite where the profile ends; the depth of a contact up to there is infinite."""
         return math.isfinite(self.max_radius) and not np.isfinite(self.slope_at(self.max_radius))
 
     @property
@@ -84,14 +84,14 @@ class Profile(Record, ABC):
 
         @property
         def flat_radius(self) -> float:
-            """Radius [m] of the flat end; zero for a profile that starts in a point."""
+            """Radius [m] of the flat end; zero for a profile with a pointed or rounded tip."""
 
 
 Slope = Annotated[float, *positive("the slope is the tangent of the angle between flank and surface")]
 
 
 class Sloped(Profile):
-    """A profile with a straight flank; files may give the half angle, from axis to flank, instead of the slope."""
+    """A profile with a straight flank. Files may have the half angle, from axis to flank, instead of the slope."""
 
     SHORTHANDS: ClassVar[Mapping[str, Any]] = {
         "half_angle": {"type": "string", "description": 'from the axis to the flank, as in "35 deg"'}
@@ -101,7 +101,7 @@ class Sloped(Profile):
     @model_validator(mode="before")
     @classmethod
     def _half_angle(cls, given: Any) -> Any:
-        """A table with slope = 1/tan(half angle)."""
+        """A table with slope = 1/tan(half angle) from one with a half angle."""
         if not isinstance(given, Mapping) or "half_angle" not in given:
             return given
         if "slope" in given:
@@ -125,12 +125,12 @@ class Pointed(Profile):
 
     @property
     def flat_radius(self) -> float:
-        """A single point."""
+        """Radius [m] of the flat end, which is zero."""
         return 0.0
 
 
 class FlatPunch(Profile):
-    """A flat-ended cylinder; its contact radius is its own.
+    """A flat-ended cylinder; its radius is the contact radius.
 
     Attributes:
         radius: Radius a [m].
@@ -154,7 +154,7 @@ class FlatPunch(Profile):
 
 
 class Paraboloid(Pointed):
-    """f(r) = r^2 / (2 R).
+    """Paraboloid f(r) = r^2 / (2 R).
 
     Attributes:
         radius_of_curvature: Radius of curvature R [m].
@@ -199,7 +199,7 @@ class Sphere(Pointed):
 
 
 class Cone(Sloped, Pointed):
-    """f(r) = slope r.
+    """Cone f(r) = slope r.
 
     Attributes:
         slope: Slope tan(theta) [-], theta the angle between the cone's flank and the surface.
@@ -215,7 +215,7 @@ class Cone(Sloped, Pointed):
 
 
 class Spheroconical(Sloped, Pointed):
-    """A cone whose apex is a sphere that it touches at b = R sin(theta): f is the sphere's up to b, then straight.
+    """A cone with a spherical tip: f is that of the sphere up to b = R sin(theta), then straight with its slope there.
 
     Attributes:
         radius: Radius R [m] of the sphere.
@@ -235,7 +235,7 @@ class Spheroconical(Sloped, Pointed):
 
     @property
     def tangent_radius(self) -> float:
-        """b [m], where sphere and cone touch with one slope."""
+        """Radius b [m] where sphere and cone meet with equal slope."""
         return self.radius * self.slope / math.hypot(1.0, self.slope)
 
     @property
@@ -256,7 +256,7 @@ class Truncated(Profile):
 
 
 class TruncatedCone(Sloped, Truncated):
-    """Eq. (35): flat up to b, then f(r) = slope (r - b).
+    """Truncated cone of Eq. (35): flat up to b, then f(r) = slope (r - b).
 
     Attributes:
         flat_radius: Radius b [m] of the flat end.
@@ -294,7 +294,7 @@ class TruncatedParaboloid(Truncated):
 
 
 class PowerLaw(Pointed):
-    """f(r) = H (r / R)^n: a cone for n = 1, a paraboloid for n = 2, ever flatter at the tip as n grows.
+    """Power law f(r) = H (r / R)^n: a cone for n = 1, a paraboloid for n = 2; the tip is flatter for larger n.
 
     Attributes:
         exponent: Exponent n >= 1 [-].
@@ -316,12 +316,12 @@ class PowerLaw(Pointed):
 
 
 class Tabulated(Pointed):
-    """A measured profile, joined by shape-preserving cubics (PCHIP: no overshoot, continuous slope).
+    """A measured profile, interpolated by shape-preserving cubics (PCHIP: no overshoot, continuous slope).
 
     Attributes:
         radii: Radii r [m], increasing from zero, shape (n,), n >= 3.
         heights: Heights f [m] at these radii, starting at zero, shape (n,).
-        smoothing: Largest change [m] of a height by `smoothed`; none for a table as it was measured.
+        smoothing: Largest change [m] of a height by `smoothed`; None for measured heights.
     """
 
     SHORTHANDS: ClassVar[Mapping[str, Any]] = {
@@ -338,7 +338,7 @@ class Tabulated(Pointed):
     @model_validator(mode="wrap")
     @classmethod
     def _from_file(cls, given: Any, handler: Any, info: ValidationInfo) -> Any:
-        """Reads the first two columns of a CSV file that a table names, and smooths the noise away."""
+        """The profile of a table, with heights from a CSV file if it names one, smoothed if it has the noise."""
         if not isinstance(given, Mapping):
             return handler(given)
         table = dict(given)
@@ -365,9 +365,9 @@ class Tabulated(Pointed):
         return self
 
     def smoothed(self, *, noise: float) -> Tabulated:
-        """The smoothest cubic spline whose root mean square distance from the tabulated heights is the noise.
+        """Smoothest cubic spline whose root mean square distance from the tabulated heights is the noise.
 
-        Where all heights change by at most e, the force changes by at most as much as between depths that differ by e.
+        If all heights change by at most e, the force changes by at most as much as between depths that differ by e.
         So smoothing changes the force by at most about k_N times `smoothing`.
 
         Args:
@@ -392,7 +392,7 @@ class Tabulated(Pointed):
 
     @cached_property
     def _curve(self) -> PchipInterpolator:
-        # Only tabulated scenes pay for this import.
+        # Only tabulated profiles need this import.
         from scipy.interpolate import PchipInterpolator  # noqa: PLC0415
 
         return PchipInterpolator(self.radii, self.heights)

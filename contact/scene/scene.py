@@ -1,4 +1,4 @@
-"""The scene: a layer, an indenter, what is prescribed, and the effects that matter. Without meshes and methods."""
+"""The scene: a layer, an indenter, a loading and effects, without meshes and methods."""
 
 from __future__ import annotations
 
@@ -18,27 +18,28 @@ from contact.scene.loading import LOADINGS, ContactRadii, Detachment, Indentatio
 from contact.scene.profiles import PROFILES, FlatPunch, Profile
 from contact.scene.shapes import SHAPES, Shape
 
-# Two stated moduli may differ by this, relative: E = 2 (1 + nu) G is rounded to 1e-15, and typed numbers that agree
-# to fewer than nine digits are two different materials.
+# Largest relative difference of the moduli of layer and effect: E = 2 (1 + nu) G is rounded to 1e-15, and numbers that
+# agree to fewer than nine digits are two different materials.
 _MODULUS_AGREEMENT = 1e-9
 
 E = TypeVar("E", bound=Effect)
 L = TypeVar("L", bound=Loading)
 
-# Type checkers know the loading of a scene, and so which kind of answer `solve` gives; `Scene` alone is any loading.
+# Type of the loading, which determines the type of the answer of `solve`; `Scene` without parameters has any loading.
 LoadingT_co = TypeVar("LoadingT_co", bound=Loading, default=Loading, covariant=True)
-# Likewise the layer; `Scene` alone has a plain one.
+# Type of the layer; `Scene` without parameters has a `Layer`.
 LayerT_co = TypeVar("LayerT_co", bound=ElasticLayer, default=Layer, covariant=True)
 
 
 def _truth(value: object) -> object:
+    """The value, if it is True or False; else a ValueError."""
     if not isinstance(value, bool):
         raise ValueError("must be true or false")
     return value
 
 
 def _listed(effects: Any) -> Any:
-    """A list, or a single effect, as well as a tuple."""
+    """Tuple of effects from a tuple, a list or a single effect."""
     if isinstance(effects, Effect):
         return (effects,)
     if isinstance(effects, str | bytes | Mapping) or not isinstance(effects, Sequence):
@@ -52,13 +53,11 @@ class Scene(Record, Generic[LoadingT_co, LayerT_co]):
     """One contact problem.
 
     Attributes:
-        layer: The elastic layer: a `Layer`, `LayerStack` or `GradedLayer`; a stack of one becomes the `Layer` it is.
-        indenter: The rigid profile pressed into it.
-        loading: What is prescribed.
-        effects: What is modelled beyond elastic frictionless contact; each kind at most once. Friction with a
-            coefficient of zero is none, and is left out.
-        beyond_small_strains: Whether depths from the thickness of the layer on are solved by the same linear equations;
-            otherwise methods refuse them.
+        layer: Elastic layer: a `Layer`, `LayerStack` or `GradedLayer`; a stack of one becomes a `Layer`.
+        indenter: Rigid profile pressed into the layer.
+        loading: Prescribed radii, depths, forces, detachment, impact or history.
+        effects: Effects beyond elastic frictionless contact, each kind at most once; zero friction is omitted.
+        beyond_small_strains: Whether depths of the thickness or more are solved by the linear equations, else refused.
     """
 
     if TYPE_CHECKING:
@@ -78,7 +77,7 @@ class Scene(Record, Generic[LoadingT_co, LayerT_co]):
     beyond_small_strains: Annotated[bool, BeforeValidator(_truth)] = False
 
     def effect(self, kind: type[E]) -> E | None:
-        """The listed effect of this kind, or None."""
+        """The effect of this kind, or None."""
         return next((effect for effect in self.effects if isinstance(effect, kind)), None)
 
     if TYPE_CHECKING:  # at run time `Record.replace` does it
@@ -109,6 +108,7 @@ AnyScene: TypeAlias = Scene[Loading, ElasticLayer]
 
 
 def _check_effects(scene: AnyScene) -> None:
+    """Refuse repeated effects, and a detachment without adhesion."""
     kinds = [Viscoelasticity if isinstance(effect, Viscoelasticity) else type(effect) for effect in scene.effects]
     if len(set(kinds)) < len(kinds):
         names = ", ".join(type(effect).__name__ for effect in scene.effects)
@@ -118,6 +118,7 @@ def _check_effects(scene: AnyScene) -> None:
 
 
 def _check_radii(scene: AnyScene) -> None:
+    """Refuse prescribed contact radii that the indenter cannot have."""
     if isinstance(scene.loading, ContactRadii):
         if isinstance(scene.indenter, Shape):
             raise ValueError("loading = ContactRadii: this contact is no circle; give depths or forces")
@@ -135,6 +136,7 @@ def _check_radii(scene: AnyScene) -> None:
 
 
 def _check_radius(scene: AnyScene, radius: float, place: str) -> None:
+    """Refuse a radius [m] within the flat end or beyond the end of the profile; ``place`` is its path."""
     flat, end = scene.indenter.flat_radius, scene.indenter.max_radius
     if radius < flat or (radius == flat and not isinstance(scene.indenter, FlatPunch) and not scene.effects):
         raise ValueError(f"{place} = {radius:g}: the indenter's flat end already touches out to {flat:g} m; go beyond")
@@ -143,6 +145,7 @@ def _check_radius(scene: AnyScene, radius: float, place: str) -> None:
 
 
 def _check_signs(scene: AnyScene) -> None:
+    """Refuse negative depths and forces without adhesion."""
     if scene.effect(Adhesion) is not None or not isinstance(scene.loading, IndentationDepths | NormalForces):
         return
     if np.any(scene.loading.values < 0.0):
@@ -153,6 +156,7 @@ def _check_signs(scene: AnyScene) -> None:
 
 
 def _check_moduli(scene: AnyScene) -> None:
+    """Refuse a viscoelastic effect whose instantaneous modulus differs from that of the layer."""
     model = scene.effect(Viscoelasticity)
     if model is None:
         return

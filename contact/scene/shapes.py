@@ -1,6 +1,7 @@
 """Rigid indenters that are no bodies of revolution, symmetric about phi = 0.
 
-Raised ones have the height f(r, phi) = f_0(r) + sum_n f_n(r) cos(n phi) with f(0) = 0, flat ones the outline a(phi).
+`Raised` shapes have the height f(r, phi) = f_0(r) + sum_n f_n(r) cos(n phi) with f(0) = 0, `Flat` ones the outline
+a(phi).
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ _T, _W = np.polynomial.legendre.leggauss(_NODES)
 class Shape(Profile, ABC):
     """An indenter whose height or outline depends on the direction phi [rad].
 
-    As a `Profile` it refuses heights at a radius alone, so that no method takes it for a body of revolution.
+    Its height at a radius without a direction is refused, so that no method solves it as a body of revolution.
     """
 
     @property
@@ -41,7 +42,7 @@ class Shape(Profile, ABC):
     @property
     @abstractmethod
     def symmetry(self) -> int:
-        """Number of equal sectors: the period of the shape in phi is 2 pi over it."""
+        """Number m of equal sectors: the period of the shape in phi is 2 pi / m."""
 
     @property
     def orders(self) -> tuple[int, ...]:
@@ -55,12 +56,12 @@ class Shape(Profile, ABC):
 
     @property
     def substitute(self) -> Profile:
-        """The body of revolution that methods without shapes may solve in its place."""
+        """Body of revolution that messages recommend instead of the shape."""
         return self.mean
 
     @abstractmethod
     def polar(self, radius: ArrayLike, angle: ArrayLike) -> FloatArray:
-        """f(r, phi) [m] at radii [m] and directions [rad] that broadcast; infinite outside a flat punch."""
+        """Height f(r, phi) [m] at radii [m] and directions [rad] that broadcast; infinite outside a flat punch."""
 
     def sector(self) -> tuple[FloatArray, FloatArray]:
         """Directions [rad] in half a sector and weights of the average over phi, shape (n,)."""
@@ -69,20 +70,21 @@ class Shape(Profile, ABC):
         return (ends[:-1, None] + width * (1.0 + _T) / 2.0).ravel(), (width * _W / (2.0 * ends[-1])).ravel()
 
     def height(self, radius: ArrayLike) -> FloatArray:
-        """Refused: see the class."""
+        """Raise UnsupportedSceneError: the height depends on the direction, see `polar`."""
         self._refuse()
 
     def slope_at(self, radius: ArrayLike) -> FloatArray:
-        """Refused: see the class."""
+        """Raise UnsupportedSceneError: the slope depends on the direction."""
         self._refuse()
 
     def _refuse(self) -> Never:
+        """Raise the error of a height without a direction."""
         name = type(self).__name__
         raise UnsupportedSceneError(f"indenter = {name}: its height depends on the direction; {self.instead}")
 
     @property
     def instead(self) -> str:
-        """Remedy of the message where shapes are not modelled."""
+        """Remedy in messages of methods that do not model the shape."""
         fields = ", ".join(f"{k}={v:.6g}" for k, v in vars(self.substitute).items() if isinstance(v, float))
         return f"take {type(self.substitute).__name__}({fields}) in its place, or leave out what is not modelled"
 
@@ -93,25 +95,25 @@ class Shape(Profile, ABC):
 
 
 class Raised(Shape):
-    """A shape with heights."""
+    """A shape whose height depends on radius and direction."""
 
     @abstractmethod
     def polar_slope(self, radius: ArrayLike, angle: ArrayLike) -> FloatArray:
-        """Slope df/dr [-]."""
+        """Slope df/dr [-] at radii [m] and directions [rad] that broadcast."""
 
     def harmonic(self, orders: Sequence[int], radius: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """f_n [m] and df_n/dr [-] of p orders at radii [m], shape (.., p); f_0 is the average over phi."""
+        """Harmonics f_n [m] and df_n/dr [-] of p orders at radii [m], shape (.., p); f_0 is the average over phi."""
         (angle, weight), n = self.sector(), np.array(orders)
         share = np.where(n == 0, 1.0, 2.0) * weight[:, None] * np.cos(np.multiply.outer(angle, n))
         return self.polar(radius[..., None], angle) @ share, self.polar_slope(radius[..., None], angle) @ share
 
 
 class Flat(Shape):
-    """A flat punch that is no circle."""
+    """A flat punch whose outline is no circle."""
 
     @abstractmethod
     def outline(self, angle: ArrayLike) -> FloatArray:
-        """a(phi) [m]."""
+        """Outline a(phi) [m] in directions [rad]."""
 
     @cached_property
     def mean(self) -> FlatPunch:
@@ -125,7 +127,7 @@ class Flat(Shape):
 
 
 class EllipticParaboloid(Raised):
-    """f = x^2/(2 R_1) + y^2/(2 R_2), in r and phi: r^2 [cos^2(phi)/R_1 + sin^2(phi)/R_2]/2.
+    """Elliptic paraboloid f = x^2/(2 R_1) + y^2/(2 R_2) = r^2 [cos^2(phi)/R_1 + sin^2(phi)/R_2]/2.
 
     Attributes:
         first_radius: Radius of curvature R_1 [m] in the plane y = 0.
@@ -163,12 +165,12 @@ class EllipticParaboloid(Raised):
 class Pyramid(Sloped, Raised):
     """A regular pyramid, f = slope r cos(phi) over the middle half of a face; the edges of its faces are sharp.
 
-    With a tip of radius R each ray is a sphere up to the point where it touches the flank of that ray.
+    With a tip of radius R the profile in each direction is a sphere up to the point where the flank is tangent to it.
 
     Attributes:
         slope: Tangent of the angle between a face and the surface [-].
         sides: Number of faces, 3 or 4.
-        tip_radius: Radius R [m] of the blunt tip; none for a sharp one.
+        tip_radius: Radius R [m] of the blunt tip; None for a sharp tip.
     """
 
     slope: Slope
@@ -182,18 +184,18 @@ class Pyramid(Sloped, Raised):
 
     @cached_property
     def mean(self) -> Profile:
-        """A cone where the tip is sharp."""
+        """Mean profile over phi: a cone if the tip is sharp, else by quadrature."""
         if self.tip_radius is not None:
             return Averaged(shape=self)
         return Cone(slope=self.slope * self.sides / math.pi * math.sin(math.pi / self.sides))
 
     @property
     def substitute(self) -> Profile:
-        """The cone of equal cross-sections, which is customary."""
+        """The customary cone of equal cross-sections."""
         return Cone(slope=self.slope / math.sqrt(self.sides / math.pi * math.tan(math.pi / self.sides)))
 
     def polar(self, radius: ArrayLike, angle: ArrayLike) -> FloatArray:
-        """f [m]: R (1 - cos(t)) = R sin(t) tan(t/2) on the sphere, then straight."""
+        """Height f [m]: R (1 - cos(t)) = R sin(t) tan(t/2) on the sphere, then straight."""
         slope, t = self._rays(radius, angle)
         b = (self.tip_radius or 0.0) * np.sin(t)
         return np.asarray(b * np.tan(t / 2.0) + slope * (np.asarray(radius) - b))
@@ -204,12 +206,12 @@ class Pyramid(Sloped, Raised):
 
     @property
     def breakpoints(self) -> tuple[float, ...]:
-        """Between them [m] rays leave the sphere."""
+        """Smallest and largest radius [m] at which the sphere ends in some direction."""
         _, t = self._rays(math.inf, np.array([math.pi / self.sides, 0.0]))
         return tuple((self.tip_radius * np.sin(t)).tolist()) if self.tip_radius else ()
 
     def _rays(self, radius: ArrayLike, angle: ArrayLike) -> tuple[FloatArray, FloatArray]:
-        """Slope of the flank in a direction, and the inclination t [rad] of the ray at a radius [m]."""
+        """Slope of the flank in a direction, and the inclination t [rad] of the profile there at a radius [m]."""
         sector = 2.0 * math.pi / self.sides
         slope = self.slope * np.cos(np.asarray(angle) - sector * np.round(np.asarray(angle) / sector))
         sine = np.minimum(np.asarray(radius) / (self.tip_radius or 1e-300), 1.0)
@@ -220,7 +222,7 @@ class Averaged(Pointed):
     """Mean profile f_0(r) of a shape, by quadrature over phi.
 
     Attributes:
-        shape: The shape.
+        shape: Shape that is averaged.
     """
 
     shape: Pyramid
@@ -240,7 +242,7 @@ class Averaged(Pointed):
 
     @property
     def is_convex(self) -> bool:
-        """Whether the profile is convex: it is, since every ray is."""
+        """True, since the profile is convex in every direction."""
         return True
 
 
@@ -250,7 +252,7 @@ class Harmonic(Record):
     Attributes:
         order: Order n >= 2. The order 1 is a shift or tilt: move the axis there.
         share: Factor of f [-], of either sign.
-        profile: Profile f; the mean profile itself where none is given.
+        profile: Profile f; None for the mean profile.
     """
 
     order: Annotated[int, Field(ge=2, le=LARGEST_ORDER)]
@@ -259,7 +261,7 @@ class Harmonic(Record):
 
 
 def _terms(given: Any) -> Any:
-    """A mapping {n: share} or {n: profile} as terms."""
+    """Terms from a mapping {n: share} or {n: profile}; other input is returned unchanged."""
     if not isinstance(given, Mapping):
         return tuple(given) if isinstance(given, list) else given
     return tuple(
@@ -271,11 +273,11 @@ def _terms(given: Any) -> Any:
 
 
 class Harmonics(Raised):
-    """f = f_0(r) + sum_n share_n f_n(r) cos(n phi).
+    """Shape f = f_0(r) + sum_n share_n f_n(r) cos(n phi).
 
     Attributes:
         profile: Profile f_0.
-        terms: The terms, as a list of `Harmonic`; in Python also {n: share} or {n: profile}.
+        terms: Terms, as a list of `Harmonic`; in Python also {n: share} or {n: profile}.
     """
 
     profile: Annotated[Profile, OneOf(*PROFILES)]
@@ -320,6 +322,7 @@ class Harmonics(Raised):
         return np.asarray(self.profile.slope_at(radius) + sum(rest))
 
     def _of(self, term: Harmonic) -> Profile:
+        """Profile f_n of a term."""
         return self.profile if term.profile is None else term.profile
 
 
@@ -329,7 +332,7 @@ class PolygonalPunch(Flat):
     Attributes:
         sides: Number of sides, 3 to 12.
         inscribed_radius: Distance [m] of the sides from the axis: half the side of a square.
-        corner_radius: Radius [m] of the corners, at most `inscribed_radius`; none for sharp ones.
+        corner_radius: Radius [m] of the corners, at most `inscribed_radius`; None for sharp corners.
     """
 
     inscribed_radius: PositiveLength
@@ -344,6 +347,7 @@ class PolygonalPunch(Flat):
 
     @property
     def _rounding(self) -> float:
+        """Radius [m] of the corners; zero for sharp corners."""
         return self.corner_radius or 0.0
 
     @property
@@ -359,7 +363,7 @@ class PolygonalPunch(Flat):
         return (end,) if 0.0 < self._rounding < self.inscribed_radius else ()
 
     def outline(self, angle: ArrayLike) -> FloatArray:
-        """a(phi) [m]: a side, or the circle about the centre of a corner."""
+        """Outline a(phi) [m]: a side, or the circle about the centre of a corner."""
         half = math.pi / self.sides
         phi = np.abs(np.asarray(angle) - 2.0 * half * np.round(np.asarray(angle) / (2.0 * half)))
         centre, c = (self.inscribed_radius - self._rounding) / math.cos(half), self._rounding
@@ -386,7 +390,7 @@ class EllipticPunch(Flat):
         return 2
 
     def outline(self, angle: ArrayLike) -> FloatArray:
-        """a(phi) = A B/sqrt(B^2 cos^2(phi) + A^2 sin^2(phi)) [m]."""
+        """Outline a(phi) = A B/sqrt(B^2 cos^2(phi) + A^2 sin^2(phi)) [m]."""
         A, B = self.first_half_axis, self.second_half_axis
         return np.asarray(A * B / np.hypot(B * np.cos(angle), A * np.sin(angle)))
 

@@ -47,10 +47,10 @@ EDGE_UNCERTAIN = 0.1
 
 @dataclass(frozen=True)
 class Rubbed:
-    """One state on its strip.
+    """One equilibrium with friction on its strip.
 
     Attributes:
-        contact: the strip.
+        contact: condensed layer and indenter on the strip.
         state: the equilibrium.
         modulus: E* [Pa].
     """
@@ -60,7 +60,7 @@ class Rubbed:
     modulus: float
 
     def at_radii(self, values: FloatArray, radius: FloatArray) -> FloatArray:
-        """A piecewise linear function on the strip at radii [m]."""
+        """Piecewise linear function on the strip with nodal ``values``, at radii [m]."""
         return self.contact.surface.tractions.evaluate(values, radius / self.contact.radius)
 
     @property
@@ -71,19 +71,23 @@ class Rubbed:
 
 @dataclass(frozen=True)
 class RubbedFields:
-    """Surface fields of a path; satisfies `contact.Fields`."""
+    """Surface fields of a path; satisfies `contact.Fields`.
+
+    Attributes:
+        steps: equilibria of the path.
+    """
 
     steps: Sequence[Rubbed]
 
     def pressure(self, radius: FloatArray, step: int) -> FloatArray:
         """Pressure p(r) [Pa]."""
-        at = self.steps[step]
-        return at.modulus * at.at_radii(at.state.pressure, radius)
+        rubbed = self.steps[step]
+        return rubbed.modulus * rubbed.at_radii(rubbed.state.pressure, radius)
 
     def tangential_traction(self, radius: FloatArray, step: int) -> FloatArray:
         """Traction q(r) [Pa], positive where the layer is pushed outward, zero outside."""
-        at = self.steps[step]
-        return at.modulus * at.at_radii(at.state.shear, radius)
+        rubbed = self.steps[step]
+        return rubbed.modulus * rubbed.at_radii(rubbed.state.shear, radius)
 
     def slip(self, radius: FloatArray, step: int) -> FloatArray:
         """Radial displacement u_r(r) of the surface since the instant of first touch [m], zero outside, shape of r.
@@ -93,18 +97,18 @@ class RubbedFields:
 
         Args:
             radius: r [m].
-            step: number of the state in the path.
+            step: index of the state in the path.
         """
-        at = self.steps[step]
-        slip = (at.state.radial - at.state.touched) / at.contact.surface.resultants
+        rubbed = self.steps[step]
+        slip = (rubbed.state.radial - rubbed.state.touched) / rubbed.contact.surface.resultants
         slip[0] = 0.0  # u_r = 0 on the axis
-        return at.contact.radius * at.at_radii(np.where(at.state.pressure > 0.0, slip, 0.0), radius)
+        return rubbed.contact.radius * rubbed.at_radii(np.where(rubbed.state.pressure > 0.0, slip, 0.0), radius)
 
     def surface_displacement(self, radius: FloatArray, step: int) -> FloatArray:
         """Displacement w(r) [m], positive into the layer; zero beyond the mesh."""
-        at, surface = self.steps[step], self.steps[step].contact.surface
-        nodal = surface.top_displacements @ at.state.tractions
-        return at.contact.radius * surface.top.evaluate(nodal, radius / at.contact.radius)
+        rubbed, surface = self.steps[step], self.steps[step].contact.surface
+        nodal = surface.top_displacements @ rubbed.state.tractions
+        return rubbed.contact.radius * surface.top.evaluate(nodal, radius / rubbed.contact.radius)
 
 
 def rubbed_path(
@@ -135,7 +139,7 @@ def rubbed_path(
         defect = {"base_force_defect": abs(fine.base_force / fine.state.force - 1.0)}
         number_errors = {QUANTITIES[n][0]: e for n, e in stated.items()}
         errors[step], steps[step] = number_errors | _traction_errors(fine, coarse) | defect, fine
-    found: dict[str, Any] = {
+    quantities: dict[str, Any] = {
         quantity: modulus**power * np.array([number[n] for number in numbers])
         for n, (quantity, power) in QUANTITIES.items()
     }
@@ -147,12 +151,12 @@ def rubbed_path(
         cost=log.cost(unknowns=max(each.contact.surface.unknowns for each in steps.values())),
         stages=log.records,
         fields=RubbedFields([steps[step] for step in range(len(values))]),
-        **found,
+        **quantities,
     )
 
 
 def _traction_errors(fine: Rubbed, coarse: Rubbed) -> dict[str, float]:
-    """Errors of p and q by half the cells: root mean square with weight 2 pi r, relative to that of p."""
+    """Stated errors of p and q from half the cells: L2 norms with weight 2 pi r, relative to that of p."""
     radius, weight = (values.ravel() for values in fine.contact.surface.tractions.gauss(2))
     (p, q), others = (
         [each.contact.surface.tractions.evaluate(values, radius) for values in (each.state.pressure, each.state.shear)]
@@ -165,13 +169,13 @@ def _traction_errors(fine: Rubbed, coarse: Rubbed) -> dict[str, float]:
 def rubbed_history(
     scene: Scene, settings: Discretisation, *, written: Mapping[str, Setting], log: StageLog
 ) -> FrictionHistory:
-    """Depths or forces in time, from the undeformed layer, solved at the given instants only.
+    """Response of the undeformed layer to depths or forces in time, solved at the given instants only.
 
-    Coulomb friction does not depend on the rate. Between two instants the load is monotonic, and `followed` makes the
-    steps. Depths above the surface, which are negative, mean no contact.
+    Coulomb friction does not depend on the rate. Between two instants the load is monotonic, and `followed` divides
+    it into steps. A negative depth means no contact.
 
     Raises:
-        InvalidInput: a force pulls, or nothing is ever pressed.
+        InvalidInput: a force is negative, or no depth or force is positive.
     """
     loading, by_depth = scene.loading, isinstance(scene.loading, DepthHistory)
     targets: FloatArray = loading.depth if by_depth else loading.force  # type: ignore[attr-defined]
@@ -186,18 +190,18 @@ def rubbed_history(
             states = followed(contact, [max(0.0, float(target)) / unit for target in targets], by_depth=by_depth)
         runs.append([Rubbed(contact, state, modulus) for state in states])
         numbers.append(_numbers(contact, states, modulus))
-    found, coarser = numbers
+    fine, coarse = numbers
     surface = runs[0][0].contact.surface
-    cell = runs[0][0].contact.radius * surface.radii[1] / found["contact_radius"].max()
-    # Error of radii by the cells they are read from, relative to the largest contact radius.
-    reading = {"contact_radius": EDGE_UNCERTAIN * cell, "stick_radius": cell}
+    cell = runs[0][0].contact.radius * surface.radii[1] / fine["contact_radius"].max()
+    # Error of radii from the size of cells, relative to the largest contact radius.
+    radius_errors = {"contact_radius": EDGE_UNCERTAIN * cell, "stick_radius": cell}
     errors = {}
-    for name, values in found.items():
+    for name, values in fine.items():
         if np.any(values):
-            change = SAFETY * np.abs(values - coarser[name]).max() / np.abs(values).max()
-            errors[name] = np.full(len(targets), change + reading.get(name, 0.0))
+            change = SAFETY * np.abs(values - coarse[name]).max() / np.abs(values).max()
+            errors[name] = np.full(len(targets), change + radius_errors.get(name, 0.0))
     if by_depth:
-        found["indentation_depth"], errors["indentation_depth"] = targets, np.zeros(len(targets))
+        fine["indentation_depth"], errors["indentation_depth"] = targets, np.zeros(len(targets))
     return FrictionHistory(
         scene=scene,
         method="fem",
@@ -207,12 +211,12 @@ def rubbed_history(
         stages=log.records,
         time=loading.time,  # type: ignore[attr-defined]
         surface=RubbedFields(runs[0]),
-        **found,
+        **fine,
     )
 
 
 def _numbers(contact: RubbedContact, states: list[RubbedState], modulus: float) -> dict[str, Any]:
-    """Quantities at each instant, in SI units."""
+    """Quantities at each instant in SI units, by their names in the answer."""
     unit, radii = contact.radius, contact.surface.radii
     return {
         "indentation_depth": unit * np.array([state.depth for state in states]),
@@ -242,7 +246,7 @@ def _checks(steps: Sequence[Rubbed]) -> dict[str, FloatArray]:
 
 @dataclass(frozen=True)
 class AdheredFemFields(FemFields):
-    """Surface fields of a punch that sticks: one solution, scaled by the depth."""
+    """Surface fields of a punch that sticks: one solution, proportional to the depth."""
 
     def tangential_traction(self, radius: FloatArray, step: int) -> FloatArray:
         """Traction q(r) [Pa], positive where the layer is pushed outward, zero outside."""
@@ -254,9 +258,9 @@ class AdheredFemFields(FemFields):
 def with_shear_error(
     path: ContactPath, states: Sequence[FemEquilibrium], coarser: Sequence[FemEquilibrium]
 ) -> ContactPath:
-    """The path with the error of q over the size of p: L2 with the weight ``2 pi r (1 - r^2 / a^2)``, as that of p is.
+    """The path with the error of q relative to the norm of p: L2 norms with weight ``2 pi r (1 - r^2 / a^2)``.
 
-    The size of q itself would not do: on an incompressible half-space q vanishes.
+    The norm of q itself is no scale: on an incompressible half-space q vanishes.
     """
     contact = states[0].contact
     radius, weight = contact_rule(contact)

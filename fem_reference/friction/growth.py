@@ -35,7 +35,7 @@ from fem_reference.settings import Discretisation
 from fem_reference.stated import LEAST_SHARE
 from fem_reference.surface import RUBBED_STRIDE, STRIP_CELLS, condense, strip_section
 
-# Share of its strip that the largest contact fills: a few nodes beyond it are needed to follow its growth.
+# Radius of the largest contact over that of its strip: a few nodes beyond the contact are needed to solve its growth.
 FILLED = 0.9
 # One pair of strips serves contacts with radii down to this share of its largest: the smallest has half of its cells.
 SERVED = 0.5
@@ -45,13 +45,13 @@ FEWEST_CELLS, MOST_CELLS = 20, 480
 # Share of a profile whose heights are used: at its very end a sphere's slope has no bound.
 INSIDE = 0.999
 # Growth of the mesh outside a strip of STRIP_CELLS cells, and the `Discretisation.growth` at which a strip has so many.
-AWAY, USUAL_GROWTH = 0.5, 0.5
+OUTSIDE_GROWTH, USUAL_GROWTH = 0.5, 0.5
 # A touching node lies this share of a cell inside the contact's edge where the edge slides. On half-spaces without
 # friction, where a = sqrt(R delta), the share is 0.0307 on 40 cells and 0.0294 on 80: this is the limit.
 EDGE_SHARE = 0.028
-# Where the edge sticks, the share is less by this times eps^2, with eps = ln(3 - 4 nu)/(2 pi) of the oscillating
+# Where the edge sticks, the share is smaller by this times eps^2, with eps = ln(3 - 4 nu)/(2 pi) of the oscillating
 # singularity at the edge of a rigid punch that sticks. On half-spaces (nu = 0, 0.3; radii of MDR) it is 0.23 to 0.24.
-LESS_BY_STICK = 0.25
+STICK_SHIFT = 0.25
 # Error of EDGE_SHARE in cells: its change from 40 cells to 80, and a little more.
 EDGE_UNCERTAIN = 0.0015
 # One touching point on either side per so many of the strip, and at least two, are fitted by a polynomial of this
@@ -67,12 +67,12 @@ STICK_UNCERTAIN = 0.2
 
 @dataclass(frozen=True)
 class StripMaker:
-    """Makes the strips of one scene.
+    """Condensed layers and indenters on strips of one scene.
 
     Attributes:
-        scene: with one effect, friction.
-        settings: whose growth determines the number of cells.
-        log: of stages.
+        scene: scene with one effect, friction.
+        settings: numerical settings; their growth determines the number of cells.
+        log: record of time and memory per stage.
     """
 
     scene: Scene
@@ -84,7 +84,7 @@ class StripMaker:
         """Cells of the finer strip: a multiple of four, inversely proportional to the growth of the settings.
 
         Raises:
-            NotConvergedError: too many.
+            NotConvergedError: more than `MOST_CELLS` cells.
         """
         cells = 4 * max(FEWEST_CELLS, round(STRIP_CELLS * USUAL_GROWTH / self.settings.growth / 4))
         if cells > MOST_CELLS:
@@ -95,7 +95,9 @@ class StripMaker:
         """The condensed layer and the indenter on a strip of this radius [m]."""
         scene, friction = self.scene, self.scene.effect(Friction)
         kinks = scene.indenter.breakpoints
-        section = strip_section(scene.layer, radius, cells, kinks, self.settings, outside=AWAY, stride=RUBBED_STRIDE)
+        section = strip_section(
+            scene.layer, radius, cells, kinks, self.settings, outside=OUTSIDE_GROWTH, stride=RUBBED_STRIDE
+        )
         surface = condense(*section, self.log, stride=RUBBED_STRIDE, tangential=True)
         profile = surface.moments(_heights(scene.indenter, surface.tractions.gauss(4)[0] * radius) / radius)
         return RubbedContact(surface, profile, friction.coefficient if friction else 0.0, radius)
@@ -106,15 +108,15 @@ class StripMaker:
         Raises:
             InvalidInput: the contact would reach the end of the profile.
         """
-        reach, scene = largest, self.scene
+        radius, scene = largest, self.scene
         end = scene.indenter.max_radius
         if not isinstance(scene.loading, ContactRadii):
             # Friction changes the radius at a load by a few per cent, and makes it smaller.
             unit = contact_modulus(scene.layer) if isinstance(scene.loading, NormalForces) else 1.0
-            reach, end = searched_radius(scene.replace(effects=()), self.log, largest / unit), INSIDE * end
-        if reach > end:
+            radius, end = searched_radius(scene.replace(effects=()), self.log, largest / unit), INSIDE * end
+        if radius > end:
             raise InvalidInput(f"contact reaches the end of the profile at {scene.indenter.max_radius:g} m; press less")
-        return self.contact(reach / FILLED, self.cells), self.contact(reach / FILLED, self.cells // 2)
+        return self.contact(radius / FILLED, self.cells), self.contact(radius / FILLED, self.cells // 2)
 
 
 def _heights(profile: Profile, radius: FloatArray) -> FloatArray:
@@ -131,8 +133,8 @@ class Growing:
     """A growing contact on one strip, at its touching points; lengths in metres, forces over E* in m^2.
 
     Attributes:
-        contact: the strip.
-        states: the k touching points; in the first, node 1 just touches.
+        contact: condensed layer and indenter on the strip.
+        states: states at k touching points; in the first, node 1 just touches.
     """
 
     contact: RubbedContact
@@ -140,55 +142,55 @@ class Growing:
 
     @property
     def cell(self) -> float:
-        """Cell of the strip [m]."""
+        """Cell size of the strip [m]."""
         return self.contact.radius * float(self.contact.surface.radii[1])
 
     @property
-    def less_by_stick(self) -> float:
+    def stick_shift(self) -> float:
         """Distance, in cells, by which an edge that sticks lies farther in than one that slides."""
-        return LESS_BY_STICK * (math.log(3.0 - 4.0 * self.contact.surface.poissons_ratio) / (2.0 * math.pi)) ** 2
+        return STICK_SHIFT * (math.log(3.0 - 4.0 * self.contact.surface.poissons_ratio) / (2.0 * math.pi)) ** 2
 
     @cached_property
     def points(self) -> dict[str, FloatArray]:
         """Depth, force, radius, stick radius over a, and heat over force times depth, shape (k,) each.
 
-        The radius is that of the touching node and `EDGE_SHARE` of a cell. The ratio of the heat changes little as the
-        contact grows.
+        The contact radius is that of the touching node plus `EDGE_SHARE` of a cell. The ratio of the heat changes
+        little as the contact grows.
         """
         unit, nodes = self.contact.radius, self.contact.surface.radii[1 : len(self.states) + 1]
         depth, force, heat = (np.array([getattr(s, n) for s in self.states]) for n in ("depth", "force", "dissipated"))
-        inner = np.array([stick_radius(self.contact, state) for state in self.states])
-        sticks, slid = inner == nodes, nodes + EDGE_SHARE * nodes[0]
+        stick = np.array([stick_radius(self.contact, state) for state in self.states])
+        sticks, sliding_radius = stick == nodes, nodes + EDGE_SHARE * nodes[0]
         return {
             "depth": unit * depth,
             "force": unit**2 * force,
-            "radius": unit * (slid - np.where(sticks, self.less_by_stick * nodes[0], 0.0)),
-            "stick": np.where(sticks, 1.0, inner / slid),
+            "radius": unit * (sliding_radius - np.where(sticks, self.stick_shift * nodes[0], 0.0)),
+            "stick": np.where(sticks, 1.0, stick / sliding_radius),
             "heat": heat / (force * depth),
         }
 
     def at(self, depth: float) -> dict[str, float]:
         """The quantities of `points` at a depth [m], by polynomials in ln(depth) fitted to nearby points.
 
-        Also the stiffness k_N = dF/d(delta) = (F/delta) dlnF/dln(delta), since without pressure at the edge dF/da = 0
-        at given depth, and the widening dln(a)/dln(delta).
+        Two more are the stiffness k_N = dF/d(delta) = (F/delta) dlnF/dln(delta), since without pressure at the edge
+        dF/da = 0 at given depth, and the widening dln(a)/dln(delta).
         """
         points = self.points
         log = np.log(points["depth"] / depth)
-        middle, aside = int(np.searchsorted(log, 0.0)), max(2, len(log) // PER_NEIGHBOUR)
-        first = max(0, min(middle - aside, len(log) - 2 * aside))
-        near = slice(first, first + 2 * aside)
+        position, half_count = int(np.searchsorted(log, 0.0)), max(2, len(log) // PER_NEIGHBOUR)
+        first = max(0, min(position - half_count, len(log) - 2 * half_count))
+        near = slice(first, first + 2 * half_count)
         columns = np.log(points["force"]), np.log(points["radius"]), points["stick"], points["heat"]
         fit = np.polynomial.polynomial.polyfit(log[near], np.column_stack(columns)[near], DEGREE)
         force, radius, stick, heat = map(float, (*np.exp(fit[0, :2]), *fit[0, 2:]))
-        found = {"force": force, "radius": radius, "stick": stick, "heat": heat}
-        return found | {"stiffness": force / depth * float(fit[1, 0]), "widening": float(fit[1, 1])}
+        quantities = {"force": force, "radius": radius, "stick": stick, "heat": heat}
+        return quantities | {"stiffness": force / depth * float(fit[1, 0]), "widening": float(fit[1, 1])}
 
     def state_at(self, depth: float) -> RubbedState:
-        """The equilibrium at a depth [m]."""
-        passed = int(np.searchsorted(self.points["depth"][:-1], depth))
-        before = self.states[passed - 1] if passed else at_rest(self.contact)
-        return advance(self.contact, before, passed + 1, at_load(depth / self.contact.radius, by_depth=True))
+        """Equilibrium at a depth [m], one step after the last touching point of smaller depth."""
+        count = int(np.searchsorted(self.points["depth"][:-1], depth))
+        last_state = self.states[count - 1] if count else at_rest(self.contact)
+        return advance(self.contact, last_state, count + 1, at_load(depth / self.contact.radius, by_depth=True))
 
 
 @dataclass(frozen=True)
@@ -196,8 +198,8 @@ class GrowthRecord:
     """The growing contact on two strips.
 
     Attributes:
-        fine: on cells h.
-        coarse: on cells 2 h, of the same strip.
+        fine: the growing contact on cells h.
+        coarse: the growing contact on cells 2 h of the same strip.
     """
 
     fine: Growing
@@ -205,11 +207,11 @@ class GrowthRecord:
 
     @classmethod
     def of(cls, fine: RubbedContact, coarse: RubbedContact) -> Self:
-        """The contact grown on each of two strips."""
+        """The growing contacts on two strips."""
         return cls(Growing(fine, grown(fine)), Growing(coarse, grown(coarse)))
 
     def serves(self, name: str, value: float) -> bool:
-        """Whether a radius [m], depth [m] or force/E* [m^2] has enough cells."""
+        """Whether at a radius [m], depth [m] or force/E* [m^2] the contact radius is at least `SERVED` of the last."""
         points = self.fine.points
         return bool(np.interp(value, points[name], points["radius"]) >= SERVED * points["radius"][-1])
 
@@ -217,25 +219,25 @@ class GrowthRecord:
         """Radius, depth [m], force/E* [m^2], stiffness/E* [m], stick radius [m] and heat/E* [m^3] in one state.
 
         Args:
-            name: "radius", "depth" or "force", which is prescribed.
-            value: of that quantity.
-            extrapolated: whether the cells' leading error is subtracted, else the finer strip answers.
+            name: prescribed quantity, "radius", "depth" or "force".
+            value: value of that quantity.
+            extrapolated: whether the leading error in the cell is subtracted; else values are those of the finer strip.
         """
         depth = value if name == "depth" else self._depth_of(name, value, extrapolated)
-        found = self._at(depth, extrapolated)
-        heat, stick = found["heat"] * found["force"] * depth, self._stick(depth, found, extrapolated)
-        kept = {each: found[each] for each in ("radius", "force", "stiffness")}
-        return kept | {"depth": depth, "stick": stick * found["radius"], "heat": heat} | {name: value}
+        quantities = self._at(depth, extrapolated)
+        heat, stick = quantities["heat"] * quantities["force"] * depth, self._stick(depth, quantities, extrapolated)
+        selected = {each: quantities[each] for each in ("radius", "force", "stiffness")}
+        return selected | {"depth": depth, "stick": stick * quantities["radius"], "heat": heat} | {name: value}
 
     def _depth_of(self, name: str, value: float, extrapolated: bool) -> float:
-        """The depth [m] at which radius [m] or force/E* [m^2] has a value."""
+        """Depth [m] at which the radius [m] or force/E* [m^2] equals ``value``."""
 
-        def missing(log_depth: float) -> float:
+        def defect(log_depth: float) -> float:
             """Relative difference of the quantity from ``value`` at a depth."""
             return self._at(math.exp(log_depth), extrapolated)[name] / value - 1.0
 
-        reached = np.log(self.fine.points["depth"])
-        return float(np.exp(brentq(missing, reached[0], reached[-1] + 0.1, xtol=1e-14)))
+        log_depths = np.log(self.fine.points["depth"])
+        return float(np.exp(brentq(defect, log_depths[0], log_depths[-1] + 0.1, xtol=1e-14)))
 
     def _at(self, depth: float, extrapolated: bool) -> dict[str, float]:
         """Quantities at a depth, ``F_h + (F_h - F_2h) / (2^p - 1)``, or those on the finer strip."""
@@ -245,49 +247,49 @@ class GrowthRecord:
         coarse, orders = self.coarse.at(depth), {"heat": HEAT_ORDER}
         return {name: v + (v - coarse[name]) / float(2.0 ** orders.get(name, 2.0) - 1.0) for name, v in fine.items()}
 
-    def _stick(self, depth: float, found: dict[str, float], extrapolated: bool) -> float:
+    def _stick(self, depth: float, quantities: dict[str, float], extrapolated: bool) -> float:
         """Stick radius over a.
 
-        With too few cells that stick, or that slide, it is that of the finer strip, and without extrapolation that of
-        the coarser one, so that `errors` still compares two strips.
+        If too few cells stick or slide, it is that of the finer strip, and without extrapolation that of the coarser
+        one, so that `errors` still compares two strips.
         """
         fine, coarse = (
             float(np.interp(depth, strip.points["depth"], strip.points["stick"])) for strip in (self.fine, self.coarse)
         )
         if min(fine, coarse) == 1.0:
             return 1.0
-        if min(fine, 1.0 - fine) < FEWEST_STUCK * self.fine.cell / found["radius"]:
+        if min(fine, 1.0 - fine) < FEWEST_STUCK * self.fine.cell / quantities["radius"]:
             return fine if extrapolated else coarse
-        return min(found["stick"], 1.0)
+        return min(quantities["stick"], 1.0)
 
     def errors(self, name: str, value: float) -> dict[str, float]:
-        """Errors of `numbers`, of the stick radius over a, of the heat over F delta, and relative for the others.
+        """Relative stated errors of `numbers`; the stick radius is relative to a, the heat to F delta.
 
-        They are the changes by the extrapolation, and the uncertain edges within a cell. One change may vanish by
-        accident: each is at least `LEAST_SHARE` of the largest of depth, force and stiffness.
+        Each is the change by the extrapolation, plus the uncertainty of the edges. One change may vanish by accident:
+        each is at least `LEAST_SHARE` of the largest of depth, force and stiffness.
         """
-        found, other = self.numbers(name, value), self.numbers(name, value, extrapolated=False)
-        radius, cell = found["radius"], self.fine.cell / found["radius"]
-        scale = found | {"stick": radius, "heat": found["force"] * found["depth"]}
+        fine, coarse = self.numbers(name, value), self.numbers(name, value, extrapolated=False)
+        radius, cell = fine["radius"], self.fine.cell / fine["radius"]
+        scale = fine | {"stick": radius, "heat": fine["force"] * fine["depth"]}
         least_change = LEAST_SHARE * max(
-            abs(other[each] / found[each] - 1.0) for each in ("depth", "force", "stiffness")
+            abs(coarse[each] / fine[each] - 1.0) for each in ("depth", "force", "stiffness")
         )
         error = {
-            each: SAFETY * max(abs(other[each] - size), least_change * size) / scale[each]
-            for each, size in found.items()
+            each: SAFETY * max(abs(coarse[each] - size), least_change * size) / scale[each]
+            for each, size in fine.items()
         } | {name: 0.0}
-        # Slip may be narrower than a cell: the edge is that of a contact that sticks, or that of one that slides.
-        edge = cell * (EDGE_UNCERTAIN + self.fine.less_by_stick * math.isfinite(self.fine.contact.coefficient))
+        # Slip may be narrower than a cell. The edge then lies between that of full stick and that of a sliding edge.
+        edge = cell * (EDGE_UNCERTAIN + self.fine.stick_shift * math.isfinite(self.fine.contact.coefficient))
         if name == "radius":
             # The edge shifts the depth by d ln(delta)/d ln(a) times as much, and dF/F = (k_N delta/F) d(delta)/delta.
             # The stiffness grows more slowly than the force.
-            depth = edge / self.fine.at(found["depth"])["widening"]
-            exponent = found["stiffness"] * found["depth"] / found["force"]
+            depth = edge / self.fine.at(fine["depth"])["widening"]
+            exponent = fine["stiffness"] * fine["depth"] / fine["force"]
             for each, power in (("depth", 1.0), ("force", exponent), ("stiffness", exponent)):
                 error[each] += power * depth
         else:
             error["radius"] += edge
-        if found["stick"] == radius:
+        if fine["stick"] == radius:
             return error | {"stick": error["radius"]}
-        few = min(found["stick"], radius - found["stick"]) < FEWEST_STUCK * self.fine.cell
-        return error | {"stick": error["stick"] + edge + (1.0 if few else STICK_UNCERTAIN) * cell}
+        few_cells = min(fine["stick"], radius - fine["stick"]) < FEWEST_STUCK * self.fine.cell
+        return error | {"stick": error["stick"] + edge + (1.0 if few_cells else STICK_UNCERTAIN) * cell}

@@ -34,12 +34,13 @@ from fem_reference.surface import Surface
 
 # Largest tension or overlap that is accepted as rounding, relative to the largest pressure or to the depth.
 TOLERANCE = 1e-9
-# Fewer nodes do not resolve a pressure that is least on the axis, like that under r^4: such contacts are not checked.
+# Fewest pressed nodes of contacts checked for tension and overlap: fewer do not resolve a pressure that is least on the
+# axis, like that under r^4.
 RESOLVED = 12
 # A node whose traction differs from mu p by less than this share keeps its state: rounding must not decide where the
 # slip reverses.
 TIE = 1e-9
-# Sets of sliding points that are tried in one step; two to six suffice for contacts that grow.
+# Largest number of sets of sliding nodes tried in one step; two to six suffice for growing contacts.
 MOST_SETS = 400
 # Nodes at the end of the strip that the contact does not reach: the last hat function is only half of one.
 SPARE = 2
@@ -54,8 +55,8 @@ class RubbedContact:
     Attributes:
         surface: the condensed layer.
         profile: moments ``int phi_i f 2 pi r dr`` of the indenter's profile, shape (n,).
-        coefficient: mu; infinity for full stick.
-        radius: L [m].
+        coefficient: coefficient of friction mu; infinity for full stick.
+        radius: radius L of the strip [m].
     """
 
     surface: Surface
@@ -69,15 +70,15 @@ class RubbedState:
     """One equilibrium at the end of a step, in the units of `RubbedContact`.
 
     Attributes:
-        depth: delta / L.
-        tractions: p and q at the nodes, shape (2 n,).
+        depth: indentation depth delta / L.
+        tractions: tractions p and q at the nodes, shape (2 n,).
         displacements: moments of u_z and u_r, shape (2 n,).
         touched: moments of u_r at the instant when each node touched, shape (n,); for free nodes the present ones.
-        sliding: 0 where a node sticks, else the sign of q, shape (n,).
+        sliding: sign of q at sliding nodes, 0 at sticking nodes, shape (n,).
         active: number of pressed nodes, the first ones from the axis.
-        force: F / (E* L^2).
-        work: done by the indenter so far, over E* L^3.
-        dissipated: heat of friction so far, over E* L^3.
+        force: normal force F / (E* L^2).
+        work: work of the indenter since the start, over E* L^3.
+        dissipated: heat of friction since the start, over E* L^3.
     """
 
     depth: float
@@ -125,18 +126,19 @@ Control: TypeAlias = Callable[[RubbedContact, int], Equation]
 
 
 def touching(contact: RubbedContact, active: int) -> Equation:
-    """The step ends where the first node that is not pressed touches: u_z = delta - f there, without pressure.
+    """Equation of a step that ends where the first free node touches: u_z = delta - f there, without pressure.
 
-    In unloading the same equation, with one node less, is the instant at which the last pressed node leaves.
+    In unloading the equation for one pressed node less determines when the last pressed node leaves.
     """
     surface = contact.surface
     return surface.compliance[active], -float(surface.resultants[active]), -float(contact.profile[active])
 
 
 def at_load(load: float, *, by_depth: bool) -> Control:
-    """The step ends at a depth over L, or at a force w . p over E* L^2."""
+    """Control of a step that ends at a depth over L, or at a force w . p over E* L^2."""
 
     def equation(contact: RubbedContact, active: int) -> Equation:
+        """Coefficients and right-hand side of ``delta = load`` or ``w . p = load``."""
         w = np.concatenate([contact.surface.resultants, np.zeros(len(contact.profile))])
         return (0.0 * w, 1.0, load) if by_depth else (w, 0.0, load)
 
@@ -147,29 +149,29 @@ def advance(contact: RubbedContact, before: RubbedState, active: int, control: C
     """The equilibrium at the end of a step, with the first ``active`` nodes pressed.
 
     Raises:
-        NotConvergedError: no set of sliding nodes was found.
-        UnsupportedSceneError: a node is pulled, or another one would be overlapped: no single circle.
+        NotConvergedError: no set of sliding nodes satisfies the conditions.
+        UnsupportedSceneError: tension at a pressed node, or overlap at a free node: the contact is no single circle.
     """
     sliding = _first_guess(before, active, contact.coefficient)
-    seen: set[bytes] = set()
+    earlier_sets: set[bytes] = set()
     for _ in range(MOST_SETS):
         tractions, depth = _equilibrium(contact, before, sliding, active, control)
         displacements = contact.surface.compliance @ tractions
         after = replace(
             before, depth=depth, tractions=tractions, displacements=displacements, sliding=sliding, active=active
         )
-        found = _sliding(contact, before, after)
-        if np.array_equal(found, sliding):
+        next_sliding = _sliding(contact, before, after)
+        if np.array_equal(next_sliding, sliding):
             return _accounted(contact, before, after)
-        sliding = found if found.tobytes() not in seen else _one_changed(sliding, found)
-        seen.add(sliding.tobytes())
+        sliding = next_sliding if next_sliding.tobytes() not in earlier_sets else _one_changed(sliding, next_sliding)
+        earlier_sets.add(sliding.tobytes())
     raise NotConvergedError(f"the sliding part of the contact is not settled after {MOST_SETS} attempts")
 
 
-def _one_changed(sliding: IntArray, found: IntArray) -> IntArray:
+def _one_changed(sliding: IntArray, next_sliding: IntArray) -> IntArray:
     """The set in which only the outermost wrong node has changed: principal pivoting (Murty 1974) does not cycle."""
-    last = int(np.flatnonzero(found != sliding)[-1])
-    return np.where(np.arange(len(found)) == last, found, sliding)
+    last = int(np.flatnonzero(next_sliding != sliding)[-1])
+    return np.where(np.arange(len(next_sliding)) == last, next_sliding, sliding)
 
 
 def _first_guess(before: RubbedState, active: int, coefficient: float) -> IntArray:
@@ -220,20 +222,20 @@ def _sliding(contact: RubbedContact, before: RubbedState, after: RubbedState) ->
     sliding, n = after.sliding, len(contact.profile)
     if not math.isfinite(contact.coefficient):
         return np.zeros_like(sliding)
-    holding = after.shear - (after.radial - before.radial) / contact.surface.compliance.diagonal()[n:]
+    sticking_traction = after.shear - (after.radial - before.radial) / contact.surface.compliance.diagonal()[n:]
     limit = contact.coefficient * np.maximum(after.pressure, 0.0)
-    found = np.where(np.abs(holding) <= limit, 0.0, np.sign(holding)).astype(np.int64)
-    tied = (np.abs(np.abs(holding) - limit) <= TIE * limit) & (sliding * holding >= 0.0)
-    # The axis does not move, and where nothing presses nothing holds.
-    return np.where(tied | (np.arange(n) == 0) | (after.pressure <= 0.0), sliding, found)
+    next_sliding = np.where(np.abs(sticking_traction) <= limit, 0.0, np.sign(sticking_traction)).astype(np.int64)
+    tied = (np.abs(np.abs(sticking_traction) - limit) <= TIE * limit) & (sliding * sticking_traction >= 0.0)
+    # u_r = 0 on the axis, and without pressure there is no friction.
+    return np.where(tied | (np.arange(n) == 0) | (after.pressure <= 0.0), sliding, next_sliding)
 
 
 def _accounted(contact: RubbedContact, before: RubbedState, after: RubbedState) -> RubbedState:
     """The state with its force, work and heat, after the conditions of contact were checked.
 
     The heat is -sum q_i Du_i over sliding nodes, with the changes Du of the moments of u_r. A node that slid in the
-    same direction before the step slides under the mean of both tractions, one that began to slide in it under the
-    last. Neither is negative.
+    same direction before the step slides under the mean of both tractions, a node that begins to slide in the step
+    under the traction at its end. Neither contribution is negative.
     """
     _refuse_rings(contact, after)
     steady = before.sliding == after.sliding
@@ -253,14 +255,16 @@ def _refuse_rings(contact: RubbedContact, state: RubbedState) -> None:
     """Refuse a negative pressure in the contact, and an overlap u_z < delta - f anywhere on the strip."""
     if state.active < RESOLVED:
         return
-    sunk, n = state.depth * contact.surface.resultants, len(contact.profile)
-    gap = state.displacements[:n] - (sunk - contact.profile)
+    depth_moments, n = state.depth * contact.surface.resultants, len(contact.profile)
+    gap = state.displacements[:n] - (depth_moments - contact.profile)
     pulled = state.pressure < -TOLERANCE * np.abs(state.pressure).max()
-    wrong = pulled | (gap < -TOLERANCE * (np.abs(sunk).max() + np.abs(contact.profile).max()))
+    wrong = pulled | (gap < -TOLERANCE * (np.abs(depth_moments).max() + np.abs(contact.profile).max()))
     if wrong.any():
-        place, end = (contact.radius * contact.surface.radii[i] for i in (int(np.argmax(wrong)), state.active))
+        radius, contact_radius = (
+            contact.radius * contact.surface.radii[i] for i in (int(np.argmax(wrong)), state.active)
+        )
         kind = "would pull" if pulled.any() else "would overlap"
-        raise no_single_circle(float(end), f"{kind} at r = {place:g} m")
+        raise no_single_circle(float(contact_radius), f"{kind} at r = {radius:g} m")
 
 
 def grown(contact: RubbedContact) -> list[RubbedState]:
@@ -272,7 +276,7 @@ def grown(contact: RubbedContact) -> list[RubbedState]:
 
 
 def followed(contact: RubbedContact, targets: Sequence[float], *, by_depth: bool) -> list[RubbedState]:
-    """The states at depths over L or forces over E* L^2 that are reached one after the other, from the first touch on.
+    """States at consecutive depths over L or forces over E* L^2, from the first touch on.
 
     Raises:
         InvalidInput: the contact reaches the end of the strip.
@@ -302,42 +306,42 @@ def _towards(
     start = state.depth if by_depth else state.force
     loading, control = target > start, at_load(target, by_depth=by_depth)
     while target != start:
-        ahead = active if loading else active - 1
-        if ahead >= len(contact.profile) - SPARE:
+        next_active = active if loading else active - 1
+        if next_active >= len(contact.profile) - SPARE:
             raise InvalidInput(f"contact reaches the end of the profile at {contact.radius:g} m; press less")
-        event = advance(contact, state, ahead, touching) if ahead else None
-        reached = (event.depth if by_depth else event.force) if event else 0.0
-        if event is None or (target - reached if loading else reached - target) <= CLOSE * abs(target):
-            found = advance(contact, state, active, control) if event or (target > 0 and not by_depth) else None
-            if found is None or found.force < 0:
+        event = advance(contact, state, next_active, touching) if next_active else None
+        event_load = (event.depth if by_depth else event.force) if event else 0.0
+        if event is None or (target - event_load if loading else event_load - target) <= CLOSE * abs(target):
+            final = advance(contact, state, active, control) if event or (target > 0 and not by_depth) else None
+            if final is None or final.force < 0:
                 return at_rest(contact, work=state.work, dissipated=state.dissipated), 1
-            return found, active
+            return final, active
         state, active = event, active + 1 if loading else active - 1
     return state, active
 
 
 def stick_radius(contact: RubbedContact, state: RubbedState) -> float:
-    """Stick radius c over L.
+    """Stick radius c over L, extrapolated from the tractions at three nodes inside it.
 
-    Towards c ``y = 1 - |q|/(mu p)`` falls to zero like ``(c - r)^(3/2)`` where the stick region grows and like
+    With r -> c ``y = 1 - |q|/(mu p)`` falls to zero like ``(c - r)^(3/2)`` where the stick region grows and like
     ``(c - r)^(1/2)`` where it shrinks. Hence y^(2/3) or y^2 is linear: the straighter one of these at three nodes is
-    extrapolated to zero. The last sticking node is left out, since it slid during a part of its step.
+    extrapolated to zero. The last sticking node is omitted, since it slid during a part of its step.
     """
     radii: FloatArray = contact.surface.radii
     stuck = [i for i in range(state.active) if state.sliding[i] == 0]
     last = stuck[-1] if stuck else 0
     if last == state.active - 1:
         return float(radii[state.active])
-    # Fewer than three nodes off the axis are left without the last one.
+    # Without the last node fewer than three nodes lie off the axis.
     if last < 4:
         return float(radii[last])
     near = slice(last - 3, last)
-    spare = np.maximum(0.0, 1.0 - np.abs(state.shear[near]) / (contact.coefficient * state.pressure[near]))
-    _, beyond = min(_bend_and_root(spare**power) for power in (2.0 / 3.0, 2.0))
-    return float(radii[last - 1] + min(max(beyond, 1.0), 3.0) * (radii[last] - radii[last - 1]))
+    margin = np.maximum(0.0, 1.0 - np.abs(state.shear[near]) / (contact.coefficient * state.pressure[near]))
+    _, distance = min(_curvature_and_root(margin**power) for power in (2.0 / 3.0, 2.0))
+    return float(radii[last - 1] + min(max(distance, 1.0), 3.0) * (radii[last] - radii[last - 1]))
 
 
-def _bend_and_root(values: FloatArray) -> tuple[float, float]:
+def _curvature_and_root(values: FloatArray) -> tuple[float, float]:
     """Curvature over slope of three equidistant values, and the distance beyond the last to the zero of their line."""
     before, middle, last = values
     if not middle > last:

@@ -20,7 +20,7 @@ from contact import (
     UnsupportedSceneError,
     load_scene,
 )
-from contact.answer.accuracy import shortfalls, told_where_less
+from contact.answer.accuracy import shortfalls, with_accuracy_note
 from contact.answer.small_strains import depth_note, depth_share, depths_of
 from contact.files.scene_file import uses_units
 from reports.answer import (
@@ -141,7 +141,7 @@ def _solved(scene: Scene, request: Request) -> tuple[Solution, list[tuple[str, s
     if request.method:
         solution = request.solver().solve(scene)
         _refuse_less(solution, request.accuracy, request.pressure_accuracy)
-        return told_where_less(solution, request.accuracy, request.pressure_accuracy), []
+        return with_accuracy_note(solution, request.accuracy, request.pressure_accuracy), []
     from cases.accuracy import solve as solve_to_accuracy  # noqa: PLC0415 - where it is asked for
 
     reached = solve_to_accuracy(scene, accuracy=request.accuracy, pressure_accuracy=request.pressure_accuracy)

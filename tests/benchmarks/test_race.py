@@ -19,7 +19,7 @@ def noise(seed, size=15):
 
 
 def race_of(factor, seed):
-    return Race(base=noise(seed), head=factor * noise(seed + 1000), again=noise(seed + 2000))
+    return Race(base=noise(seed), head=factor * noise(seed + 1000), repeated=noise(seed + 2000))
 
 
 def test_identical_code_passes_and_a_slowdown_of_one_and_a_half_fails_in_59_of_60_races():
@@ -30,17 +30,17 @@ def test_identical_code_passes_and_a_slowdown_of_one_and_a_half_fails_in_59_of_6
 
 
 def test_a_limit_inside_the_interval_stays_open():
-    steady = Race(base=(1.0,) * 8, head=(1.0,) * 4 + (1.3,) * 4, again=(1.0,) * 8)
+    steady = Race(base=(1.0,) * 8, head=(1.0,) * 4 + (1.3,) * 4, repeated=(1.0,) * 8)
     assert judge(steady) is Status.INCONCLUSIVE
 
 
 def test_a_row_with_a_limit_of_two_may_take_1_9_times_the_time():
-    assert judge(Race(base=(1.0,) * 8, head=(1.9,) * 8, again=(1.0,) * 8, limit=2.0)) is Status.PASS
-    assert judge(Race(base=(1.0,) * 8, head=(2.1,) * 8, again=(1.0,) * 8, limit=2.0)) is Status.PERF
+    assert judge(Race(base=(1.0,) * 8, head=(1.9,) * 8, repeated=(1.0,) * 8, limit=2.0)) is Status.PASS
+    assert judge(Race(base=(1.0,) * 8, head=(2.1,) * 8, repeated=(1.0,) * 8, limit=2.0)) is Status.PERF
 
 
 def test_a_machine_that_shows_nothing_moves_the_limit():
-    wild = Race(base=(1.0,) * 8, head=(1.5,) * 8, again=(1.3,) * 8)
+    wild = Race(base=(1.0,) * 8, head=(1.5,) * 8, repeated=(1.3,) * 8)
     assert wild.largest == pytest.approx(1 + 3 * math.log(1.3), rel=1e-12, abs=0.0)
     assert judge(wild) is Status.PASS
 

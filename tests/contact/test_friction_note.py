@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from contact import ContactRadii, IndentationDepths, Layer, LayerStack, Paraboloid, Scene, Sublayer
-from contact.answer.friction import _SLIDES, told_of_friction
+from contact.answer.friction import _SLIDES, friction_notes
 from fem_reference import Fem
 from mdr import Mdr
 from mdr.friction.statement import _slip, friction_effect
@@ -33,7 +33,7 @@ def test_other_layers_have_no_note(nu, radius):
 
 
 def test_a_half_space_has_none():
-    assert told_of_friction(Layer.half_space(youngs_modulus=1.0, poissons_ratio=0.5), np.array([1.0])) == ()
+    assert friction_notes(Layer.half_space(youngs_modulus=1.0, poissons_ratio=0.5), np.array([1.0])) == ()
 
 
 @pytest.mark.parametrize(("nu", "radius", "notes"), [(0.5, 2.0, 1), (0.3, 2.0, 0), (0.5, 0.9, 0)])

@@ -12,7 +12,7 @@ from fem_reference.stated import ATTEMPTS, solve_to_accuracy
 
 
 def stating(error):
-    return SimpleNamespace(ASKED=("normal_force",), error_estimate={"normal_force": np.array([error])})
+    return SimpleNamespace(ACCURACY_OF=("normal_force",), error_estimate={"normal_force": np.array([error])})
 
 
 @pytest.mark.parametrize("moves", [False, True])

@@ -87,7 +87,7 @@ def test_relaxation_is_that_which_other_methods_use(effect):
     assert own.viscosity == other.viscosity
     np.testing.assert_array_equal(own.moduli, other.moduli)
     np.testing.assert_array_equal(own.times, other.times)
-    assert own.at_once == other.instantaneous_modulus
+    assert own.instantaneous_modulus == other.instantaneous_modulus
 
 
 GRADINGS = (
@@ -107,7 +107,7 @@ def test_moduli_over_depth_are_those_that_other_methods_use(function):
 
 def test_every_function_of_depth_is_written_down():
     assert {type(function) for function in GRADINGS} == set(DEPTH_FUNCTIONS)
-    with pytest.raises(UnsupportedSceneError, match="finite elements know no DepthFunction"):
+    with pytest.raises(UnsupportedSceneError, match="finite elements have no formula for DepthFunction"):
         at_depths(DepthFunction(), np.zeros(1), 1.0)
 
 

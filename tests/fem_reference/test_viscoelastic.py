@@ -298,7 +298,7 @@ def test_peak_depth_is_of_the_energys_order_in_the_cells(effects):
 
 @pytest.mark.slow
 def test_a_force_that_goes_back_to_zero_is_zero_in_the_end():
-    """Roundings of the ramp left 3e-17 of it; "no depth carries the prescribed force"."""
+    """Roundings of the ramp left 3e-17 of it; "no depth has the prescribed force"."""
     layer = Layer.incompressible(thickness=1e-3, shear_modulus=G1 + G_INF)
     for peak_force in np.linspace(1.0, 2.0, 3):
         loading = ForceHistory(time=[0.0, 1e-3, 2e-3], force=[0.0, peak_force, 0.0])

@@ -193,7 +193,7 @@ def test_refusals_by_name():
         path.inside().at(0.3, 0.0)
     with pytest.raises(InvalidInput, match=r"it is infinite at the sharp edge r = 0.3 m"):
         path.inside().largest("von_mises")
-    with pytest.raises(InvalidInput, match="ask for 'von_mises' or 'interface_shear'"):
+    with pytest.raises(InvalidInput, match="choose 'von_mises' or 'interface_shear'"):
         path.inside().largest("shear")
     with pytest.raises(InvalidInput, match="this path has steps 0 to 0"):
         path.inside(3)

@@ -109,7 +109,7 @@ def test_the_last_instant_of_every_segment_is_the_given_one():
 
 
 def test_a_force_far_below_the_stresses_of_its_layer_has_a_depth():
-    """Its defect stops falling at the rounding of the depth: "no depth carries the prescribed force"."""
+    """Its defect stops falling at the rounding of the depth: "no depth has the prescribed force"."""
     layer = Layer.incompressible(thickness=np.inf, shear_modulus=G)
     effect = KelvinVoigt(shear_modulus=G, viscosity=1e4 * G)
     loading = ForceHistory(time=[0, 10], force=[1e-4, 1e-4])

@@ -35,7 +35,7 @@ SCENES = (
 @pytest.mark.parametrize("accuracy", [0.3, 1e-2, 1e-6])
 def test_what_is_asked_for_is_stated(scene, accuracy):
     found = solve(scene, accuracy=accuracy)
-    stated = max(float(np.max(found.answer.error_estimate[name])) for name in found.answer.ASKED)
+    stated = max(float(np.max(found.answer.error_estimate[name])) for name in found.answer.ACCURACY_OF)
     assert found.stated_error == stated <= accuracy
 
 
@@ -57,7 +57,7 @@ class Coarse:
 
     def solve(self, scene):
         path = Mdr().solve(scene)
-        errors = {name: np.full(1, self.stated) for name in path.ASKED}
+        errors = {name: np.full(1, self.stated) for name in path.ACCURACY_OF}
         return dataclasses.replace(path, error_estimate=errors)
 
     def refined(self):
