@@ -1,4 +1,4 @@
-"""Norms of fields over a circular surface; the factor 2 pi r of every area integral lives here and nowhere else."""
+"""Norms of fields over a circular surface; the factor 2 pi r of area integrals is applied here alone."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

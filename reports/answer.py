@@ -199,8 +199,8 @@ def propagated_table(propagated: "Propagated") -> Table:
     words = [quantity_words(quantity.name) for quantity in propagated.quantities]
     note = "Standard uncertainty by the inputs at the last step, and the error of the method; "
     note += f"{propagated.solved} scenes solved{'' if names else ', by samples'}."
-    if bent := [word for word, quantity in zip(words, propagated.quantities, strict=True) if quantity.bends]:
-        note += f" Not linear over these uncertainties: {', '.join(bent)}; --samples takes the whole of it."
+    if nonlinear := [word for word, q in zip(words, propagated.quantities, strict=True) if q.is_nonlinear]:
+        note += f" Not linear over these uncertainties: {', '.join(nonlinear)}; --samples uses whole distributions."
     pairs = [(words[i], words[j], float(propagated.correlation[i, j])) for j in range(len(words)) for i in range(j)]
     if together := [f"{a} and {b} ({share:+.2f})" for a, b, share in pairs if abs(share) >= TOGETHER]:
         note += f" Correlated: {', '.join(together)}."

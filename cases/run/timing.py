@@ -62,8 +62,8 @@ def _seconds(call: Callable[[], object], loops: int) -> float:
 PACKAGES = ("bem", "mdr", "fem_reference")
 
 
-def forget() -> None:
-    """Empty every cache that a module of a method keeps: flat-punch data, tables, meshes, quadrature."""
+def clear_caches() -> None:
+    """Empty every cache in the modules of methods: flat-punch data, tables, meshes, quadrature."""
     for name, module in tuple(sys.modules.items()):
         if name.partition(".")[0] in PACKAGES:
             for value in tuple(vars(module).values()):
