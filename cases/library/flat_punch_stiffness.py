@@ -86,7 +86,7 @@ BY_FACTOR = {name: on_walk(scene, rows[:, 1]) for name, (scene, rows) in ROWS.it
 COLUMNS = zip(HAYES_WALKS, c.HAYES.values(), strict=True)
 HAYES = {walk.name: on_walk(walk.scene, [column[ratio] for ratio in HAYES_RATIOS]) for walk, column in COLUMNS}
 STIFFNESS, BY_MDR = "contact_stiffness", ("mdr",)
-KNOWN, FITS = c.known_stiffness(PUNCHES), (STIFFNESS, fitted)
+KNOWN, FITS = c.reference_stiffness(PUNCHES), (STIFFNESS, fitted)
 TEN_DIGITS: c.Words = {"tolerance": 1e-10, "fem": 3e-6, "bem": 3e-5, "mdr_table": 3e-4}
 M_KAPPA: c.Words = {"tolerance": 1e-10, "fem": 1e-4}
 ACCURACY = "a requirement: 1e-4, the accuracy finite elements are asked for"

@@ -74,7 +74,7 @@ BY_BOTH = BY_MDR | {"methods": ("mdr", "fem")}
 SHEAR: c.Words = {"tolerance": 2e-6, "fem": 2e-3}
 CLAIMS = (
     c.equal("axial stress under a paraboloid", AXIAL, huber, HERTZ, WHY["Huber"], **CLOSED),
-    # Far below, where the radial stress has lost four digits, a mesh has none left of it.
+    # Deep below the surface four digits of the radial stress cancel, and a mesh gives no correct one.
     c.equal("radial stress under a paraboloid", RADIAL, huber, HERTZ, WHY["Huber"], **BY_MDR),
     c.equal("the largest shear", MISES, huber, HERTZ[:1], WHY["largest shear"], **SHEAR),
     c.equal("axial stress under a punch", AXIAL, sneddon, PUNCHES, WHY["Sneddon"], **CLOSED),

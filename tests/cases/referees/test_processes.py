@@ -50,7 +50,7 @@ def test_arrays_come_back_to_the_last_digit(worker):
         "import json, sys\nx = json.load(sys.stdin)['x']\nprint('talk')\n"
         "print(json.dumps({'twice': [2 * v for v in x]}))"
     )
-    assert process.ask("some", {"x": [0.1, 1 / 3]})["twice"].tolist() == [0.2, 2 / 3]
+    assert process.run_worker("some", {"x": [0.1, 1 / 3]})["twice"].tolist() == [0.2, 2 / 3]
 
 
 @pytest.mark.parametrize(
@@ -66,7 +66,7 @@ def test_arrays_come_back_to_the_last_digit(worker):
 def test_a_worker_that_fails_is_told_by_name(worker, text, words):
     worker(text)
     with pytest.raises(NotConvergedError, match=f"some .*{words}"):
-        process.ask("some", {})
+        process.run_worker("some", {})
 
 
 def test_an_absent_package_is_one_reason(monkeypatch):
