@@ -27,15 +27,15 @@ Place = tuple[float, float]
 SMALLEST: Final = 1e-17
 # Comparisons that the picture of a case shows, the worst first. Its table has all of them.
 WORST_DRAWN: Final = 12
-# Width and height of a front picture [inches]: a third of a desk's width, or a phone's whole one.
+# Width and height of a picture on the front page [inches]: a third of a screen, or the width of a telephone.
 FRONT: Final = (4.7, 3.9)
-# Curves of one panel: more are not told apart.
+# Most curves of one panel: more cannot be distinguished.
 MOST_CURVES: Final = 8
 # Largest number of letters of a scene in a row: more would cover the axes.
 LONGEST: Final = 40
 # Colours and markers of quantities, not of methods.
 QUANTITY_LOOKS: Final = ((BLACK, "o"), ("#8c510a", "^"), ("#01665e", "D"), ("#762a83", "v"), (GREY, "s"))
-# The quantity that is drawn of an answer: the first of these that it has.
+# Quantities that are drawn over a parameter: the first one that the answers have.
 SHOWN_QUANTITIES: Final = (
     "pull_off_force",
     "coefficient_of_restitution",

@@ -53,7 +53,7 @@ def _draw_curve(axes: Axes, fit: CurveFit, x: FloatArray) -> None:
 
 
 def _draw_moduli(axes: Axes, fit: CurveFit, x: FloatArray) -> None:
-    """The modulus of each point alone, and those that formulas take from the fitted force; the true one is level."""
+    """Draw moduli by each measured point and by formulas from the fitted force, and the fitted modulus as a line."""
     factor, prefix = prefix_for([fit.youngs_modulus])
     pressed = (fit.indentation > LEAST_SHARE * fit.indentation.max()) & np.isfinite(fit.modulus_at_depth)
     positive = pressed & (fit.modulus_at_depth > 0.0)

@@ -31,7 +31,7 @@ QUESTIONS = ("Do the methods agree?", "What does accuracy cost?", "Where does it
 BEFORE_UNIT = re.compile(r"(?<=\d) (?=(?:min|%|[pnuµmkMG]?(?:s|m|N|Pa|B|J))(?!\w))")
 # Letters of a word with digits that is kept on one line: longer ones are names, and columns are narrow.
 LONGEST_NUMBER = 24
-# The accuracies whose price the front page states.
+# Accuracies whose run times the front page states.
 PRICED = (1e-4, 1e-6)
 
 
@@ -56,7 +56,7 @@ def write_report(run: Run, directory: Path, *, single_file: bool = False) -> Pat
         pictures = {case.name: _placed(of_case(run, case), directory) for case in cases}
         answered = zip(QUESTIONS, (_agreement(run), _cost(run), _breakdown(run)), front(run), strict=True)
         questions = [
-            (asked, words, _placed([picture] if picture else [], directory)) for asked, words, picture in answered
+            (question, words, _placed([picture] if picture else [], directory)) for question, words, picture in answered
         ]
     judged = grouped(run.judged.verdicts, lambda verdict: verdict.case)
     common = {"run": run, "pictures": pictures, "names": set(pictures), "judged_of": judged}
@@ -176,7 +176,7 @@ def _rendered(template: str, **values: Any) -> str:
 
 
 def unbroken(text: str) -> Markup:
-    """The text with numbers that are never broken at the end of a line, nor parted from their units."""
+    """The text as HTML in which no line ends within a number or between a number and its unit."""
     words = BEFORE_UNIT.sub("\u00a0", text).split(" ")
     number = Markup("<span class=nb>{}</span>")
     parts = (

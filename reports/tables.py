@@ -48,7 +48,7 @@ class Cell:
 
 
 def cell_of(verdicts: Iterable[Verdict]) -> Cell:
-    """The cell of at least one verdict; those that were skipped are counted apart, unless all were."""
+    """The cell of at least one verdict; skipped verdicts are counted separately, unless all were skipped."""
     ordered = sorted(verdicts, key=severity)
     ran = [v for v in ordered if v.status is not Status.SKIP] or ordered
     worst = ran[0]
@@ -62,10 +62,10 @@ def cell_of(verdicts: Iterable[Verdict]) -> Cell:
     )
 
 
-def _solved_cell(answers: Sequence[Answer], silent: Sequence[str]) -> Cell:
-    """Cell for the solutions of a case; a chosen method that was skipped everywhere is not hidden behind the others."""
-    hidden = [answer for answer in answers if answer.status is Status.SKIP and answer.method in silent]
-    ran = hidden or [answer for answer in answers if answer.status is not Status.SKIP] or answers
+def _solved_cell(answers: Sequence[Answer], unjudged: Sequence[str]) -> Cell:
+    """Cell for the solutions of a case; the skips of unjudged methods come before the solutions of the others."""
+    skipped = [answer for answer in answers if answer.status is Status.SKIP and answer.method in unjudged]
+    ran = skipped or [answer for answer in answers if answer.status is not Status.SKIP] or answers
     worst = max(ran, key=lambda answer: (answer.status.is_failure, answer.status is Status.SKIP))
     return Cell(
         word=worst.status.value,
