@@ -237,6 +237,7 @@ class PerScene(Claim, ABC):
                 yield self.verdict(case, scene, use, answer, judged=judged, others=present)
 
     def _judged(self, scene: CaseScene, use: MethodUse, answer: Answer, others: list[Answer]) -> Judgement:
+        """Judgement of an answer, or of a missing answer or quantity, which cannot be compared."""
         absent = first_missing(answer, *others, quantity=self.quantity if self.needs_quantity else "")
         return absent or self.judged(scene, use.label, answer, others)
 
@@ -303,6 +304,7 @@ class Equal(PerScene):
         return errors | ({"inputs": float(self._by_inputs(others)[step] / size)} if self.uncertain else {})
 
     def _worst(self, scene: CaseScene, label: str, answer: Answer, others: list[Answer]) -> tuple[Judgement, int]:
+        """Judgement of the worst step against the expected values, and the number of that step."""
         values, q = self.values(scene), answer.quantities[self.quantity]
         if len(values) != len(q.values):
             message = f"{len(q.values)} steps for {len(values)} expected values of {self.quantity}"
@@ -319,7 +321,7 @@ class Equal(PerScene):
         return worst, judgements.index(worst)
 
     def _by_inputs(self, others: list[Answer]) -> FloatArray:
-        """Standard uncertainty of the quantity that the inputs cause, at every step."""
+        """Standard uncertainty by the inputs at every step, from answers with each input up and then down."""
         values = [np.array(other.quantities[self.quantity].values) for other in others]
         changes = np.array([(up - down) / 2 for up, down in zip(values[::2], values[1::2], strict=True)])
         return read_inputs(self.uncertain).spread(changes)
@@ -409,6 +411,7 @@ class Agree(PerScene):
         return worst, steps[judgements.index(worst)]
 
     def _field(self, scene: CaseScene, answers: list[Answer]) -> tuple[Judgement, dict[str, float]]:
+        """Judgement of the difference of two fields in the norm, and the error that each method states, by label."""
         fields = {answer.method: answer.quantities[self.quantity] for answer in answers[:2]}
         stated = {label: q.error[0] for label, q in fields.items() if q.error and label not in self.refined}
         for label, finer in zip(self.refined, answers[2:], strict=True):

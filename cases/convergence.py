@@ -98,6 +98,7 @@ class Order(Claim):
         return self.formal_order
 
     def _order(self, study: Convergence) -> Judgement:
+        """Judge the observed order of a study, or its digits per refinement."""
         if self.formal_order is not None:
             return judge_order(study.observed_order, self.formal_order, study.kind)
         if study.digits is None:

@@ -79,6 +79,7 @@ class Cost(Study):
         )
 
     def _task(self, case: Case, use: MethodUse, *, timed: bool) -> Task:
+        """Task of the study's scene by one setting, which the variant names."""
         task = case.task(case.scene(self.scene), use)
         role = "cost" if timed else "reference"
         # The answer belongs to the method; the setting stands in the variant.
@@ -86,6 +87,7 @@ class Cost(Study):
         return replace(task, use=named, variant=f"{role}: {use.label}", timed=timed)
 
     def _point(self, use: MethodUse, answer: Answer, exact: float, u_ref: float) -> Point:
+        """Error against ``exact``, its bound with the relative error ``u_ref``, and times of a setting."""
         point = Point(method=use.method, setting=use.label, settings=answer.settings, reason=answer.reason)
         if answer.status is not Status.PASS or not answer.samples:
             return point

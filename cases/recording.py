@@ -60,6 +60,7 @@ def _floats(values: object) -> tuple[float, ...]:
 
 
 def _quantity(solution: Solution, name: str, sampling: Sampling, steps: slice) -> Values:
+    """Values, scale, unit and stated error of a quantity at the given steps."""
     values = values_of(solution, name)
     error = _stated(solution, name, values.size)[steps]
     values = values[steps]
@@ -68,6 +69,7 @@ def _quantity(solution: Solution, name: str, sampling: Sampling, steps: slice) -
 
 
 def _stated(solution: Solution, name: str, size: int) -> tuple[float, ...]:
+    """Absolute stated error of a quantity, one per value; empty where none is stated."""
     if name not in solution.error_estimate:
         return _of_the_branch(solution, name)
     stated = np.abs(np.atleast_1d(solution.uncertainty(name)))

@@ -95,6 +95,7 @@ class Ladder(Study):
         yield from (use for use in case.methods if not self.methods or use.label in self.methods)
 
     def _steps(self, case: Case, use: MethodUse) -> Iterator[Task]:
+        """Yield the tasks of a method, one per value of the parameter."""
         measure = partial(measured, quantity=self.quantity)
         for value in self.values:
             settings = {**use.settings, self.setting: value} if self.setting else use.settings

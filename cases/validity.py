@@ -116,6 +116,7 @@ def _thickness(scene: Scene, answer: Solution, accuracy: float) -> Number | None
 
 
 def _strain(scene: Scene, answer: Solution) -> Number:
+    """Typical strain delta/min(a, h)."""
     depth, radius = _largest(answer, "indentation_depth"), _largest(answer, "contact_radius")
     strain = depth / min(radius, scene.layer.thickness)
     meaning = "typical strain. Beyond about 0.1 linear elasticity is an approximation."

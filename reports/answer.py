@@ -164,6 +164,7 @@ def solution_facts(solution: Solution) -> list[tuple[str, str]]:
 
 
 def _critical_value(solution: Solution, name: str) -> str:
+    """A single number of the answer with its stated uncertainty in brackets, and its unit."""
     value = float(getattr(solution, name))
     relative = solution.error_estimate.get(name)
     factor, unit = scaled_unit(value, UNITS[name])
@@ -210,6 +211,7 @@ def propagated_table(propagated: "Propagated") -> Table:
 
 
 def _row(quantity: "PropagatedQuantity", names: list[str]) -> tuple[str, ...]:
+    """Cells of a quantity at its last step: value, numerical error, uncertainty, and change by each input."""
     value, spread = float(quantity.values[-1]), float(quantity.inputs[-1])
     factor, unit = scaled_unit(value, quantity.unit)
     size = abs(value) or 1.0

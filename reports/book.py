@@ -81,6 +81,7 @@ def claim_table(case: Case) -> Table:
 
 
 def _claim_row(claim: Study) -> tuple[str, ...]:
+    """Cells of a claim, or of a study, which has neither tolerance nor reason."""
     if not isinstance(claim, Claim):
         return claim.kind, claim.name, getattr(claim, "quantity", ""), "", "", "", ""
     why = claim.why

@@ -61,6 +61,7 @@ def summary_text(run: Run, *, largest: int = LARGEST) -> str:
 
 
 def _row(finding: Finding) -> str:
+    """Row of a finding in Markdown."""
     word = _escaped(finding.word)
     fraction = small(finding.fraction) if finding.fraction else ""
     cells = (
@@ -117,6 +118,7 @@ def junit_text(run: Run) -> str:
 
 
 def _of_verdict(verdict: Verdict) -> ET.Element:
+    """Test case of a verdict in JUnit XML, with the facts of a failure."""
     name = verdict.claim if verdict.scene in verdict.claim else f"{verdict.claim} [{verdict.scene}]"
     test = _test(verdict.case, verdict.methods, name)
     _end(test, verdict.status, f"{word_of(verdict)}: {verdict.message}")

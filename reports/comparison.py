@@ -79,6 +79,7 @@ def _verdict(
     change: float | None = None,
     stated: float | None = None,
 ) -> Verdict:
+    """Verdict on a quantity of two runs from its change and stated error, both over its scale."""
     return Verdict(
         case=old.case,
         claim=f"{quantity_words(quantity)} of both runs",

@@ -206,6 +206,7 @@ def _claim(verdict: Verdict) -> tuple[str, ...]:
 
 
 def _of_verdicts(same: Sequence[Verdict], total: int) -> Finding:
+    """Finding of verdicts with the same status, out of ``total`` scenes of the claim."""
     worst = min(same, key=severity)
     errors = [error for v in same if (error := relative_error(v)) is not None]
     sizes = {"size": size_text(errors) if len(same) > 1 else "", "fraction": worst.fraction or 0.0, "worst": worst}
@@ -343,6 +344,7 @@ def _partner(method: str, verdict: Verdict) -> str:
 
 
 def _cause(method: str, quantity: str, errors: Errors, right: Sequence[str]) -> str:
+    """Sentence about a wrong quantity of a method: partners, errors, a common factor, and where to look."""
     all_errors = [error for same in errors.values() for error in same]
     *others, last = errors
     against = f"{', '.join(others)} and {last} alike" if others else last

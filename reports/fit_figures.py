@@ -40,6 +40,7 @@ def _measured(axes: Axes, x: FloatArray, y: FloatArray) -> None:
 
 
 def _draw_curve(axes: Axes, fit: CurveFit, x: FloatArray) -> None:
+    """Measured points, fitted curve with its band, and forces of formulas with the fitted modulus."""
     modulus, order = with_prefix(fit.youngs_modulus, "Pa"), np.argsort(x)
     factor, prefix = prefix_for(fit.measured.tolist())
     axes.set(title="Force curve", ylabel=f"force [{prefix}N]" if fit.response == "force" else f"depth [{prefix}m]")

@@ -98,6 +98,7 @@ def draw_inside(solution: Solution, other: Solution | None) -> Figure:
 
 
 def _halves(left: ContactPath, right: ContactPath) -> tuple[Half, Half]:
+    """Half-sections left and right of the axis, on equal points and with equal magnification."""
     a, h = float(left.contact_radius[-1]), left.scene.layer.thickness
     width, deepest = max(1.6 * a, min(2.5 * a, a + 1.5 * h)), min(h, 2.0 * a)
     r, z = np.meshgrid(np.linspace(0.0, width, POINTS[0]), np.linspace(1e-3 * deepest, deepest, POINTS[1]))
@@ -115,6 +116,7 @@ def _height(half: Half) -> float:
 
 
 def _headline(halves: tuple[Half, Half], *, compared: bool) -> str:
+    """Scene, contact radius, stated errors and legend of the picture."""
     left, scene = halves[0], halves[0].path.scene
     size = "at true size" if left.enlarged == 1.0 else f"{left.enlarged:g} times"
     stated = [f"{display_name(h.path.method)} {h.fields.error_estimate['stress']:.0e}" for h in halves[: 1 + compared]]
@@ -139,6 +141,7 @@ def _coloured(axes: Axes, halves: tuple[Half, Half], values: list[FloatArray], n
 
 
 def _draw_map(axes: Axes, halves: tuple[Half, Half], name: str) -> None:
+    """Draw a field of both halves in colours with contour lines."""
     values = [getattr(half.fields, name) for half in halves]
     bottom, top = np.quantile(np.array(values), [1.0 - SHARE_OF_COLOURS, SHARE_OF_COLOURS]).tolist()
     factor, prefix = prefix_for(np.array([top]))

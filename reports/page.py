@@ -111,6 +111,7 @@ def blocks(verdicts: Iterable[Verdict]) -> list[dict[str, Any]]:
 
 
 def _agreement(run: Run) -> list[str]:
+    """Sentences on the agreement of methods: number within tolerance, and median differences by pair."""
     verdicts = tables.compared(run)
     if not verdicts:
         return ["No two methods were compared in this run."]
@@ -128,6 +129,7 @@ def _agreement(run: Run) -> list[str]:
 
 
 def _cost(run: Run) -> list[str]:
+    """Sentences on the median time of each method to the accuracies `PRICED`."""
     costs = [tables.timed_methods(cost) for cost in run.judged.costs]
     if not costs:
         return ["Nothing was timed in this run."]
@@ -142,6 +144,7 @@ def _cost(run: Run) -> list[str]:
 
 
 def _breakdown(run: Run) -> list[str]:
+    """Sentence on the numbers of stress tests that were completed, refused or failed."""
     tests = run.judged.stress_tests
     if not tests:
         return ["No stress test was made in this run: the suite nightly does that."]
@@ -188,6 +191,7 @@ def unbroken(text: str) -> Markup:
 
 @cache
 def _environment() -> jinja2.Environment:
+    """Templates with the functions and filters that they use."""
     environment = jinja2.Environment(
         loader=jinja2.PackageLoader("reports"), autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True
     )

@@ -21,6 +21,7 @@ def run_progress(*, quiet: bool) -> Iterator[Progress]:
     with progress_bar("solving", on=terminal, hidden=quiet) as update:
 
         def show(event: ProgressEvent) -> None:
+            """Print the line of an event and update the bar."""
             line, tone = _line(event)
             if line and (not quiet or event.kind == "stopped"):
                 terminal.print(Text(line, style=STYLES.get(tone, "")))

@@ -364,6 +364,7 @@ def _final(answer: Answer) -> dict[str, Values]:
 
 
 def _last_value(name: str, quantity: Values) -> str:
+    """Last value of a quantity with its stated uncertainty in brackets, and its unit."""
     if not quantity.error and name not in UNITS:
         return small(quantity.values[-1])  # a residual vanishes but for rounding and has no error of its own
     factor, unit = scaled_unit(quantity.values[-1], quantity.unit)

@@ -54,6 +54,7 @@ def _last(module: str) -> str:
 
 
 def _case_of(module: str) -> Case:
+    """The `CASE` of a module of the library."""
     case = getattr(importlib.import_module(module), "CASE", None)
     if not isinstance(case, Case):
         raise InvalidInput(f"{module.replace('.', '/')}.py defines no CASE; a module of the library is one case")

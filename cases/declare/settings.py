@@ -42,6 +42,7 @@ def read_settings(texts: Iterable[str], methods: Collection[str]) -> dict[str, d
 
 
 def _of_words(text: str, methods: Collection[str]) -> dict[str, dict[str, Any]]:
+    """Setting in a text "name=value" or "method.name=value", by method and name."""
     words = WORDS.fullmatch(text)
     if words is None:
         raise InvalidInput(f"--setting {shown(text)}: write name=value, method.name=value, or the name of a TOML file")

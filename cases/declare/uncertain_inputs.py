@@ -119,6 +119,7 @@ def read_inputs(text: str, scene: Scene | None = None, *, with_units: bool = Fal
 
 
 def _input(part: str, name: str, value: str, scene: Scene | None, with_units: bool) -> UncertainInput:
+    """Uncertain input "name=value", the value a percentage or a range; ``part`` is the whole text for messages."""
     if value.endswith("%"):
         return UncertainInput(name=name, deviation=_number(part, value[:-1], 0.0, 100.0) / 100)
     low, dots, high = value.partition("..")
@@ -157,6 +158,7 @@ def range_ends(place: str, ends: tuple[str, str], unit: str | None, with_units: 
 
 
 def _number(part: str, text: str, low: float, high: float) -> float:
+    """The number in a text, refused unless it lies between ``low`` and ``high``."""
     match = re.fullmatch(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?", text.strip())
     value = float(text) if match else math.nan
     if not (math.isfinite(value) and low <= value <= high):
@@ -165,6 +167,7 @@ def _number(part: str, text: str, low: float, high: float) -> float:
 
 
 def _correlation(names: list[str], pairs: Mapping[tuple[str, str], float]) -> FloatArray:
+    """Correlation matrix of the inputs, shape (n, n), from the correlations of pairs of names."""
     matrix = np.eye(len(names))
     for (first, second), value in pairs.items():
         for name in (first, second):

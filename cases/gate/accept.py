@@ -207,6 +207,7 @@ def _with_spreads(answer: Answer, old: Answer | None, spreads: Spreads) -> Answe
 
 
 def _changes(before: Baseline | None, after: Baseline) -> Iterator[Change]:
+    """Yield the quantities that differ between two baselines."""
     old, new = (_quantities(baseline) for baseline in (before, after))
     for place in dict.fromkeys([*old, *new]):
         if old.get(place) != new.get(place):
@@ -304,6 +305,7 @@ def _refused_run(answers: Iterable[Answer], verdicts: Iterable[Verdict]) -> Iter
 
 
 def _not_finite(answers: Iterable[Answer]) -> Iterator[str]:
+    """Reasons in quantities that are not finite."""
     for answer in answers:
         for name, q in answer.quantities.items():
             if not all(map(math.isfinite, (*q.values, *q.error, q.spread, q.scale))):
@@ -320,6 +322,7 @@ def _loosenings(proposal: Proposal) -> Iterator[str]:
 
 
 def _loosening(change: Change) -> str:
+    """How a change loosens the baseline, in words."""
     name = f"{change.quantity} of {change.scene!r} by {change.method}"
     if change.old is None or change.new is None:
         return f"{name} would no longer be watched"

@@ -117,6 +117,7 @@ def read_baselines(folder: Path) -> tuple[Baseline, ...]:
 
 
 def _read(path: Path) -> Baseline:
+    """The baseline in a file, whose name is that of the case."""
     first = path.read_bytes().partition(b"\n")[0]
     accepted = validated(_ACCEPTED, first, place=f"{path}, line 1", remedy=REMEDY)
     answers = tuple(read_answers(path, skip=1))

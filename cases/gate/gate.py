@@ -87,6 +87,7 @@ def _lost_case(name: str) -> CaseText:
 def _of_case(
     run: Run, case: str, baseline: Baseline | None, watched: Watched, methods: Collection[str]
 ) -> Iterator[Verdict]:
+    """Yield the verdicts of a case against its baseline, without methods that were not installed."""
     current = {(a.scene, a.method): a for a in run.answers.of_case(case)}
     accepted = {(a.scene, a.method): a for a in baseline.answers} if baseline else {}
     absent = _not_installed(current.values())

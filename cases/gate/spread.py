@@ -68,6 +68,7 @@ def _submit(executor: Executor, towards: float, task: Task) -> Future[Answer]:
 
 
 def _spreads(task: Task, answers: list[Answer]) -> Iterator[tuple[tuple[str, str, str], float]]:
+    """Yield method, scene and quantity with the largest relative spread of the answers over the steps."""
     for name, q in answers[0].quantities.items():
         if not q.at:
             place = task.use.label, task.scene, name

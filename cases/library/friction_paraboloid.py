@@ -102,7 +102,7 @@ def to_first_order(scene: c.AnyScene) -> float:
 
 
 def of_spence(scene: c.AnyScene) -> dict[str, float]:
-    """Return c, a, F and the heat of Spence's problem for a scene with one of its coefficients."""
+    """Return stick radius c, a, F and heat of partial slip on the half-space, scaled from the numbers of `SPENCE`."""
     mu, nu = coefficient(scene), scene.layer.poissons_ratio
     (solved,) = (name for name, numbers in SPENCE.items() if numbers[0] == mu and nu_of(name) == nu)
     _, depth_factor, force_factor, heat = SPENCE[solved]

@@ -50,7 +50,7 @@ def on_half_space(flat: float) -> CaseScene:
 
 
 def path(label: str, ratio: float) -> CaseScene:
-    """Return the path over contact radii from 0.75 a to a, away from the kink at 0.5 a."""
+    """Return a scene with 16 contact radii from 0.75 a to a, a/h = ``ratio``, away from the kink at 0.5 a."""
     base, radii = on_layer(label, ratio), ratio * c.THICKNESS * c.chebyshev_radii(0.75, 1.0, 16)
     methods = (c.MDR, c.EQUATION) if ratio == 1.0 else (c.MDR,)
     on_path = base.scene.replace(loading=ContactRadii(values=radii))

@@ -78,6 +78,7 @@ class GridCode:
         log, prescribed = StageLog(), PRESCRIBED[type(scene.loading)]
         values: FloatArray = scene.loading.values  # type: ignore[attr-defined]  # depths or forces
         with log.stage("grid"):
+            # Depths or forces, as the solver prescribes them.
             loads = values
             if prescribed != self.driven_by:
                 loads = inverted(

@@ -171,6 +171,7 @@ def _sampled(name: str, middle: Values, changed: FloatArray) -> Contributions:
 
 
 def _quantity(name: str, middle: Values, factors: FloatArray) -> PropagatedQuantity:
+    """The quantity with its values at the middle, and the uncertainty by the factors of its variance."""
     return PropagatedQuantity(
         name=name,
         unit=middle.unit,

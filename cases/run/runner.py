@@ -145,6 +145,7 @@ def run_cases(cases: Sequence[Case], options: RunOptions) -> Run:
 
 
 def _run(cases: Sequence[Case], options: RunOptions) -> Run:
+    """Plan, solve and judge the cases, and write the run; the folder is locked."""
     started, clock = datetime.now(UTC), time.perf_counter()
     jobs = [job_of(task) for task in plan(cases, timing=options.timing, only_costs=options.only_costs)]
     reused = _reused(options, jobs)
@@ -234,6 +235,7 @@ def _reused(options: RunOptions, jobs: list[Job]) -> list[tuple[Job, Answer]]:
 
 
 def _report_judged(run: _Run, judged: Judged, table: Table) -> None:
+    """Report the worst status of each case, or SKIP where a chosen method was not judged."""
     whole = Run(judged=judged, answers=table)
     for case in judged.cases:
         statuses = [verdict.status for verdict in judged.verdicts if verdict.case == case.name]

@@ -106,6 +106,7 @@ def answered(job: Job) -> Answer:
 
 
 def _solved(job: Job) -> Answer:
+    """Answer of a job with quantities and costs; a timed task is solved repeatedly."""
     task, method = job.task, job.method
     if task.timed or task.first:
         # This loads what the method imports on demand.

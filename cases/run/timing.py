@@ -47,6 +47,7 @@ def timed_warm(call: Callable[[], object], *, samples: int = SAMPLES, shortest: 
 
 
 def _seconds(call: Callable[[], object], loops: int) -> float:
+    """Mean time of a call over ``loops`` repetitions [s], without garbage collection."""
     collecting = gc.isenabled()
     gc.disable()
     try:

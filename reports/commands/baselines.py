@@ -58,6 +58,7 @@ def run_gate(directory: Path, baselines: Path, *, methods: Collection[str], stri
 
 
 def _gated(run: Run, baselines: Path, methods: Collection[str]) -> Run:
+    """The run with verdicts against the baselines, without answers that the suite of the run need not solve."""
     accepted = read_baselines(baselines)
     if not accepted:
         raise InvalidInput(f"no baselines in {baselines}; name their folder, or accept a case first")
