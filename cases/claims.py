@@ -367,6 +367,7 @@ class Agree(PerScene):
         yield from self._refined(case, scene)
 
     def _refined(self, case: Case, scene: CaseScene) -> Iterator[Task]:
+        """Yield the tasks of the methods ``refined`` with half the discretisation length."""
         for label in self.refined:
             yield case.task(scene, case.use(scene, label)).changed("refined", refined=1)
 

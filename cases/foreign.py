@@ -179,8 +179,8 @@ def with_restated(case: Case, names: Iterable[str]) -> Case:
         case: Case with its own methods and claims.
         names: Names of methods in the table.
     """
-    twins = {scene.name: twin for scene in case.scenes if (twin := _twin(scene, tuple(names))) is not None}
-    if not twins:
+    by_depth = {s.name: restated for s in case.scenes if (restated := _restated(s, tuple(names))) is not None}
+    if not by_depth:
         return case
     # A claim about all scenes does not extend to the restated ones.
     restricted = tuple(
@@ -189,13 +189,13 @@ def with_restated(case: Case, names: Iterable[str]) -> Case:
         else claim
         for claim in case.claims
     )
-    new = tuple(twin for claim in case.claims for twin in _on_twins(case, claim, twins))
+    new = tuple(agreement for claim in case.claims for agreement in _agreements_by_depth(case, claim, by_depth))
     compared = {name for claim in new for name in claim.scenes}
-    restated = (twin for twin in twins.values() if twin.name in compared)
-    return replace(case, scenes=(*case.scenes, *restated), claims=(*restricted, *new))
+    restated_scenes = (scene for scene in by_depth.values() if scene.name in compared)
+    return replace(case, scenes=(*case.scenes, *restated_scenes), claims=(*restricted, *new))
 
 
-def _twin(scene: CaseScene, names: tuple[str, ...]) -> CaseScene | None:
+def _restated(scene: CaseScene, names: tuple[str, ...]) -> CaseScene | None:
     """The scene restated by depth if one of the methods supports it in this form alone; None otherwise."""
     problem = scene.scene
     if not isinstance(problem.loading, ContactRadii) or problem.effects:
@@ -225,10 +225,10 @@ def _supports(name: str, problem: Scene, *, broken: bool = False) -> bool:
         return broken
 
 
-def _on_twins(case: Case, claim: Any, twins: Mapping[str, CaseScene]) -> Iterator[Agree]:
-    """The agreement of quantities on the restated scenes; other claims are about prescribed radii and have no twin."""
+def _agreements_by_depth(case: Case, claim: Any, by_depth: Mapping[str, CaseScene]) -> Iterator[Agree]:
+    """Yield the agreement of a quantity on the restated scenes; other claims are about prescribed radii alone."""
     if isinstance(claim, Agree) and not claim.norm and claim.quantity in RESTATED:
-        names = tuple(twins[scene.name].name for scene in claim.scenes_of(case) if scene.name in twins)
+        names = tuple(by_depth[scene.name].name for scene in claim.scenes_of(case) if scene.name in by_depth)
         if names:
             yield replace(claim, name=f"{claim.name}{SUFFIX}", quantity=RESTATED[claim.quantity], scenes=names)
 

@@ -319,7 +319,7 @@ def stiffer_layer(method: Method, answer: Solution) -> float | None:
 
 
 def unbonded_layer_is_independent_of_nu(method: Method, answer: Solution) -> float | None:
-    """Residual of equal forces on unbonded layers of another nu and the same E*."""
+    """Relative difference of the forces on unbonded layers with another nu and the same E*."""
     layer = answer.scene.layer
     if not isinstance(answer, ContactPath) or not layer.is_uniform or layer.is_half_space or layer.support == "bonded":
         return None

@@ -190,7 +190,7 @@ def patch_claims(measured: Measured, pair: str) -> Iterator[Verdict]:
 
 
 def locking_claims(measured: Measured, pair: str) -> Iterator[Verdict]:
-    """Judge the growth of the error from nu = 0.3 on: at most threefold by mixed pairs, tenfold or more without pressures."""
+    """Judge the growth of the error from nu = 0.3 on: at most threefold by mixed pairs, at least tenfold by others."""
     errors = measured["stiffness error"]
     growth = max(errors) / errors[0]
     words = f"the largest error on one mesh is {growth:.2g} times that at nu = 0.3"

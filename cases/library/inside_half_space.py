@@ -46,7 +46,7 @@ AXIAL, RADIAL, MISES = "axial_stress_inside", "radial_stress_inside", "von_mises
 def huber(scene: c.AnyScene) -> dict[str, FloatArray]:
     """Return the stresses under a paraboloid (Huber 1904), p0 = 2 E* a/(pi R).
 
-    The largest difference of two, twice the shear, is 2 times 0.310021 p0 for nu = 0.3.
+    Von Mises stress on the axis is |sigma_zz - sigma_rr|, twice the shear; its maximum is 2 x 0.310021 p0 for nu = 0.3.
     """
     p0 = 2 * c.contact_modulus(scene.layer) * RADIUS / (math.pi * RADIUS_OF_CURVATURE)
     nu, Z = scene.layer.poissons_ratio, DEPTHS

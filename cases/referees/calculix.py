@@ -226,9 +226,9 @@ def _at_load(state: State, scene: Scene, value: float, exponents: Exponents) -> 
 
 # -- errors from three meshes -----------------------------------------------------------------------------------------
 def _converged(meshes: list[State], scene: Scene, exponents: Exponents) -> tuple[State, State, float]:
-    """State, its errors and the observed order of the stiffness.
+    """State from three meshes, its errors in the same units, and the observed order of the stiffness.
 
-    The radius or depth at which the outermost node carries nothing has no known order. A depth error changes the force
+    Force and stiffness are extrapolated. The radius or depth at which the outermost node carries nothing has no known order. A depth error changes the force
     by k_N times itself, a radius error the stiffness by its exponent times itself.
     """
     punch, loading = isinstance(scene.indenter, FlatPunch), scene.loading
