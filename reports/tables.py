@@ -327,7 +327,7 @@ def effects(parts: Sequence[Effect]) -> Table | None:
         },
         title="What each effect costs and changes",
         note="Each part of a scene is left out in turn. Costs: share of the processor time of a first solution. It may "
-        "be left out where no quantity changes by more than the accuracy asked for.",
+        "be left out where no quantity changes by more than the accuracy.",
         words=6,
     )
 

@@ -154,7 +154,7 @@ def location(name: str) -> tuple[str, str]:
     return entry.module, entry.attr
 
 
-# The type of a class from another package is not known here.
+# The class may be of another package, so that its type is open.
 def load(name: str) -> Any:
     """Return the class of the method called ``name``.
 

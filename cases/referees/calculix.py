@@ -228,8 +228,9 @@ def _at_load(state: State, scene: Scene, value: float, exponents: Exponents) -> 
 def _converged(meshes: list[State], scene: Scene, exponents: Exponents) -> tuple[State, State, float]:
     """State from three meshes, its errors in the same units, and the observed order of the stiffness.
 
-    Force and stiffness are extrapolated. The radius or depth at which the outermost node carries nothing has no known order. A depth error changes the force
-    by k_N times itself, a radius error the stiffness by its exponent times itself.
+    Force and stiffness are extrapolated. The radius or depth at which the outermost node carries nothing has no known
+    order. A depth error changes the force by k_N times itself, a radius error the stiffness by its exponent times
+    itself.
     """
     punch, loading = isinstance(scene.indenter, FlatPunch), scene.loading
     middle, fine = meshes[1:]

@@ -47,7 +47,7 @@ def solved(inputs: dict[str, Any], surface: np.ndarray, depth: float) -> tuple[f
 
 
 def answer(inputs: dict[str, Any]) -> dict[str, list[float]]:
-    """Force, contact radius and, where asked for, stiffness at each depth."""
+    """Force, contact radius and, if requested, stiffness at each depth."""
     surface = np.array(inputs["heights"])
     cell = (inputs["size"] / len(surface)) ** 2
     answers: dict[str, list[float]] = {}

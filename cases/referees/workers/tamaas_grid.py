@@ -36,7 +36,7 @@ def solved(inputs: dict[str, Any], force: float) -> tuple[float, float]:
 
 
 def answer(inputs: dict[str, Any]) -> dict[str, list[float]]:
-    """Depth, contact radius and, where asked for, stiffness at each force."""
+    """Depth, contact radius and, if requested, stiffness at each force."""
     forces = inputs["loads"]
     depths, radii = map(list, zip(*(solved(inputs, force) for force in forces), strict=True))
     answers = {"indentation_depth": depths, "contact_radius": radii}
