@@ -171,6 +171,7 @@ def changes(whole: Mapping[str, FloatArray], reduced: Mapping[str, FloatArray]) 
 
 
 def _numbers(answer: Solution) -> dict[str, FloatArray]:
+    """Single numbers of an answer, or else radius, depth and force along its steps, by name."""
     return {name: values_of(answer, name) for name in single_numbers(answer) or STATIC}
 
 

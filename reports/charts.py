@@ -240,7 +240,7 @@ def _draw_differences(verdicts: Sequence[Verdict]) -> Figure:
 
 
 def _draw_costs(costs: Sequence[CostOfAccuracy]) -> Figure:
-    """Error bound over time of every method, in all studies of cost."""
+    """Error bound over time along the Pareto front of every method, in all studies of cost."""
     drawing, axes = _logarithmic(FRONT, "median time [s]", "bound of the relative error")
     fronts = [pareto_front(points, 0.0) for cost in costs for points in timed_methods(cost).values()]
     for method, points in grouped((p for front in fronts for p in front), lambda p: p.method).items():

@@ -136,13 +136,13 @@ def shared_things(run: Run) -> Table | None:
         {
             "what": lambda thing: thing.name,
             "kind": lambda thing: thing.kind.value,
-            "where": lambda thing: thing.place,
+            "module": lambda thing: thing.place,
             "used by": lambda thing: "all" if thing.methods == EVERY else who(thing.methods, ", "),
             "enters": lambda thing: quantity_words(", ".join((*thing.quantities, *thing.cases))) or "everything",
-            "what notices a mistake in it": lambda thing: thing.guard,
+            "checks that detect a mistake": lambda thing: thing.guard,
         },
         title="What two methods share",
-        note="Agreement says nothing about what both methods use. A comparison is called independent where it rests on "
+        note="Agreement does not check what both methods use. A comparison is called independent where it rests on "
         "no shared code; others name it. Each of these planted wrong by one per cent, and the checks that fail: "
         "docs/shared.md.",
         words=6,
