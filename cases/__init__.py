@@ -8,8 +8,8 @@
 a run with accepted answers, ``foreign`` adds methods of installed packages, ``cost``, ``effects`` and
 ``stress`` are studies; ``sweep``, ``advice``, ``validity``, ``accuracy`` and ``uncertain_fit`` answer single scenes.
 
-``solve(scene, accuracy=1e-4)`` tries methods from cheap to fine. `cases.run.propagation` carries the uncertainty of
-inputs to every quantity.
+``solve(scene, accuracy=1e-4)`` tries methods from cheap to fine. `cases.run.propagation` propagates the uncertainty
+of inputs to every quantity.
 """
 
 from importlib import import_module

@@ -29,7 +29,7 @@ from contact.scene.loading import EquilibriumLoading, HistoryLoading
 
 AnswerT = TypeVar("AnswerT", bound=Solution, default=Solution)
 
-# The fastest first. The direct equation costs tens of MDR's time, finite elements hundreds.
+# Methods, the fastest first: the direct equation takes tens of times as long as MDR, finite elements hundreds.
 ORDER: Final = ("mdr", "integral_equation", "fem")
 # Refinements of a method before the next, slower one is tried.
 REFINEMENTS: Final = 2
@@ -37,13 +37,13 @@ REFINEMENTS: Final = 2
 
 @dataclass(frozen=True, kw_only=True)
 class Outcome(Generic[AnswerT]):
-    """An answer that states at most the error asked for.
+    """An answer whose stated error is at most the requested accuracy.
 
     Attributes:
         method: Name in the method table.
         settings: Settings that the answer reports.
         answer: The solution.
-        stated_error: Largest relative error that the answer states of what an accuracy is asked of.
+        stated_error: Largest relative error that the answer states for the quantities of `Solution.ACCURACY_OF`.
     """
 
     method: str
@@ -71,12 +71,12 @@ def solve(
 @overload
 def solve(scene: Scene[Any, Any], *, accuracy: float, pressure_accuracy: float | None = None) -> Outcome[Solution]: ...
 def solve(scene: Scene[Any, Any], *, accuracy: float, pressure_accuracy: float | None = None) -> Outcome[Any]:
-    """Return the first answer that states no larger error than wanted.
+    """Return the first answer whose stated error is at most the requested accuracy.
 
     Args:
         scene: Scene to solve.
         accuracy: Largest relative error of radius, depth, force and stiffness, or of critical numbers, or of
-            restitution and peaks (`Solution.ACCURACY_OF`). Other quantities that state more are named in the notes.
+            restitution and peaks (`Solution.ACCURACY_OF`). Notes name other quantities with larger stated errors.
         pressure_accuracy: Largest relative error of the contact pressure; None if it does not matter.
 
     Raises:
@@ -87,7 +87,7 @@ def solve(scene: Scene[Any, Any], *, accuracy: float, pressure_accuracy: float |
     for wanted in (accuracy, pressure_accuracy):
         if wanted is not None and not 0.0 < wanted < 1.0:
             raise InvalidInput(f"accuracy = {wanted:g}: must lie between 0 and 1; it is a relative error")
-    best = np.inf
+    smallest_stated = np.inf
     refusals: list[str] = []
     for method in _methods(scene, accuracy, pressure_accuracy, refusals):
         try:
@@ -102,25 +102,25 @@ def solve(scene: Scene[Any, Any], *, accuracy: float, pressure_accuracy: float |
         if not shortfalls(answer, accuracy, pressure_accuracy):
             noted = with_accuracy_note(answer, accuracy, pressure_accuracy)
             return Outcome(method=method.name, settings=answer.settings, answer=noted, stated_error=stated)
-        best = min(best, stated)
-    if best < np.inf:
-        message = f"accuracy = {accuracy:g}: answers to this scene state {best:.1e} at best; ask for less"
-        raise NotConvergedError(message, {"stated_error": best})
+        smallest_stated = min(smallest_stated, stated)
+    if smallest_stated < np.inf:
+        message = f"accuracy = {accuracy:g}: answers to this scene state {smallest_stated:.1e} at best; ask for less"
+        raise NotConvergedError(message, {"stated_error": smallest_stated})
     raise UnsupportedSceneError(f"accuracy = {accuracy:g}: no method answers this scene: {'; '.join(refusals)}")
 
 
 def _methods(
     scene: Scene[Any, Any], accuracy: float, pressure_accuracy: float | None, refusals: list[str]
 ) -> Iterator[Method]:
-    """Methods that model the scene, each as it comes or with the accuracy as its setting, then refined."""
-    asked = {"accuracy": accuracy, "pressure_accuracy": pressure_accuracy}
+    """Yield each method that models the scene, with the accuracies as settings or its defaults, then refined."""
+    accuracies = {"accuracy": accuracy, "pressure_accuracy": pressure_accuracy}
     for name in ORDER:
         settable = inspect.signature(load(name)).parameters
-        settings = {key: value for key, value in asked.items() if key in settable and value is not None}
+        settings = {key: value for key, value in accuracies.items() if key in settable and value is not None}
         try:
             method = build(name, settings)
         except InvalidInput:
-            # The method takes no such accuracy as a setting: its own may be fine enough, or too fine.
+            # The method refuses this accuracy as a setting: its default is tried instead.
             method = build(name, {})
         support = method.supports(scene)
         if isinstance(support, Unsupported):

@@ -1,4 +1,4 @@
-"""Which effects, and which finite thickness, a scene needs at a wanted accuracy: solved with and without."""
+"""Which effects of a scene, and whether its finite thickness, change the answer by more than an accuracy."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 
 from cases.declare.quantities import IMPACT_NUMBERS, single_numbers, values_of
-from cases.run.timing import forget
+from cases.run.timing import clear_caches
 from cases.studies import Effect
 from cases.validity import Number, numbers
 from contact import (
@@ -27,7 +27,7 @@ from contact import (
 )
 from contact.records.validation import FloatArray
 
-# Seconds of a solution that hides the time of imports.
+# Processor time of a solution [s] beyond which the time of imports is negligible.
 IMPORTS_HIDDEN = 2.0
 NOTHING_PULLS = "without it nothing pulls, and there is no detachment"
 # Single numbers of impacts and detachments, which are compared; otherwise the quantities of the path.
@@ -43,9 +43,9 @@ class Advice:
     """Which parts of a scene matter.
 
     Attributes:
-        accuracy: Wanted relative accuracy.
-        needed: Parts of the scene without which a quantity changes by more than that.
-        droppable: Parts that may be left out, each by itself.
+        accuracy: Largest relative change that does not matter.
+        needed: Parts of the scene without which a quantity changes by more than the accuracy.
+        droppable: Parts that may be left out, all at once.
         together: Largest relative change with all droppable parts left out at once; zero if there are none.
         numbers: Dimensionless numbers of the scene, with their meaning.
     """
@@ -73,7 +73,7 @@ def advise(method: Method, scene: Scene, accuracy: float) -> Advice:
     """Solve the scene with and without each of its parts.
 
     Args:
-        method: What to solve with.
+        method: Method that solves.
         scene: The whole scene.
         accuracy: Largest relative change that does not matter.
 
@@ -97,7 +97,7 @@ def advise(method: Method, scene: Scene, accuracy: float) -> Advice:
 def _together(
     method: Method, whole: Solution, droppable: tuple[Effect, ...], accuracy: float
 ) -> tuple[float, tuple[Effect, ...]]:
-    """Largest change without all droppable parts at once, and these; while it is too large, the largest is needed."""
+    """Largest relative change without the returned parts; until it is small enough, the largest one is removed."""
     while len(droppable) > 1:
         change = change_without(method, whole, [part.part for part in droppable])
         if change <= accuracy:
@@ -108,9 +108,9 @@ def _together(
 
 
 def first_solution(method: Method, scene: Scene) -> Solution:
-    """The answer with its cost when nothing is kept from earlier scenes; without imports where they count."""
+    """The answer with its cost from empty caches; a fast solution is repeated, so that imports do not count."""
     for _ in range(2):
-        forget()
+        clear_caches()
         answer = method.solve(scene)
         if answer.cost.cpu_seconds > IMPORTS_HIDDEN:
             break
@@ -118,19 +118,19 @@ def first_solution(method: Method, scene: Scene) -> Solution:
 
 
 def parts_of(scene: Scene) -> tuple[str, ...]:
-    """What can be left out: each listed effect, and the parts of a layer, its finite thickness among them."""
+    """Names of all that can be left out of a scene: its effects, and the parts of `layer_parts`."""
     return (*(type(effect).__name__ for effect in scene.effects), *layer_parts(scene.layer))
 
 
 def nothing_left(scene: Scene, part: str) -> bool:
-    """Whether nothing is left to solve without the part: the adhesion of a detachment."""
+    """Whether the scene cannot be solved without the part: adhesion in a detachment."""
     return part == Adhesion.__name__ and isinstance(scene.loading, Detachment)
 
 
 def change_without(method: Method, whole: Solution, parts: Sequence[str]) -> float:
     """Largest relative change of any quantity with all these parts left out at once."""
-    less = method.solve(without(whole.scene, parts))
-    return max(changes(_numbers(whole), _numbers(less)).values(), default=0.0)
+    reduced = method.solve(without(whole.scene, parts))
+    return max(changes(_numbers(whole), _numbers(reduced)).values(), default=0.0)
 
 
 def without(scene: Scene, parts: Sequence[str]) -> Scene:
@@ -143,25 +143,26 @@ def without(scene: Scene, parts: Sequence[str]) -> Scene:
 
 
 def ablation(method: Method, whole: Solution, part: str) -> Effect:
-    """The change of a solved scene when it is solved without a part."""
+    """Changes of the quantities of a solved scene without a part, and both run times."""
     entry = Effect(case="", scene="", method=method.name, part=part, seconds=whole.cost.cpu_seconds)
     if nothing_left(whole.scene, part):
         return replace(entry, remark=NOTHING_PULLS)
     try:
-        forget()
-        less = method.solve(without(whole.scene, [part]))
+        clear_caches()
+        reduced = method.solve(without(whole.scene, [part]))
     except ContactError as error:
         return replace(entry, remark=f"no answer without it ({error!s:.120})")
-    return replace(entry, changes=changes(_numbers(whole), _numbers(less)), seconds_without=less.cost.cpu_seconds)
+    return replace(entry, changes=changes(_numbers(whole), _numbers(reduced)), seconds_without=reduced.cost.cpu_seconds)
 
 
-def changes(whole: Mapping[str, FloatArray], less: Mapping[str, FloatArray]) -> dict[str, float]:
-    """Largest change over the steps relative to the largest value, of the single numbers of an answer or of its path.
+def changes(whole: Mapping[str, FloatArray], reduced: Mapping[str, FloatArray]) -> dict[str, float]:
+    """Largest change of each quantity over the steps, relative to its largest value, by name.
 
+    Compared are the single numbers of an answer, or the quantities of its path where there are none.
     A quantity that is zero, or has another number of steps without the part, is left out.
     """
     names = [name for name in SINGLE if name in whole] or STATIC
-    pairs = {name: (whole[name], less[name]) for name in names if name in whole and name in less}
+    pairs = {name: (whole[name], reduced[name]) for name in names if name in whole and name in reduced}
     return {
         name: float(np.max(np.abs(values - others)) / np.max(np.abs(values)))
         for name, (values, others) in pairs.items()
@@ -170,6 +171,7 @@ def changes(whole: Mapping[str, FloatArray], less: Mapping[str, FloatArray]) -> 
 
 
 def _numbers(answer: Solution) -> dict[str, FloatArray]:
+    """Single numbers of an answer, or else radius, depth and force along its steps, by name."""
     return {name: values_of(answer, name) for name in single_numbers(answer) or STATIC}
 
 
@@ -179,12 +181,12 @@ def layer_parts(layer: ElasticLayer) -> tuple[str, ...]:
 
 
 def simpler(layer: ElasticLayer, part: str) -> ElasticLayer:
-    """The layer without one part; parts that it does not have change nothing."""
+    """The layer without one part, or the layer itself if it has no such part."""
     return dict(_simpler_layers(layer)).get(part, layer)
 
 
 def _simpler_layers(layer: ElasticLayer) -> Iterator[tuple[str, ElasticLayer]]:
-    """Each part by name, with the layer without it."""
+    """Yield the name of each part and the layer without that part."""
     if layer.is_half_space:
         return
     if isinstance(layer, LayerStack | GradedLayer) and isinstance(layer.support, ElasticBase):

@@ -23,10 +23,10 @@ class Values:
 
     Attributes:
         unit: SI unit, "1" for a ratio.
-        scale: Size that errors are relative to, same unit; positive, so a zero crossing does no harm.
+        scale: Positive value, same unit, by which errors are divided, so that a zero crossing does no harm.
         values: Shape (n,).
-        error: Stated error. Of a quantity absolute, shape (n,); of a field one number, relative in its norm.
-            Empty where it states none.
+        error: Stated error. Quantities: absolute, shape (n,). Fields: a single number, relative in the field's norm.
+            Empty where the method states none.
         at: Radii or numbers of the points of a field, shape (n,); empty for a quantity.
         spread: Largest relative difference between answers that should be equal, in a baseline.
     """
@@ -55,7 +55,7 @@ class Answer:
         scene: Name of the scene within the case.
         method: Label of the method in the case.
         variant: "" for the scene itself, else what was changed ("doubling E doubles F", "grid nodes=8").
-        question: Hash of the scene and of the settings asked for; equal on every processor.
+        question: Hash of the scene and of the requested settings; equal on every processor.
         code: Hash of the sources and versions that answered.
         status: PASS when solved.
         reason: Reason why it was not solved, one sentence.
@@ -99,7 +99,7 @@ class Answer:
 
     @property
     def solved(self) -> bool:
-        """Whether it has numbers."""
+        """Whether the method gave an answer with quantities."""
         return self.status is Status.PASS
 
     def line(self) -> str:
@@ -112,7 +112,7 @@ _ANSWER: TypeAdapter[Answer] = TypeAdapter(Answer)
 
 
 class Table:
-    """Answers by identity; the last of two with one identity counts."""
+    """Answers by identity; the later of two with the same identity counts."""
 
     def __init__(self, answers: Iterable[Answer] = ()) -> None:
         self._answers = {answer.identity: answer for answer in answers}
@@ -142,7 +142,7 @@ class Table:
 
 
 def read_answers(path: Path, skip: int = 0) -> Iterator[Answer]:
-    """Yield the answers of a file after ``skip`` lines; a torn last line is left out, its writer was killed.
+    """Yield the answers of a file after ``skip`` lines, without an incomplete last line left by a killed writer.
 
     Raises:
         InvalidInput: Naming the file and the line that holds no answer.

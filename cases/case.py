@@ -21,12 +21,12 @@ class Sampling:
     """Fields of an answer that a run records in addition to its quantities.
 
     Attributes:
-        ring_edges: The pressure of the last step is kept at the Gauss nodes of the rings between these radii [m];
-            empty keeps no pressure.
+        ring_edges: Radii [m] between rings, at whose Gauss nodes the pressure of the last step is recorded; empty
+            records no pressure.
         nodes: Gauss nodes on each ring.
-        scales: Declared size of a quantity, by name; otherwise its largest magnitude.
-        inside: Points of the body where fields of the last step are kept: r over the contact radius, z over the smaller
-            of contact radius and thickness; empty keeps none.
+        scales: Declared scale of a quantity, by name; otherwise its largest magnitude.
+        inside: Points of the layer at which fields of the last step are recorded: r over the contact radius, z over the
+            smaller of contact radius and thickness; empty records none.
         laws: Whether the laws of elastic bodies are checked on these fields.
     """
 
@@ -38,7 +38,7 @@ class Sampling:
 
     @property
     def rings(self) -> RingQuadrature:
-        """Nodes and weights."""
+        """Gauss nodes and weights on the rings."""
         return ring_quadrature(self.ring_edges, self.nodes)
 
 
@@ -49,10 +49,10 @@ class CaseScene:
     Attributes:
         name: Unique within the case.
         parameters: Parameters that distinguish the scene, for tables and figures.
-        scene: The problem.
-        sampling: Fields that are kept of each answer.
-        methods: The methods that solve it; empty for those of the case.
-        nightly: Labels of those that take too long for the suite "ci".
+        scene: Contact problem that is solved.
+        sampling: Fields that are recorded from each answer.
+        methods: Methods that solve the scene; empty for those of the case.
+        nightly: Labels of the methods that take too long for the suite "ci".
     """
 
     name: str
@@ -71,13 +71,13 @@ class Task:
         case: Name of the case.
         scene: Name of the scene within the case.
         variant: "" for the scene itself, else what was changed ("doubled E", "grid nodes=8").
-        use: The method with the settings asked for; its label names it in the case.
-        problem: The scene that is solved.
+        use: Method with its requested settings, under its label in the case.
+        problem: Scene that is solved.
         refined: Number of refinements of the method before it solves.
-        sampling: Fields that are kept.
-        timed: Whether the solution is repeated for its time, alone on the machine.
-        first: Whether it is a first solution: imports are done before, caches are empty.
-        measure: Computes fields of the answer from method and scene, in place of one solution.
+        sampling: Fields that are recorded.
+        timed: Whether the solution is repeated to measure its time, alone on the machine.
+        first: Whether the cost of a first solution is measured: after imports, with empty caches.
+        measure: Function of method and scene that returns fields of the `Answer`, in place of a solution.
     """
 
     case: str
@@ -117,10 +117,10 @@ class Case:
         equations: Equations of the source.
         text: The paper's body: set-up, what to expect and why.
         suites: "ci" (minutes) and "nightly"; "referees" runs outside solvers.
-        scenes: Solved by every method.
+        scenes: Scenes, solved by every method unless they name their own.
         methods: Compared methods.
         claims: Claims, and studies of what is measured (`cases.claims.Study`).
-        restricted: Whether only some of its methods are left; then nothing may be left to claim.
+        restricted: Whether methods or claims were removed; such a case may have no claims.
     """
 
     name: str
@@ -206,17 +206,17 @@ class Case:
         return tuple(claim for claim in self.claims if claim.timed)
 
     def verdicts(self, answers: Table) -> list[Verdict]:
-        """Judge the claims whose answers are there."""
+        """Judge the claims whose answers are present."""
         return [verdict for claim in self.claims for verdict in claim.judge(self, answers)]
 
     def only(self, keep: Callable[[CaseScene, MethodUse], bool]) -> "Case":
-        """Return the case with the methods that ``keep`` keeps on each scene; scenes without any are left out."""
+        """Return the case with the methods on each scene for which ``keep`` is true, without scenes that have none."""
         uses = {s.name: tuple(use for use in self.methods_of(s) if keep(s, use)) for s in self.scenes}
         scenes = tuple(replace(s, methods=uses[s.name], nightly=()) for s in self.scenes if uses[s.name])
         return replace(self, scenes=scenes, restricted=True)
 
     def in_suite(self, suite: str) -> "Case":
-        """Return the case as ``suite`` runs it: nightly everything, ci without what takes long.
+        """Return the case as ``suite`` runs it: nightly as a whole, ci without methods and claims that take long.
 
         Without a suite each scene keeps its ``nightly`` methods; studies of cost and effects are those of ci.
         """
@@ -227,7 +227,7 @@ class Case:
         return restricted.only(lambda scene, use: use.label not in scene.nightly)
 
     def only_methods(self, wanted: Collection[str]) -> "Case":
-        """Return the case with the methods asked for (all if none is), without timings.
+        """Return the case with the wanted methods alone and without studies of cost; unchanged if none is wanted.
 
         Raises:
             InvalidInput: If the case has none of the methods.

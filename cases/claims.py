@@ -37,13 +37,13 @@ Norm: TypeAlias = Literal["", "weighted L2", "ring loads", "largest", "root mean
 
 # On the half-space, MDR on a table uses no table and equals MDR by construction.
 TABLE, NO_TABLE = "mdr_table", "on the half-space no table is read"
-# Twice the standard uncertainty of printed inputs covers 95 % (GUM 6.3.3); once it would fail every third number.
+# Coverage factor of the uncertainty of printed inputs: 2 covers 95 % of the values (GUM 6.3.3), 1 only 68 %.
 COVERAGE = 2.0
 
 
 @dataclass(frozen=True, kw_only=True)
 class Study:
-    """What a case needs in addition to its scenes: tasks, and verdicts and records of their answers.
+    """Tasks of a case in addition to its scenes, and the verdicts and records of their answers.
 
     Attributes:
         name: Unique within the case.
@@ -69,7 +69,7 @@ class Study:
         yield from ()
 
     def judge(self, case: Case, answers: Table) -> Iterator[Verdict]:
-        """Yield the verdicts whose answers are there."""
+        """Yield the verdicts whose answers are present."""
         yield from ()
 
     def records(self, case: Case, answers: Table) -> Iterator[Record]:
@@ -136,9 +136,9 @@ class Claim(Study, ABC):
         """Yield each scene of the claim with each method of the claim that solves it."""
         for scene in self.scenes_of(case):
             uses = {use.label: use for use in case.methods_of(scene)}
-            asked = self.together[:1] or self.methods or tuple(uses)
+            labels = self.together[:1] or self.methods or tuple(uses)
             if set(self.together) <= set(uses):
-                yield from ((scene, use) for label, use in uses.items() if label in asked)
+                yield from ((scene, use) for label, use in uses.items() if label in labels)
 
     def tasks(self, case: Case) -> Iterator[Task]:
         """Yield the tasks that the verdicts need in addition to the case's own."""
@@ -167,8 +167,8 @@ class Claim(Study, ABC):
 
     def identity(self, scene: CaseScene, labels: Iterable[str]) -> str:
         """Return why the comparison cannot fail on ``scene``, empty where it can."""
-        known = {TABLE: NO_TABLE} if scene.scene.layer.is_half_space else {}
-        return next((why[label] for why in (self.identities, known) for label in labels if label in why), "")
+        on_half_space = {TABLE: NO_TABLE} if scene.scene.layer.is_half_space else {}
+        return next((why[label] for why in (self.identities, on_half_space) for label in labels if label in why), "")
 
     def verdict(
         self,
@@ -180,10 +180,10 @@ class Claim(Study, ABC):
         judged: Judgement,
         others: Sequence[Answer] = (),
     ) -> Verdict:
-        """Return the verdict of one judgement; a method is independent only where the two share nothing."""
+        """Return the verdict of a judgement; two methods that share code or data are related, not independent."""
         agreement, why = self.kind is Kind.AGREEMENT, self.why
-        both = in_common(answer.shared, others[0].shared, quantity=self.quantity, case=case.name) if agreement else ()
-        if both and why.origin is Origin.INDEPENDENT_METHOD:
+        common = in_common(answer.shared, others[0].shared, quantity=self.quantity, case=case.name) if agreement else ()
+        if common and why.origin is Origin.INDEPENDENT_METHOD:
             why = replace(why, origin=Origin.RELATED_METHOD)
         compared = judged.error is not None
         return Verdict(
@@ -197,7 +197,7 @@ class Claim(Study, ABC):
             tolerance=self.tolerance_of(use.label),
             uncertainty=self.stated(scene, [answer, *others]) if compared else {},
             why=why,
-            shared=both,
+            shared=common,
             identity=self.identity(scene, self.labels(use)) if compared else "",
             **vars(judged),
         )
@@ -227,7 +227,7 @@ class PerScene(Claim, ABC):
     needs_quantity: ClassVar[bool] = True
 
     def judge(self, case: Case, answers: Table) -> Iterator[Verdict]:
-        """Judge each scene and method whose answers are there."""
+        """Judge each scene and method whose answers are present."""
         for scene, use in self.places(case):
             answer = answers.get(case.task(scene, use).identity)
             others = [answers.get(task.identity) for task in self.needed(case, scene, use)]
@@ -237,6 +237,7 @@ class PerScene(Claim, ABC):
                 yield self.verdict(case, scene, use, answer, judged=judged, others=present)
 
     def _judged(self, scene: CaseScene, use: MethodUse, answer: Answer, others: list[Answer]) -> Judgement:
+        """Judgement of an answer, or of a missing answer or quantity, which cannot be compared."""
         absent = first_missing(answer, *others, quantity=self.quantity if self.needs_quantity else "")
         return absent or self.judged(scene, use.label, answer, others)
 
@@ -251,8 +252,8 @@ class Equal(PerScene):
 
     Attributes:
         to: Expected values by name of the scene, or a function of the scene.
-        uncertain: Printed inputs and how exact they are, as `read_inputs` takes them; the values may be off by as much
-            as they leave open.
+        uncertain: Printed inputs with their uncertainties, as text for `read_inputs`; the effect of these counts as a
+            stated error, twice.
     """
 
     kind: ClassVar[Kind] = Kind.EXACT
@@ -303,6 +304,7 @@ class Equal(PerScene):
         return errors | ({"inputs": float(self._by_inputs(others)[step] / size)} if self.uncertain else {})
 
     def _worst(self, scene: CaseScene, label: str, answer: Answer, others: list[Answer]) -> tuple[Judgement, int]:
+        """Judgement of the worst step against the expected values, and the number of that step."""
         values, q = self.values(scene), answer.quantities[self.quantity]
         if len(values) != len(q.values):
             message = f"{len(q.values)} steps for {len(values)} expected values of {self.quantity}"
@@ -319,7 +321,7 @@ class Equal(PerScene):
         return worst, judgements.index(worst)
 
     def _by_inputs(self, others: list[Answer]) -> FloatArray:
-        """Standard uncertainty of every step by the inputs."""
+        """Standard uncertainty by the inputs at every step, from answers with each input up and then down."""
         values = [np.array(other.quantities[self.quantity].values) for other in others]
         changes = np.array([(up - down) / 2 for up, down in zip(values[::2], values[1::2], strict=True)])
         return read_inputs(self.uncertain).spread(changes)
@@ -332,7 +334,7 @@ class Equal(PerScene):
 
 @dataclass(frozen=True, kw_only=True)
 class Agree(PerScene):
-    """Two methods give the same values, or the same field in a norm, their stated errors counted.
+    """Difference of two methods plus both stated errors within the tolerance, of values or of a field in a norm.
 
     Attributes:
         fast: Label of the method under test.
@@ -355,7 +357,7 @@ class Agree(PerScene):
         return self.fast, self.reference
 
     def tasks(self, case: Case) -> Iterator[Task]:
-        """Yield the refined solutions that stand for a missing error."""
+        """Yield the refined solutions, whose change replaces a missing stated error."""
         for scene, _ in self.places(case):
             yield from self._refined(case, scene)
 
@@ -365,6 +367,7 @@ class Agree(PerScene):
         yield from self._refined(case, scene)
 
     def _refined(self, case: Case, scene: CaseScene) -> Iterator[Task]:
+        """Yield the tasks of the methods ``refined`` with half the discretisation length."""
         for label in self.refined:
             yield case.task(scene, case.use(scene, label)).changed("refined", refined=1)
 
@@ -376,10 +379,10 @@ class Agree(PerScene):
     def judged(self, scene: CaseScene, label: str, answer: Answer, others: list[Answer]) -> Judgement:
         """Judge the field, or the worst step; without a stated error there is no pass."""
         judged, stated = self._compared(scene, [answer, *others])
-        silent = [answered.method for answered in (answer, others[0]) if answered.method not in stated]
-        if not silent or judged.status.is_failure:
+        without_error = [compared.method for compared in (answer, others[0]) if compared.method not in stated]
+        if not without_error or judged.status.is_failure:
             return judged
-        message = f"{silent[0]} states no uncertainty of {self.quantity}: no verdict is possible"
+        message = f"{without_error[0]} states no uncertainty of {self.quantity}: no verdict is possible"
         return nothing_compared(Status.INCONCLUSIVE, message)
 
     def stated(self, scene: CaseScene, answers: list[Answer]) -> dict[str, float]:
@@ -387,6 +390,7 @@ class Agree(PerScene):
         return self._compared(scene, answers)[1]
 
     def _compared(self, scene: CaseScene, answers: list[Answer]) -> tuple[Judgement, dict[str, float]]:
+        """Judgement of the field, or of the worst step, and the relative errors that both methods state, by label."""
         a, b = (answer.quantities[self.quantity] for answer in answers[:2])
         if a.unit != b.unit or len(a.values) != len(b.values):
             message = f"{len(a.values)} values in {a.unit} against {len(b.values)} in {b.unit}"
@@ -408,6 +412,7 @@ class Agree(PerScene):
         return worst, steps[judgements.index(worst)]
 
     def _field(self, scene: CaseScene, answers: list[Answer]) -> tuple[Judgement, dict[str, float]]:
+        """Judgement of the difference of two fields in the norm, and the error that each method states, by label."""
         fields = {answer.method: answer.quantities[self.quantity] for answer in answers[:2]}
         stated = {label: q.error[0] for label, q in fields.items() if q.error and label not in self.refined}
         for label, finer in zip(self.refined, answers[2:], strict=True):
@@ -446,7 +451,7 @@ class Agree(PerScene):
 
 @dataclass(frozen=True, kw_only=True)
 class Changed(PerScene, ABC):
-    """A claim on an answer and on that of a changed scene.
+    """A claim that compares an answer with that of a changed scene.
 
     Attributes:
         change: Function that returns the changed scene.
@@ -457,7 +462,7 @@ class Changed(PerScene, ABC):
     change: Callable[[Scene], Scene]
 
     def needed(self, case: Case, scene: CaseScene, use: MethodUse) -> Iterator[Task]:
-        """Yield the changed scene of one place."""
+        """Yield the task of the changed scene."""
         yield case.task(scene, use).changed(self.name, self.change(scene.scene))
 
 
@@ -485,34 +490,34 @@ class Law(Changed):
 
 @dataclass(frozen=True, kw_only=True)
 class Bound(Changed):
-    """At every step the quantity is at least a multiple of that of the changed scene, but for the tolerance.
+    """q(scene) >= m q(changed scene) at every step, within the tolerance.
 
     Attributes:
-        multiple: m in q(scene) >= m q(changed scene), of the scene; 1 by default.
-        at_most: Whether it is a bound from above.
+        multiple: Function that returns m for a scene; 1 by default.
+        at_most: Whether m q(changed scene) is an upper bound instead.
     """
 
     multiple: Callable[[Scene], float] | None = None
     at_most: bool = False
 
     def judged(self, scene: CaseScene, label: str, answer: Answer, others: list[Answer]) -> Judgement:
-        """Judge what the quantity lacks."""
+        """Judge by how much the worst step violates the bound."""
         multiple = 1.0 if self.multiple is None else self.multiple(scene.scene)
-        values, bounds = (answered.quantities[self.quantity] for answered in (answer, others[0]))
+        original, changed = (solved.quantities[self.quantity] for solved in (answer, others[0]))
         sign = -1.0 if self.at_most else 1.0
-        lacking = (
-            max(0.0, sign * (multiple * least - value)) / bounds.scale
-            for value, least in zip(values.values, bounds.values, strict=True)
+        violations = (
+            max(0.0, sign * (multiple * changed_value - value)) / changed.scale
+            for value, changed_value in zip(original.values, changed.values, strict=True)
         )
-        return worst_judgement([judge_residual(share, tolerance=self.tolerance_of(label)) for share in lacking])
+        return worst_judgement([judge_residual(v, tolerance=self.tolerance_of(label)) for v in violations])
 
 
 @dataclass(frozen=True, kw_only=True)
 class Zero(PerScene):
-    """A residual vanishes: one that the answers carry as a quantity, or one that is derived from an answer.
+    """A residual vanishes: a quantity of the answers, or a residual computed from them.
 
     Attributes:
-        derive: Residuals of an answer on its scene, relative; by default the values of the quantity itself.
+        derive: Function that returns the relative residuals of an answer; by default the values of the quantity.
     """
 
     kind: ClassVar[Kind] = Kind.INVARIANT
@@ -541,9 +546,9 @@ class Approach(Claim):
     Attributes:
         scenes: Names, the one closest to the limit last.
         parameter: Parameter that tends to zero, for example h/a.
-        limit: The closed form the quantity's last step tends to.
+        limit: Closed form of a scene to which the quantity's last step tends.
         formal_order: Order of the distance in the parameter.
-        largest: The relative distance of the last scene must not exceed this.
+        largest: Largest permitted relative distance of the last scene from the limit.
     """
 
     kind: ClassVar[Kind] = Kind.ORDER
@@ -599,6 +604,7 @@ class Approach(Claim):
         return nothing_compared(Status.INCONCLUSIVE, f"{judged.message}; error {max(errors):.1e}: refine")
 
     def _rate(self, far: float, near: float, ratio: float) -> Judgement:
+        """Judge the order ln|far/near|/ln(ratio) from the relative distances from the limit of two scenes."""
         if abs(near) > self.largest:
             message = f"{near:+.1e} from the limit, at most {self.largest:g} claimed"
             return nothing_compared(Status.FAIL, message)

@@ -27,20 +27,20 @@ Grids: TypeAlias = Mapping[str, Any] | tuple[Mapping[str, Any], ...]
 class Order(Claim):
     """On a sequence of grids the quantity's last step, or a field at points, converges at its formal order.
 
-    Fields count by root mean squares over their points.
+    A field is measured by its root mean square over the points.
 
     Attributes:
         method: Label of the method in the case.
-        ladder: Settings of each refinement, coarsest first, in place of those of the case; several grids of one
-            refinement, whose errors scatter, count by their root mean square.
+        ladder: Settings of each refinement, coarsest first, in place of those of the case. Several grids of one
+            refinement, whose errors scatter, are averaged by the root mean square.
         ratio: Ratio of the discretisation lengths of neighbours.
         formal_order: p_f of this case, quantity and mesh family; None claims spectral convergence.
         least_digits: Digits per refinement, for spectral convergence.
         mesh_family: Family of meshes to which the formal order belongs.
         against: The method whose answer is the reference: its label in the case, or one with settings of its own;
             empty for none.
-        reference_uncertainty: Relative, of the reference; zero for what the method itself states.
-        floor: Round-off floor, relative.
+        reference_uncertainty: Relative error of the reference; zero for the error that its method states.
+        floor: Relative error below which round-off dominates.
     """
 
     kind: ClassVar[Kind] = Kind.ORDER
@@ -57,7 +57,7 @@ class Order(Claim):
 
     @property
     def together(self) -> tuple[str, ...]:
-        """The method, and its reference where the case has it."""
+        """Labels of the method and, if it is a method of the case, of the reference."""
         return (self.method, self.against) if self.against and isinstance(self.against, str) else (self.method,)
 
     def needed(self, case: Case, scene: CaseScene, use: MethodUse) -> Iterator[Task]:
@@ -98,6 +98,7 @@ class Order(Claim):
         return self.formal_order
 
     def _order(self, study: Convergence) -> Judgement:
+        """Judge the observed order of a study, or its digits per refinement."""
         if self.formal_order is not None:
             return judge_order(study.observed_order, self.formal_order, study.kind)
         if study.digits is None:
@@ -105,14 +106,15 @@ class Order(Claim):
         return judge_digits(study.digits, self.least_digits)
 
     def _study(self, case: Case, scene: CaseScene, use: MethodUse, solved: list[Answer]) -> Convergence:
-        rest = iter(solved)
-        levels = [[next(rest) for _ in level] for level in self._levels(case, scene, use)][::-1]
+        """Study of a scene from its solved grids and, last, the answer of the reference."""
+        remaining = iter(solved)
+        levels = [[next(remaining) for _ in level] for level in self._levels(case, scene, use)][::-1]
         quantities = [_last(level[0], self.quantity) for level in levels]
         lengths = [self.ratio**level for level in range(1 - len(levels), 1)]
         values, scale = [_size(q.values) for q in quantities], quantities[0].scale
         reference, uncertainty, errors = None, self.reference_uncertainty, list[float]()
         if self.against:
-            q = _last(next(rest), self.quantity)
+            q = _last(next(remaining), self.quantity)
             reference, uncertainty = _size(q.values), uncertainty or (q.error or (0.0,))[-1] / q.scale
             errors = [self._distance(level, np.array(q.values)) for level in levels]
         kind, order, digits = self._behaviour(values, errors, lengths, scale, uncertainty)
@@ -126,7 +128,7 @@ class Order(Claim):
             unit=quantities[0].unit,
             refined=self.mesh_family,
             kind=kind,
-            grids=tuple(map(_shown, lengths, levels, quantities, shown)),
+            grids=tuple(map(_grid_record, lengths, levels, quantities, shown)),
             scale=scale,
             formal_order=self.formal_order,
             observed_order=order,
@@ -139,10 +141,13 @@ class Order(Claim):
     def _behaviour(
         self, values: list[float], errors: list[float], lengths: list[float], scale: float, uncertainty: float
     ) -> tuple[str, float | None, float | None]:
-        """Class, order, digits: from errors if the least is ten times the uncertainty, else from values."""
+        """Class of the sequence, observed order, and digits per refinement.
+
+        The order is that of the errors if the least exceeds ten times the reference's uncertainty, else of the values.
+        """
         if self.formal_order is None:
-            known = errors or [abs(value - values[0]) for value in values[1:]]
-            return "spectral", None, digits_per_refinement([error / scale for error in known], self.floor)
+            distances = errors or [abs(value - values[0]) for value in values[1:]]
+            return "spectral", None, digits_per_refinement([error / scale for error in distances], self.floor)
         floor = self.floor * scale
         if errors and errors[0] > 10 * uncertainty * scale:
             kind = behaviour_of_errors(errors, floor)
@@ -167,7 +172,7 @@ class Order(Claim):
         return [*indices, None]
 
     def _distance(self, level: Sequence[Answer], reference: FloatArray) -> float:
-        """Root mean square distance of the grids of one refinement, at all points of a field."""
+        """Root mean square difference of the grids of one refinement from the reference, over all points of a field."""
         squares = [np.mean((np.array(_last(grid, self.quantity).values) - reference) ** 2) for grid in level]
         return math.sqrt(sum(map(float, squares)) / len(level))
 
@@ -177,7 +182,7 @@ def _grid(case: Case, scene: CaseScene, use: MethodUse) -> Task:
     return case.task(scene, use).changed(f"grid {words}")
 
 
-def _shown(length: float, level: list[Answer], q: Values, error: float | None) -> Grid:
+def _grid_record(length: float, level: list[Answer], q: Values, error: float | None) -> Grid:
     first, stated = level[0], q.error[-1] if q.error else None
     size, seconds = first.unknowns, first.seconds
     return Grid(length=length, unknowns=size, seconds=seconds, value=_size(q.values), error=error, stated=stated)
@@ -190,7 +195,7 @@ def _last(answer: Answer, name: str) -> Values:
 
 
 def _size(values: Sequence[float] | FloatArray) -> float:
-    """One value itself, or the root mean square of a field."""
+    """The value itself if there is a single one, or the root mean square of a field."""
     return float(values[0]) if len(values) == 1 else float(np.sqrt(np.mean(np.square(values))))
 
 

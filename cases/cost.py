@@ -22,8 +22,8 @@ class Cost(Study):
     Attributes:
         scene: Name of the scene.
         quantity: Quantity whose error is measured.
-        ladder: Settings to try; the label of each names the setting, ``method`` the method.
-        reference: The settings errors are measured against; its own stated error is u_ref.
+        ladder: Timed settings; ``label`` names the setting, ``method`` the method.
+        reference: Method and settings of the reference solution, whose stated error is u_ref.
         cheap: The settings that are timed outside of the suite nightly; empty for all.
     """
 
@@ -79,6 +79,7 @@ class Cost(Study):
         )
 
     def _task(self, case: Case, use: MethodUse, *, timed: bool) -> Task:
+        """Task of the study's scene by one setting, which the variant names."""
         task = case.task(case.scene(self.scene), use)
         role = "cost" if timed else "reference"
         # The answer belongs to the method; the setting stands in the variant.
@@ -86,6 +87,7 @@ class Cost(Study):
         return replace(task, use=named, variant=f"{role}: {use.label}", timed=timed)
 
     def _point(self, use: MethodUse, answer: Answer, exact: float, u_ref: float) -> Point:
+        """Error against ``exact``, its bound with the relative error ``u_ref``, and times of a setting."""
         point = Point(method=use.method, setting=use.label, settings=answer.settings, reason=answer.reason)
         if answer.status is not Status.PASS or not answer.samples:
             return point
@@ -120,7 +122,7 @@ def pareto_front(points: Sequence[Point], noise: float) -> list[Point]:
 
 
 def cheapest(points: Iterable[Point], tolerance: float) -> Point | None:
-    """Return the setting behind T*(tau), the smallest time with U <= tau; None when tau was not reached."""
+    """Return the setting with the shortest time T*(tau) such that U <= tau; None if no setting reaches tau."""
     return min((point for point in points if bound_of(point) <= tolerance), key=lambda p: p.seconds, default=None)
 
 
@@ -138,7 +140,7 @@ def price_of_a_digit(cheap: Point, accurate: Point) -> float:
 def _each(
     method: str, setting: str, values: Sequence[float], label: str, **fixed: float | str
 ) -> tuple[MethodUse, ...]:
-    """A method with each value of one setting, in this order."""
+    """Uses of a method with each value of one setting, labelled by the value, and further fixed settings."""
     return tuple(
         MethodUse(label=label.format(value), method=method, settings={setting: value, **fixed}) for value in values
     )
@@ -158,7 +160,7 @@ FEM: Final = (
     ),
     *_each("fem", "accuracy", (1e-2, 1e-4, 1e-6), "accuracy {:g}"),
 )
-# Solvers of others, each refined by its own grid or mesh.
+# Outside solvers, each refined by its own grid or mesh.
 OTHERS: Final = (
     *_each("calculix", "cells", (4, 6, 8, 16), "{} cells"),
     *_each("contact_mechanics", "points", (32, 64, 128, 256), "{} points"),
@@ -186,14 +188,14 @@ def elastic_costs(
     periodic: bool = False,
     as_published: bool = False,
 ) -> tuple[Cost, ...]:
-    """What depth and force cost on an elastic scene, with every method that solves it.
+    """Studies of the cost of depth and force on an elastic scene, by every method.
 
     Args:
         scene: Name of the scene within the case.
         quantities: Quantities whose error is measured; all share the same timed solutions.
         in_ci: Whether the suite ci carries out the study, with finite elements too.
+        periodic: Whether a periodic grid, without padding, is timed too; for contacts not wider than a few thicknesses.
         as_published: Whether the table of the paper, 400 rows by 500 radii, is timed too; it takes many seconds.
-        periodic: Whether boundary elements are tried without padding too: the contact is as wide as the layer is thick.
     """
     cheap = (*MDR[1:3], FEM[5]) if in_ci else MDR[2:3]
     ladder = (*MDR, *EQUATION, *FEM, *BEM, *PERIODIC[:periodic], *TABLE, *PUBLISHED_TABLE[:as_published])
@@ -201,23 +203,23 @@ def elastic_costs(
 
 
 def costs_beside_others(scene: str) -> tuple[Cost, ...]:
-    """What a force costs by our methods and by solvers of others; theirs run in a process whose start counts."""
+    """Studies of the cost of the force by this project and outside solvers, whose start of a process counts."""
     return _studies(scene, ("normal_force",), (*MDR, *FEM_BESIDE_OTHERS, *BEM[:4], *OTHERS), FINEST_EQUATION)
 
 
 def inside_costs(scene: str) -> tuple[Cost, ...]:
-    """What stresses inside cost at the last of a scene's points, with the fields at all of them in the time."""
+    """Studies of the cost of stresses at the last of a scene's points; the time includes the fields at all points."""
     return _studies(scene, ("von_mises_inside", "axial_stress_inside"), (*MDR, *FEM), FINEST_MDR)
 
 
 def detachment_costs(scene: str) -> tuple[Cost, ...]:
-    """What the pull-off costs; a branch by finite elements takes a second, ten times over."""
+    """Studies of the cost of force and depth at pull-off."""
     ladder = (*MDR, *FEM_DETACHING, *BEM[:2], *TABLE)
     return _studies(scene, ("pull_off_force", "pull_off_depth"), ladder, FINEST_MDR)
 
 
 def impact_costs(scene: str) -> tuple[Cost, ...]:
-    """What restitution and peak force of an impact cost."""
+    """Studies of the cost of the restitution and the peak force of an impact."""
     ladder, cheap = (*MDR_IN_TIME, *FEM_IN_TIME, *TABLE), (*MDR_IN_TIME[1:3], FEM_IN_TIME[0])
     return _studies(scene, ("coefficient_of_restitution", "peak_force"), ladder, FINEST_MDR_IN_TIME, cheap)
 

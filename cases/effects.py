@@ -1,4 +1,4 @@
-"""What each effect of a scene costs and changes: one more solution without it, for the page of a case."""
+"""Cost of each effect of a scene and its change of the answer, from a further solution without the effect."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -20,8 +20,8 @@ class Ablation(Study):
     Attributes:
         name: "effects" where a case has one such study.
         scene: Name of the scene.
-        methods: Labels of the methods that solve it with and without.
-        slow: Labels of those that do so in the nightly suite only.
+        methods: Labels of the methods that solve the scene with and without each part.
+        slow: Labels of further methods, in the nightly suite only.
     """
 
     kind: ClassVar[str] = "effects"
@@ -48,9 +48,9 @@ class Ablation(Study):
             if whole is None or not whole.solved:
                 continue
             for part, changed in _ablated(task):
-                less = answers.get(changed.identity)
-                if less is not None:
-                    yield _effect(whole, part, less)
+                reduced = answers.get(changed.identity)
+                if reduced is not None:
+                    yield _effect(whole, part, reduced)
             for part in parts_of(task.problem):
                 if nothing_left(task.problem, part):
                     yield _unanswered(whole, part, NOTHING_PULLS)
@@ -70,14 +70,14 @@ def _ablated(whole: Task) -> Iterator[tuple[str, Task]]:
             yield part, whole.changed(f"without {part}", without(whole.problem, [part]))
 
 
-def _effect(whole: Answer, part: str, less: Answer) -> Effect:
+def _effect(whole: Answer, part: str, reduced: Answer) -> Effect:
     """Effect of a part: the changes from the answer to the whole scene to that without the part, and its run time."""
-    if not less.solved:
-        return _unanswered(whole, part, less.reason)
+    if not reduced.solved:
+        return _unanswered(whole, part, reduced.reason)
     relative = changes(
-        *({name: np.array(q.values) for name, q in answer.quantities.items()} for answer in (whole, less))
+        *({name: np.array(q.values) for name, q in answer.quantities.items()} for answer in (whole, reduced))
     )
-    return replace(_unanswered(whole, part, ""), seconds_without=less.seconds, changes=relative)
+    return replace(_unanswered(whole, part, ""), seconds_without=reduced.seconds, changes=relative)
 
 
 def _unanswered(whole: Answer, part: str, remark: str) -> Effect:

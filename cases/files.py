@@ -48,7 +48,7 @@ def validated(adapter: TypeAdapter[T], data: bytes, *, place: str, remedy: str) 
 
 
 def csv_text(heads: Iterable[str], rows: Iterable[Iterable[object]]) -> str:
-    """Return a table as CSV; floats keep all digits that tell them apart, None is an empty cell."""
+    """Return a table as CSV; floats have all digits needed to read them back exactly, None is an empty cell."""
     buffer = io.StringIO()
     writer = csv.writer(buffer, lineterminator="\n")
     writer.writerow(heads)

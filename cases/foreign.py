@@ -1,12 +1,12 @@
-"""Methods of installed packages join every case when they are chosen: each claim that can be put to them is.
+"""Methods of installed packages take part in every case when they are chosen, with each claim that applies to them.
 
-Such a method follows ``contact.Method``. A claim asks of it what it asks of its least exact method. A method may say
-how accurate it is (``claimed_accuracy``, relative, a class attribute, at most 10 %): closed forms and the fast method
-are then compared within ten times this where the claim asks less.
+Such a method follows ``contact.Method``. Its tolerance is the widest one of each claim. A method may state its own
+relative accuracy (``claimed_accuracy``, a class attribute, at most 10 %): its tolerance against closed forms and the
+fast method is then at most ten times this.
 
-Scenes that prescribe contact radii are restated by depth for methods that take no radii. The depths are those that MDR
-finds, and are prescribed to every method compared there, so that none of their error enters: compared are the contact
-radius, which must come back, force and stiffness.
+Scenes that prescribe contact radii are restated by depth for methods that take no radii. MDR computes the depths, which
+are prescribed to every method compared there, so that their error cancels. Compared are contact radius, force and
+stiffness.
 """
 
 import math
@@ -27,9 +27,9 @@ from contact.records.errors import shown
 LARGEST_CLAIM: Final = 0.1
 # Tolerance over the accuracy that a method claims. Half of it fails methods slightly beyond their claim, twice of it
 # accepts errors of more than one lost digit.
-HELD_TO: Final = 10.0
+TOLERANCE_OVER_CLAIM: Final = 10.0
 SUFFIX: Final = ", restated by depth"
-# What is compared where a depth is prescribed, by what is compared where a radius is.
+# Quantity compared at a prescribed depth, by the quantity compared at a prescribed radius.
 RESTATED: Final = {
     "indentation_depth": "contact_radius",
     "normal_force": "normal_force",
@@ -42,14 +42,14 @@ def with_registered(case: Case, chosen: Collection[str] | None = None) -> Case:
 
     Args:
         case: Case with its own methods.
-        chosen: Names of methods; None for every registered one but the outside solvers, which are asked by name.
+        chosen: Names of methods; None for every registered one except the outside solvers.
 
     Raises:
         InvalidInput: If such a method cannot be imported, or claims an accuracy that is none.
     """
     labels = {use.label for use in case.methods}
-    asked = [name for name in registered() if name not in REFEREES] if chosen is None else chosen
-    names = [name for name in registered() if name in asked and name not in labels]
+    wanted = [name for name in registered() if name not in REFEREES] if chosen is None else chosen
+    names = [name for name in registered() if name in wanted and name not in labels]
     return with_foreign_methods(case, {name: claimed_accuracy(name) for name in names})
 
 
@@ -70,10 +70,10 @@ def claimed_accuracy(name: str) -> float:
 
 
 def with_foreign_methods(case: Case, accuracies: Mapping[str, float]) -> Case:
-    """Return ``case`` solved by more methods and with the claims that can be put to them.
+    """Return ``case`` with further methods and the claims that apply to them.
 
-    Claims about single methods extend to them; agreements compare each with the methods of the case, never with one
-    another. Orders of convergence belong to a mesh family, and residuals that are published to their method: they stay.
+    Claims about single methods extend to them. Agreements compare each with the methods of the case, never with one
+    another. Orders of convergence and published residuals belong to the methods of the case and do not extend.
 
     Args:
         case: Case with its own methods and claims.
@@ -82,16 +82,16 @@ def with_foreign_methods(case: Case, accuracies: Mapping[str, float]) -> Case:
     if not accuracies:
         return case
     uses = tuple(MethodUse(label=name) for name in accuracies)
-    asked = with_restated(case, accuracies)
-    scenes = (replace(scene, methods=(*scene.methods, *uses)) if scene.methods else scene for scene in asked.scenes)
-    # The first claims of what is asked are the case's own, of its own scenes.
-    extended = (_extended(case, claim, accuracies) for claim in asked.claims[: len(case.claims)])
-    others = dict.fromkeys(label for claim in asked.claims if isinstance(claim, Agree) for label in _pair(claim))
+    restated = with_restated(case, accuracies)
+    scenes = (replace(scene, methods=(*scene.methods, *uses)) if scene.methods else scene for scene in restated.scenes)
+    # The first claims of the restated case are the case's own, on its own scenes.
+    extended = (_extended(case, claim, accuracies) for claim in restated.claims[: len(case.claims)])
+    others = dict.fromkeys(label for claim in restated.claims if isinstance(claim, Agree) for label in _pair(claim))
     new = (
         claim
         for name, accuracy in accuracies.items()
         for other in others
-        for claim in agreements_between(asked, name, other, {name: accuracy}, everywhere=False)
+        for claim in agreements_between(restated, name, other, {name: accuracy}, everywhere=False)
     )
     return replace(case, methods=(*case.methods, *uses), scenes=tuple(scenes), claims=(*extended, *new))
 
@@ -104,7 +104,7 @@ def _extended(case: Case, claim: Any, accuracies: Mapping[str, float]) -> Any:
         return claim
     widest = max([claim.tolerance, *claim.tolerances.values()])
     limits = {
-        name: min(widest, HELD_TO * accuracy) if accuracy and isinstance(claim, Equal) else widest
+        name: min(widest, TOLERANCE_OVER_CLAIM * accuracy) if accuracy and isinstance(claim, Equal) else widest
         for name, accuracy in accuracies.items()
     }
     methods = (*claim.methods, *accuracies) if claim.methods else ()
@@ -114,17 +114,17 @@ def _extended(case: Case, claim: Any, accuracies: Mapping[str, float]) -> Any:
 def agreements_between(
     case: Case, first: str, second: str, accuracies: Mapping[str, float], *, everywhere: bool = True
 ) -> Iterator[Agree]:
-    """Yield the agreements of ``first`` with ``second`` in what ``case`` compares.
+    """Yield the agreements of ``first`` with ``second`` in the quantities that ``case`` compares.
 
-    They come from the case's own agreements. The tightest that applies to a pair on a scene decides: against MDR, what
-    MDR itself has to meet. Scenes stand in one claim unless their tolerances differ; no scene stands in two.
+    They derive from the case's own agreements, of which the tightest about the pair on a scene sets the tolerance.
+    Scenes of equal tolerance share a claim, and no scene is in two.
 
     Args:
         case: Case with its own claims only.
         first: Label of the method under test.
         second: Label of the method that it is compared with.
         accuracies: Relative accuracies that methods claim for themselves, by label.
-        everywhere: Whether every scene counts where the case compares any methods, not only ``second``.
+        everywhere: Whether all scenes count on which the case compares methods; False: those compared with ``second``.
     """
     compared: dict[str, dict[str, list[Agree]]] = {}
     for claim in case.claims:
@@ -146,8 +146,8 @@ def agreements_between(
                 scenes=tuple(scenes),
                 fast=first,
                 reference=second,
-                tolerance=min(tolerance, _held_to(claim, (first, second), accuracies)),
-                # No refinement of other methods than its own is solved.
+                tolerance=min(tolerance, _claimed_tolerance(claim, (first, second), accuracies)),
+                # Only these two methods are refined.
                 refined=tuple(label for label in claim.refined if label in (first, second)),
             )
 
@@ -156,10 +156,10 @@ def _pair(claim: Agree) -> tuple[str, str]:
     return claim.fast, claim.reference
 
 
-def _held_to(claim: Agree, labels: tuple[str, str], accuracies: Mapping[str, float]) -> float:
-    """Ten times the larger accuracy that the pair claims; infinite where one is not the fast method and claims none."""
+def _claimed_tolerance(claim: Agree, labels: tuple[str, str], accuracies: Mapping[str, float]) -> float:
+    """Ten times the larger accuracy that the pair claims; infinite if a method other than the fast one claims none."""
     claimed = [accuracies.get(label, 0.0) for label in labels if label != claim.fast]
-    return HELD_TO * max(claimed) if claimed and all(claimed) else math.inf
+    return TOLERANCE_OVER_CLAIM * max(claimed) if claimed and all(claimed) else math.inf
 
 
 def _deciding(claims: list[Agree], first: str, second: str) -> Agree:
@@ -168,35 +168,35 @@ def _deciding(claims: list[Agree], first: str, second: str) -> Agree:
     pair = [claim for claim in about[first] if claim in about[second]]
     if pair:
         return min(pair, key=attrgetter("tolerance"))
-    known = [min(claims_of_label, key=attrgetter("tolerance")) for claims_of_label in about.values() if claims_of_label]
-    return max(known, key=attrgetter("tolerance")) if known else min(claims, key=attrgetter("tolerance"))
+    tightest = [min(of_label, key=attrgetter("tolerance")) for of_label in about.values() if of_label]
+    return max(tightest, key=attrgetter("tolerance")) if tightest else min(claims, key=attrgetter("tolerance"))
 
 
 def with_restated(case: Case, names: Iterable[str]) -> Case:
-    """Return the case with such twins of its scenes as one of the methods needs, and its own agreements on them last.
+    """Return the case with scenes restated by depth where a method needs them, and its agreements on these last.
 
     Args:
         case: Case with its own methods and claims.
         names: Names of methods in the table.
     """
-    twins = {scene.name: twin for scene in case.scenes if (twin := _twin(scene, tuple(names))) is not None}
-    if not twins:
+    by_depth = {s.name: restated for s in case.scenes if (restated := _restated(s, tuple(names))) is not None}
+    if not by_depth:
         return case
-    # A claim about all scenes says nothing of their twins.
+    # A claim about all scenes does not extend to the restated ones.
     restricted = tuple(
         replace(claim, scenes=tuple(scene.name for scene in claim.scenes_of(case)))
         if isinstance(claim, Claim)
         else claim
         for claim in case.claims
     )
-    new = tuple(twin for claim in case.claims for twin in _on_twins(case, claim, twins))
+    new = tuple(agreement for claim in case.claims for agreement in _agreements_by_depth(case, claim, by_depth))
     compared = {name for claim in new for name in claim.scenes}
-    restated = (twin for twin in twins.values() if twin.name in compared)
-    return replace(case, scenes=(*case.scenes, *restated), claims=(*restricted, *new))
+    restated_scenes = (scene for scene in by_depth.values() if scene.name in compared)
+    return replace(case, scenes=(*case.scenes, *restated_scenes), claims=(*restricted, *new))
 
 
-def _twin(scene: CaseScene, names: tuple[str, ...]) -> CaseScene | None:
-    """The scene by depth, where one of the methods takes it only so."""
+def _restated(scene: CaseScene, names: tuple[str, ...]) -> CaseScene | None:
+    """The scene restated by depth if one of the methods supports it in this form alone; None otherwise."""
     problem = scene.scene
     if not isinstance(problem.loading, ContactRadii) or problem.effects:
         return None
@@ -225,10 +225,10 @@ def _supports(name: str, problem: Scene, *, broken: bool = False) -> bool:
         return broken
 
 
-def _on_twins(case: Case, claim: Any, twins: Mapping[str, CaseScene]) -> Iterator[Agree]:
-    """The agreement of quantities on the restated scenes; other claims are about prescribed radii and have no twin."""
+def _agreements_by_depth(case: Case, claim: Any, by_depth: Mapping[str, CaseScene]) -> Iterator[Agree]:
+    """Yield the agreement of a quantity on the restated scenes; other claims are about prescribed radii alone."""
     if isinstance(claim, Agree) and not claim.norm and claim.quantity in RESTATED:
-        names = tuple(twins[scene.name].name for scene in claim.scenes_of(case) if scene.name in twins)
+        names = tuple(by_depth[scene.name].name for scene in claim.scenes_of(case) if scene.name in by_depth)
         if names:
             yield replace(claim, name=f"{claim.name}{SUFFIX}", quantity=RESTATED[claim.quantity], scenes=names)
 
@@ -268,15 +268,15 @@ def _compared(case: Case, pairs: list[tuple[str, str]], claims: tuple[Agree, ...
 
 
 def _use(case: Case, scene: CaseScene, label: str) -> MethodUse:
-    """The method as the scene, or else the case, has it; or with the settings it comes with."""
-    known = {use.label: use for use in (*case.methods, *case.methods_of(scene))}
-    return known.get(label, MethodUse(label=label))
+    """The method with the settings of the scene, else of the case, else its defaults."""
+    uses = {use.label: use for use in (*case.methods, *case.methods_of(scene))}
+    return uses.get(label, MethodUse(label=label))
 
 
 def beside(case: Case, methods: Collection[str], reference: str) -> Case:
-    """Return the case with what is claimed of ``methods``, and ``reference`` on the scenes that one of them supports.
+    """Return the case with the claims about ``methods``, and ``reference`` on the scenes that any of them supports.
 
-    Nothing is claimed of the reference alone. A scene that no method supports is skipped with their reason.
+    No claim is about the reference alone. A scene that no method supports is skipped with their reason.
 
     Args:
         case: Case with all these methods.
@@ -295,7 +295,7 @@ def beside(case: Case, methods: Collection[str], reference: str) -> Case:
 
 
 def _about(claim: Any, methods: Collection[str]) -> Iterator[Claim]:
-    """The claim as far as it is about one of the methods."""
+    """Yield the claim, restricted to the methods, if it is about any of them."""
     if isinstance(claim, Equal | Changed | Zero | Approach):
         named = tuple(label for label in methods if not claim.methods or label in claim.methods)
         yield from (replace(claim, methods=named),) if named else ()

@@ -14,18 +14,18 @@ from contact import ContactPath
 from contact.answer.inside import Inside
 from contact.records.validation import FloatArray
 
-# Gauss nodes on each panel, and panels of a depth; along the radius there are more where the layer is thin.
+# Gauss nodes per panel, and least number of panels of a line or disc; a disc in a thin layer has more.
 NODES, PANELS = 12, 2
 # Radius of the cylinders over that of the contact.
 WIDTH = 1.5
 # Their depths over the smaller of contact radius and thickness.
 DEPTHS = (0.4, 1.0)
-# Where the surface is looked at: share of the contact radius below it, and radii over it.
-BELOW, BESIDE = 1e-8, (0.35, 0.65)
+# Points of the law of the surface: depth and radii over the contact radius.
+SURFACE_DEPTH, SURFACE_RADII = 1e-8, (0.35, 0.65)
 
 
 def residuals(path: ContactPath) -> dict[str, FloatArray]:
-    """Of the last step, by name of the law; each over what it should equal, or over the mean pressure or the depth."""
+    """Residuals of the last step by name of the law, relative to the force, the depth or the mean pressure."""
     inside, layer = path.inside(-1), path.scene.layer
     a, delta = float(path.contact_radius[-1]), float(path.indentation_depth[-1])
     mean = float(path.scale("pressure")[-1])
@@ -49,7 +49,7 @@ def _rule(ends: Sequence[float], panels: int = PANELS) -> tuple[FloatArray, Floa
 
 
 def _disc(radius: float, shallowest: float) -> tuple[FloatArray, FloatArray]:
-    """Nodes r and weights 2 pi r dr of a disc, its panels no wider than fields vary at a depth."""
+    """Nodes r and weights 2 pi r dr of a disc; panels are at most as wide as the shallowest depth."""
     a = radius / WIDTH
     parts = [_rule(ends, max(PANELS, math.ceil((ends[1] - ends[0]) / shallowest))) for ends in ((0.0, a), (a, radius))]
     r, w = (np.concatenate(values) for values in zip(*parts, strict=True))
@@ -94,9 +94,9 @@ def _gradient_law(inside: Inside, radius: float, depths: FloatArray) -> FloatArr
 
 def _surface(path: ContactPath, inside: Inside, a: float) -> FloatArray:
     """Residuals sigma_zz + p and sigma_rz just below the surface [Pa]."""
-    r = a * np.array(BESIDE)
-    pressed = inside.at(r, BELOW * a).axial_stress + path.pressure(r, len(path) - 1)
-    return np.concatenate([pressed, inside.at(r, 0.0).shear_stress])
+    r = a * np.array(SURFACE_RADII)
+    normal_residual = inside.at(r, SURFACE_DEPTH * a).axial_stress + path.pressure(r, len(path) - 1)
+    return np.concatenate([normal_residual, inside.at(r, 0.0).shear_stress])
 
 
 def _base(path: ContactPath, inside: Inside, a: float, delta: float, mean: float) -> FloatArray:

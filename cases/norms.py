@@ -1,4 +1,4 @@
-"""Norms of fields over a circular surface; the factor 2 pi r of every area integral lives here and nowhere else."""
+"""Norms of fields over a circular surface; the factor 2 pi r of area integrals is applied here alone."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -33,6 +33,7 @@ class RingQuadrature:
         return float(np.sqrt(np.sum(self._on_rings(pressure) ** 2 * self.weight)))
 
     def _on_rings(self, pressure: FloatArray) -> FloatArray:
+        """The samples as an array of shape (k, n), refused unless there is a finite one at each node."""
         values = np.asarray(pressure, dtype=np.float64)
         if values.size != self.radius.size:
             raise InvalidInput(f"{values.size} samples for {self.radius.size} nodes; sample at radius.ravel()")

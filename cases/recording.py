@@ -1,4 +1,4 @@
-"""From a method's answer to what a run keeps: quantities with units and stated errors, fields at points."""
+"""Quantities with units and stated errors, and fields at points, as a run records them from a method's answer."""
 
 from collections.abc import Iterator, Mapping
 
@@ -13,8 +13,9 @@ from contact.answer.inside import InsideFields
 from contact.records.validation import FloatArray
 
 _SCALES = {"energy_residual": 1.0}  # already over the initial energy: its own size is rounding
+# Array of the branch whose stated error is that of a critical value.
 _ON_BRANCH = {"pull_off_force": "normal_force", "pull_off_depth": "indentation_depth", "force_at_loss": "normal_force"}
-# Fields inside that are kept together at all points, and the stated error that belongs to them.
+# By recorded name: the stated error, and the fields inside that are concatenated over all points.
 GROUPS = {
     "displacement_inside": ("displacement", ("radial_displacement", "axial_displacement")),
     "stress_inside": ("stress", ("radial_stress", "hoop_stress", "axial_stress", "shear_stress")),
@@ -25,7 +26,7 @@ STRESSES = ("radial_stress", "axial_stress", "von_mises")
 
 
 def recorded(solution: Solution, sampling: Sampling) -> dict[str, Values]:
-    """Return the quantities and fields that a run keeps of an answer, by name."""
+    """Return the quantities and fields that a run records from an answer, by name."""
     values = quantities(solution, sampling)
     if isinstance(solution, ContactPath):
         values |= _pressure(solution, sampling) if sampling.ring_edges else {}
@@ -59,6 +60,7 @@ def _floats(values: object) -> tuple[float, ...]:
 
 
 def _quantity(solution: Solution, name: str, sampling: Sampling, steps: slice) -> Values:
+    """Values, scale, unit and stated error of a quantity at the given steps."""
     values = values_of(solution, name)
     error = _stated(solution, name, values.size)[steps]
     values = values[steps]
@@ -67,6 +69,7 @@ def _quantity(solution: Solution, name: str, sampling: Sampling, steps: slice) -
 
 
 def _stated(solution: Solution, name: str, size: int) -> tuple[float, ...]:
+    """Absolute stated error of a quantity, one per value; empty where none is stated."""
     if name not in solution.error_estimate:
         return _of_the_branch(solution, name)
     stated = np.abs(np.atleast_1d(solution.uncertainty(name)))
@@ -96,22 +99,25 @@ def _pressure(path: ContactPath, sampling: Sampling) -> Mapping[str, Values]:
 
 
 def fields_at(path: ContactPath, sampling: Sampling) -> InsideFields:
-    """Fields of the last step at a scene's points."""
+    """Fields of the last step at the points `Sampling.inside`."""
     a, h = float(path.contact_radius[-1]), path.scene.layer.thickness
     r, z = np.transpose(sampling.inside)
     return path.inside(-1).at(a * r, min(a, h) * z)
 
 
 def _inside(path: ContactPath, sampling: Sampling) -> Iterator[tuple[str, Values]]:
-    """Fields over depth, mean pressure and that over the smaller of a and h; stresses; residuals of laws."""
+    """Yield displacements over delta, stresses over the mean pressure p_m, gradients over p_m/min(a, h), by group.
+
+    Then yield single stresses [Pa] and the residuals of laws.
+    """
     inside, mean = fields_at(path, sampling), float(path.scale("pressure")[-1])
     largest = max(float(np.abs(getattr(inside, name)).max()) for name in GROUPS["stress_inside"][1])
     length = min(float(path.contact_radius[-1]), path.scene.layer.thickness)
     scales = (abs(float(path.indentation_depth[-1])), mean, mean, mean / length)
     for (name, (stated, fields)), scale in zip(GROUPS.items(), scales, strict=True):
         values: FloatArray = np.concatenate([getattr(inside, field) for field in fields]) / scale
-        share = 1.0 if name == "displacement_inside" else largest / mean
-        error = (float(inside.error_estimate[stated] * share),)
+        factor = 1.0 if name == "displacement_inside" else largest / mean
+        error = (float(inside.error_estimate[stated] * factor),)
         at = _floats(np.arange(values.size))
         yield name, Values(unit="1", scale=1.0, values=_floats(values), at=at, error=error)
     errors = (float(inside.error_estimate["stress"] * largest),) * len(sampling.inside)

@@ -9,8 +9,8 @@ import numpy as np
 from cases.verdicts import Status, worst
 from contact import InvalidInput
 
-# No accepted number is held to less than this, relative: 4500 times the unit roundoff 2.2e-16, so that another order
-# of a sum of some thousand terms does not count as a change.
+# Smallest relative tolerance of accepted numbers, 4500 times the unit roundoff 2.2e-16: another order of a sum of some
+# thousand terms is no change.
 SMALLEST_RELATIVE = 1e-12
 
 
@@ -35,13 +35,13 @@ def decided(good: bool, error: float, fraction: float, message: str, failure: St
 
 
 def compared(error: float, stated: float, tolerance: float, *, strict: bool = False) -> Status:
-    """The one rule, disagreement first: FAIL if |E| - u > tol, PASS if |E| (+ u, if strict) <= tol, else open.
+    """Return PASS if |E| (+ u, if strict) <= tol, FAIL if |E| - u > tol, else INCONCLUSIVE.
 
     Args:
         error: E, signed, relative.
-        stated: u, what the methods state themselves, relative, not negative.
-        tolerance: a requirement, fixed beforehand.
-        strict: Whether u counts against a pass: between two methods.
+        stated: u, the error that the methods state, relative, not negative.
+        tolerance: Requirement, fixed beforehand.
+        strict: Whether u counts against a pass, as between two methods.
     """
     positive_tolerance(tolerance)
     if not (math.isfinite(error) and math.isfinite(stated) and stated >= 0):
@@ -54,8 +54,8 @@ def compared(error: float, stated: float, tolerance: float, *, strict: bool = Fa
 def judge_exact(value: float, expected: float, *, scale: float, tolerance: float, stated: float = 0.0) -> Judgement:
     """Judge |value - expected| / max(|expected|, scale) <= tolerance.
 
-    An error beyond it that the method's own ``stated`` one (absolute) explains is inconclusive. That is taken relative
-    to the larger of the two values, so that a value that is too large does not widen its own error.
+    A larger error is inconclusive if the absolute ``stated`` error explains it. The stated error is divided by the
+    larger of the two values, so that a value that is too large does not widen its own error.
     """
     if not (math.isfinite(value) and math.isfinite(expected)):
         return nothing_compared(Status.INVALID, f"value {value}, expected {expected}: both must be finite")
@@ -94,7 +94,7 @@ def judge_residual(residual: float, *, tolerance: float, failure: Status = Statu
 
 
 def judge_order(observed: float | None, formal: float, kind: str) -> Judgement:
-    """Judge the band [formal - 0.2, formal + 0.5]; a divergent sequence fails, one at the floor is inconclusive."""
+    """Judge formal - 0.2 <= observed <= formal + 0.5; divergence fails, a sequence at the floor is inconclusive."""
     no_order = kind in ("floor", "too-few")
     if no_order or observed is None:
         status = Status.INCONCLUSIVE if no_order else Status.FAIL

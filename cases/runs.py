@@ -52,7 +52,7 @@ class Stamp:
 
 @dataclass(frozen=True, kw_only=True, config=RECORD)
 class CaseText:
-    """A case in words: what a page says before its numbers; ``scenes`` holds the parameters of each by its name."""
+    """Text of a case for its page; ``scenes`` has the parameters of each scene by name."""
 
     name: str
     title: str
@@ -64,9 +64,9 @@ class CaseText:
 
 @dataclass(frozen=True, kw_only=True, config=RECORD)
 class Judged:
-    """All of a run but its answers; ``complete`` is False when it was interrupted, what is there is valid all the same.
+    """A run without its answers; ``complete`` is False if it was interrupted, and its records are valid all the same.
 
-    Its ``methods`` are those that were chosen on the command line; none if the cases were solved by their own.
+    ``methods`` are those chosen on the command line; empty if every case was solved by its own methods.
     """
 
     suite: str = ""
@@ -104,14 +104,14 @@ class Run:
 
     def unjudged_in(self, case: str) -> tuple[str, ...]:
         """Return the chosen methods about which no claim of a case (of any, if none is named) was judged."""
-        seen = {
+        judged_labels = {
             label
             for verdict in self.judged.verdicts
             if verdict.kind is not Kind.REGRESSION and verdict.status is not Status.SKIP
             if not case or verdict.case == case
             for label in verdict.methods
         }
-        return tuple(label for label in self.judged.methods if label not in seen)
+        return tuple(label for label in self.judged.methods if label not in judged_labels)
 
 
 def write_run(run: Judged, folder: Path) -> None:

@@ -39,7 +39,7 @@ WHY = Why(
     Origin.INDEPENDENT_METHOD,
     "laws of mechanics, repeats, and the fast method",
     "a method may refuse a scene with a reason, but a number it gives has to lie within the error it states",
-    "half a step: not one may fail",
+    "half a step: no step may fail",
 )
 DIGITS: Final = "digits"
 # Number of repeats with inputs one rounding away: with one alone, digits may agree by chance.
@@ -47,17 +47,17 @@ NUDGES: Final = 3
 DOUBLE_DIGITS: Final = -math.log10(2.0**-53)
 # Largest excess of a distance from MDR over both stated errors: rounding of the comparison itself.
 LARGEST_EXCESS: Final = 1e-12
-# Millimetres and megapascals have other mantissas.
+# Factors to other units that are no powers of two: mantissas and roundings differ.
 OTHER_UNITS: Final = Units(length=1e-3, stress=1e-6, time=1e-3)
-# Nodes of the integral of a pressure: half as many leave 1e-12 of it under a cone.
+# Nodes of the integral of a pressure: half as many have a relative error of 1e-12 under a cone.
 POINTS: Final = 400
-# Largest a/h up to which methods on flat punches know pressures.
+# Largest a/h up to which methods on flat-punch data give pressures.
 PRESSURE_REACH: Final = 160.0
 
 
 @dataclass(frozen=True, kw_only=True)
 class Ladder(Study):
-    """No step of a stress test fails silently; where it stops and how many digits are left is recorded.
+    """A stress test: no step may fail silently. The step where a method stops and the correct digits are recorded.
 
     Attributes:
         name: Name of the test, unique.
@@ -65,7 +65,7 @@ class Ladder(Study):
         values: Values of the parameter from easy to hard.
         scene: Function that returns the scene of a value.
         quantity: Quantity whose last value is followed.
-        setting: Setting of the method that takes the value; "" where the scene alone does.
+        setting: Setting of the method that gets the value; "" if the scene alone depends on it.
         methods: Labels of the methods under test; empty for all of the case.
         quick: Whether the suite ci makes the test, by MDR alone.
     """
@@ -81,7 +81,7 @@ class Ladder(Study):
     quick: bool = False
 
     def in_suite(self, suite: str) -> "Ladder | None":
-        """Return the test as a suite makes it."""
+        """Return the test as a suite runs it, or None."""
         if suite != "ci":
             return self
         return replace(self, methods=("mdr",)) if self.quick else None
@@ -95,6 +95,7 @@ class Ladder(Study):
         yield from (use for use in case.methods if not self.methods or use.label in self.methods)
 
     def _steps(self, case: Case, use: MethodUse) -> Iterator[Task]:
+        """Yield the tasks of a method, one per value of the parameter."""
         measure = partial(measured, quantity=self.quantity)
         for value in self.values:
             settings = {**use.settings, self.setting: value} if self.setting else use.settings
@@ -108,7 +109,7 @@ class Ladder(Study):
             )
 
     def judge(self, case: Case, answers: Table) -> Iterator[Verdict]:
-        """Judge that every step was answered or refused with a reason; the error counts the others."""
+        """Judge that every step was answered or refused with a reason."""
         for test in self.records(case, answers):
             yield no_silent_failure(test)
 
@@ -154,7 +155,7 @@ def summary(test: StressTest) -> str:
 
 
 def no_silent_failure(test: StressTest) -> Verdict:
-    """Return the verdict that every step was answered or refused with a reason; its error counts the others."""
+    """Return the verdict that every step was answered or refused with a reason; its error is the number of others."""
     failed = [step for step in test.steps if step.status == Status.FAIL]
     worst = f"; {test.parameter} = {failed[0].value:g}: {failed[0].reason}" if failed else ""
     judged = judge_residual(float(len(failed)), tolerance=0.5)
@@ -192,7 +193,10 @@ def worse_than(test: StressTest, accepted: StressTest) -> list[str]:
 
 # -- one step ---------------------------------------------------------------------------------------------------------
 def measured(method: Method, scene: Scene, quantity: str) -> dict[str, Any]:
-    """Return an answer's status, reason, and the digits and residuals of a step; a warning counts as a crash."""
+    """Return fields of an `Answer`: status, reason, and as quantities the shared digits and residuals of a step.
+
+    A warning counts as a crash.
+    """
     if not method.supports(scene):
         return {"status": Status.SKIP, "reason": str(getattr(method.supports(scene), "reason", "not supported"))}
     try:
@@ -200,7 +204,7 @@ def measured(method: Method, scene: Scene, quantity: str) -> dict[str, Any]:
             warnings.simplefilter("error")
             answer = method.solve(scene)
             residuals = invariant_residuals(method, answer)
-            distance = beside_the_fast_method(method, answer, quantity)
+            distance = distance_from_mdr(method, answer, quantity)
             digits = digits_of(relative_spread(list(repeated(method, answer.scene, quantity))))
     except ContactError as error:
         return {"status": Status.INVALID, "reason": f"{type(error).__name__}: {error!s:.300}"}
@@ -216,7 +220,7 @@ def measured(method: Method, scene: Scene, quantity: str) -> dict[str, Any]:
     }
 
 
-def beside_the_fast_method(method: Method, answer: Solution, quantity: str) -> float:
+def distance_from_mdr(method: Method, answer: Solution, quantity: str) -> float:
     """max(0, |q - q_MDR|/q - error stated by MDR); zero if MDR refuses the scene, or is the method itself."""
     fast = build("mdr", {})
     if method == fast:
@@ -250,8 +254,8 @@ def repeated(method: Method, scene: Scene, quantity: str) -> Iterator[float]:
     for seed in range(NUDGES):
         yield last(nudged(scene, np.random.default_rng(seed)))
     yield last(in_units(scene, OTHER_UNITS)) / OTHER_UNITS.factor(quantity)
-    if (among := amid_other_steps(scene)) is not None:
-        yield last(among)
+    if (with_other_steps := amid_other_steps(scene)) is not None:
+        yield last(with_other_steps)
     with threadpool_limits(2):
         yield last(scene)
 
@@ -269,7 +273,7 @@ def digits_of(spread: float) -> float:
 
 
 def nudged(scene: Scene, draw: np.random.Generator) -> Scene:
-    """Every number of the scene one unit in the last place up or down, or left alone, at random; no moduli of depth."""
+    """The scene with each number changed at random by -1, 0 or 1 unit in the last place; functions of depth stay."""
     return with_numbers(scene, lambda _, name, value: _one_ulp(name, value, draw))
 
 
@@ -307,15 +311,15 @@ def invariant_residuals(method: Method, answer: Solution) -> dict[str, float]:
 
 
 def stiffer_layer(method: Method, answer: Solution) -> float | None:
-    """Twice the modulus, twice the force, at the same radius or depth."""
+    """Residual of F(2 E) = 2 F(E) at the same radii or depths."""
     if not isinstance(answer, ContactPath):
         return None
     twice = in_units(answer.scene, Units(stress=2.0))
     return _distance(values_of(method.solve(twice), "normal_force"), 2.0 * answer.normal_force)
 
 
-def unbonded_layer_does_not_see_nu(method: Method, answer: Solution) -> float | None:
-    """At fixed E* the unbonded layer answers the same for any nu."""
+def unbonded_layer_is_independent_of_nu(method: Method, answer: Solution) -> float | None:
+    """Relative difference of the forces on unbonded layers with another nu and the same E*."""
     layer = answer.scene.layer
     if not isinstance(answer, ContactPath) or not layer.is_uniform or layer.is_half_space or layer.support == "bonded":
         return None
@@ -327,7 +331,7 @@ def unbonded_layer_does_not_see_nu(method: Method, answer: Solution) -> float | 
 
 
 def pressure_carries_the_load(method: Method, answer: Solution) -> float | None:
-    """F = 2 pi int p r dr, by the midpoint rule in r = a sin(theta), which is spectral up to the edge's root."""
+    """Residual of F = 2 pi int p r dr, by the midpoint rule in r = a sin(theta): spectral with a root at the edge."""
     if not isinstance(answer, ContactPath) or not _pressure_is_known(answer) or answer.scene.indenter.breakpoints:
         return None
     a = float(answer.contact_radius[-1])
@@ -338,25 +342,25 @@ def pressure_carries_the_load(method: Method, answer: Solution) -> float | None:
 
 
 def pressure_presses(method: Method, answer: Solution) -> float | None:
-    """No tension without adhesion: the largest tensile over the largest pressure."""
+    """Largest tension over the largest pressure, which vanishes without adhesion."""
     if not isinstance(answer, ContactPath) or not _pressure_is_known(answer) or answer.scene.effects:
         return None
-    # Its pressure is singular at the edge.
+    # The pressure under a flat punch is singular at the edge.
     if isinstance(answer.scene.indenter, FlatPunch):
         return None
-    # Irrational, so that neither the tip of a cone nor an edge is hit.
+    # Irrational radii avoid the tip of a cone and kinks.
     rho = np.sqrt(np.arange(1, 50) / 50.3)
     p = answer.pressure(float(answer.contact_radius[-1]) * rho, step=len(answer) - 1)
     return float(max(-p.min(), 0.0) / p.max())
 
 
 def energy_is_conserved(method: Method, answer: Solution) -> float | None:
-    """Kinetic + stored + dissipated energy stays what it was."""
+    """Residual of the conservation of kinetic + stored + dissipated energy."""
     return answer.energy_residual if isinstance(answer, ImpactHistory) else None
 
 
 def restitution_is_below_one(method: Method, answer: Solution) -> float | None:
-    """How far the coefficient of restitution leaves [0, 1]."""
+    """Distance of the coefficient of restitution from [0, 1]."""
     if not isinstance(answer, ImpactHistory):
         return None
     return max(answer.coefficient_of_restitution - 1.0, -answer.coefficient_of_restitution, 0.0)
@@ -373,7 +377,7 @@ def _distance(values: FloatArray, expected: FloatArray) -> float:
 
 LAWS: Mapping[str, Callable[[Method, Solution], float | None]] = {
     "twice the modulus": stiffer_layer,
-    "unbonded does not see nu": unbonded_layer_does_not_see_nu,
+    "unbonded does not see nu": unbonded_layer_is_independent_of_nu,
     "pressure carries the load": pressure_carries_the_load,
     "no tension": pressure_presses,
     "energy": energy_is_conserved,

@@ -27,12 +27,12 @@ class Convergence:
     Attributes:
         refined: Family of meshes or setting that is refined; the formal order belongs to it.
         kind: Monotone, oscillatory, divergent, floor, too-few or spectral.
-        grids: Finest first; errors are absolute.
-        scale: Size that errors are relative to, unit of the quantity.
-        formal_order: None of spectral convergence.
-        observed_order: None where the class has none.
-        digits: Per refinement, of spectral convergence; None otherwise.
-        reference: Value at vanishing length; None without one.
+        grids: Refinements, finest first; errors are absolute.
+        scale: Value by which errors are divided, unit of the quantity.
+        formal_order: Formal order; None for spectral convergence.
+        observed_order: Observed order; None where ``kind`` has none.
+        digits: Digits per refinement of spectral convergence; None otherwise.
+        reference: Value of the reference solution; None without one.
         reference_error: Absolute error of the reference.
         source: Method or closed form that gives the reference.
     """
@@ -60,11 +60,11 @@ class Point:
 
     Attributes:
         setting: Setting in words.
-        error: None where the setting has no answer; the reason says why.
-        bound: U, None as the error.
+        error: Relative error; None where the setting has no answer, for the reason in ``reason``.
+        bound: U; None where the error is None.
         quartiles: Lower and upper quartile of the seconds.
-        cold_seconds: First solution, with nothing kept from earlier ones.
-        on_front: No other setting of any method is at least as accurate and clearly faster.
+        cold_seconds: Time of the first solution, with empty caches.
+        on_front: Whether no other setting of any method is at least as accurate and clearly faster.
     """
 
     method: str

@@ -1,4 +1,4 @@
-"""One scene solved for a range of one of its numbers: a table of answers, one row a state."""
+"""A scene solved over a range of one of its numbers: a table of answers, one row per state."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ _FORM: Final = re.compile(r"\s*([\w.]+)\s*=\s*(.+?)\s*\.\.\s*(.+?)\s*:\s*(\d{1,6
 
 @dataclass(frozen=True, kw_only=True)
 class Swept:
-    """The range that a number of a scene takes.
+    """Range of a varied number of a scene.
 
     Attributes:
-        name: Of its field, with the part of the scene before a dot where two parts have one.
-        values: SI, shape (n,).
-        unit: SI, empty for a pure number.
+        name: Name of the varied field; of two equal names with the part of the scene before a dot.
+        values: Values of the number in SI units, shape (n,).
+        unit: SI unit, empty for a pure number.
     """
 
     name: str
@@ -44,9 +44,9 @@ class Sweep:
     """The answers along a range.
 
     Attributes:
-        swept: What was varied.
-        answers: One for each value that was answered.
-        refused: The other values, each with the reason.
+        swept: Varied number and its range.
+        answers: Values with an answer, each with it.
+        refused: Values without an answer, each with the reason.
     """
 
     swept: Swept
@@ -60,7 +60,7 @@ class Sweep:
         return {head: np.array([row[head] for row in rows]) for head in (rows[0] if rows else {})}
 
     def to_csv(self) -> str:
-        """The table as text, SI."""
+        """The table as CSV text in SI units."""
         rows = zip(*(values.tolist() for values in self.columns.values()), strict=True)
         return csv_text(self.columns, rows)
 
@@ -71,7 +71,7 @@ class Sweep:
             InvalidInput: If pandas is not installed.
         """
         try:
-            import pandas as pd  # noqa: PLC0415 - only where a frame is asked for
+            import pandas as pd  # noqa: PLC0415 - an optional package
         except ImportError:
             raise InvalidInput("a frame needs pandas; install it, or read the CSV file") from None
         return pd.DataFrame(self.columns)
@@ -104,10 +104,10 @@ def sweep(scene: Scene, over: str | Swept, method: Method, progress: Callable[[i
     """Solve the scene for every value of a range; a value that is refused is kept with its reason.
 
     Args:
-        scene: With any value of the varied number.
-        over: The range, as text or as `read_range` gives it.
-        method: What solves.
-        progress: Told how many of how many values are done.
+        scene: Scene with any value of the varied number.
+        over: Range as text, or as returned by `read_range`.
+        method: Method that solves the scenes.
+        progress: Function called with the numbers of finished and of all values.
 
     Raises:
         InvalidInput: For a wrong range.
@@ -126,7 +126,7 @@ def sweep(scene: Scene, over: str | Swept, method: Method, progress: Callable[[i
 
 
 def _end(text: str) -> object:
-    """A plain number, or the text with its unit."""
+    """An end of a range: a number if it has no unit, else the text."""
     try:
         return float(text)
     except ValueError:

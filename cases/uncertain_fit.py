@@ -60,12 +60,12 @@ def fit_uncertain(
     if fitted:
         raise InvalidInput(f"uncertain {', '.join(sorted(fitted))}: the fit finds it; name inputs that are kept")
 
-    def at(deviations: FloatArray) -> CurveFit:
+    def fit_at(deviations: FloatArray) -> CurveFit:
         changed = inputs.scene_at(scene, deviations)
         return fit_curve(changed, depth, force, parameters=parameters, confidence=confidence)
 
-    middle = at(np.zeros(len(names)))
-    pairs = [(at(unit).values, at(-unit).values) for unit in np.eye(len(names))]
+    middle = fit_at(np.zeros(len(names)))
+    pairs = [(fit_at(unit).values, fit_at(-unit).values) for unit in np.eye(len(names))]
     changes = {name: np.array([(up[name] - down[name]) / 2 for up, down in pairs]) for name in middle.values}
     spread = {name: float(inputs.spread(d[:, None])[0]) for name, d in changes.items()}
     return UncertainFit(

@@ -37,9 +37,9 @@ DIMENSIONS: dict[str, tuple[int, int, int]] = {
 
 @dataclass(frozen=True, kw_only=True)
 class Units:
-    """How many new units one old unit of length, stress and time is.
+    """New units per old unit of length, stress and time.
 
-    Powers of two change no mantissa: a method that works dimensionless answers the same bits.
+    Powers of two change no mantissa: a dimensionless method then gives identical bits.
     """
 
     length: float = 1.0
@@ -56,7 +56,7 @@ def in_units(scene: Scene, units: Units) -> Scene:
     """The same scene with every number in other units."""
 
     def scaled(item: Record, name: str, value: Any) -> Any:
-        """The number of one field, whose name tells its dimension; of `values` the record's name does."""
+        """The number in the other units; its field, `values` with the name of the record, gives the dimension."""
         if isinstance(value, DepthFunction):
             return value.scaled(1.0 / units.length, 1.0 / units.factor(name))
         number = value * units.factor(f"{type(item).__name__}.{name}" if name == "values" else name)
@@ -84,7 +84,7 @@ def changed(item: R, change: Callable[[Record, str, Any], Any]) -> R:
 
 
 def _changed_value(item: Record, name: str, value: Any, change: Callable[[Record, str, Any], Any]) -> Any:
-    """A number, or the parts of a layer."""
+    """The changed number, record, or tuple of records."""
     if isinstance(value, tuple):
         return tuple(_changed_value(item, name, part, change) for part in value)
     if isinstance(value, str):

@@ -1,4 +1,4 @@
-"""How far the theory of an answer reaches: dimensionless numbers that say which effects a scene calls for."""
+"""Validity of the theory behind an answer: dimensionless numbers that estimate the size of neglected effects."""
 
 import math
 from dataclasses import dataclass
@@ -32,7 +32,7 @@ from mdr.friction.statement import friction_effect
 TYPICAL_DENSITY = 1000.0
 # Range of atomic forces [m].
 ATOMIC_RANGE = 0.3e-9
-# From this multiple of the accuracy on, an error of a half-space is much larger.
+# Least error of half-space formulas over the accuracy at which a note calls it much larger.
 MUCH = 10.0
 # Bounds of a relative change of depth, force or restitution while it is small, for punches, cones, paraboloids,
 # truncated ones and r^6: of a half-space in place of a layer over a/h, of neglected adhesion over dl/delta, and of a
@@ -74,7 +74,7 @@ class Number:
 
 
 def validity_lines(scene: Scene, answer: Solution) -> list[str]:
-    """How far the theory of an answer reaches, in sentences; none for other layers than a plain one, or no contact."""
+    """Sentences about the validity of the theory for an answer; none for layers other than `Layer`, or no contact."""
     if (
         not isinstance(scene.layer, Layer)
         or "contact_radius" not in answer.ARRAYS
@@ -85,7 +85,7 @@ def validity_lines(scene: Scene, answer: Solution) -> list[str]:
     try:
         statements += numbers(scene, answer, USUAL_ACCURACY)
     except (UnsupportedSceneError, NotConvergedError) as error:
-        return [f"how far the theory reaches is not known: {error}"]
+        return [f"the validity of the theory is not known: {error}"]
     return [number.line for number in statements if number is not None]
 
 
@@ -104,6 +104,7 @@ def numbers(scene: Scene, answer: Solution, accuracy: float) -> list[Number]:
 
 
 def _thickness(scene: Scene, answer: Solution, accuracy: float) -> Number | None:
+    """a/h, and the error of half-space formulas by `HALF_SPACE_CHANGES`; None without contact or on other layers."""
     ratio = _largest(answer, "contact_radius") / scene.layer.thickness
     if not ratio or not scene.layer.is_uniform:
         return None
@@ -115,6 +116,7 @@ def _thickness(scene: Scene, answer: Solution, accuracy: float) -> Number | None
 
 
 def _strain(scene: Scene, answer: Solution) -> Number:
+    """Typical strain delta/min(a, h)."""
     depth, radius = _largest(answer, "indentation_depth"), _largest(answer, "contact_radius")
     strain = depth / min(radius, scene.layer.thickness)
     meaning = "typical strain. Beyond about 0.1 linear elasticity is an approximation."
@@ -122,7 +124,7 @@ def _strain(scene: Scene, answer: Solution) -> Number:
 
 
 def _tip_share(scene: Scene, answer: Solution) -> Number | None:
-    """For round tips: where a paraboloid no longer is a sphere, or a sphere comes near its equator."""
+    """a/R of a paraboloid, which approximates a sphere, or of a sphere, whose slopes must be small; None otherwise."""
     match scene.indenter:
         case Paraboloid(radius_of_curvature=radius):
             limit = "At 0.4 a Sphere is 4 % higher than the Paraboloid."
@@ -145,8 +147,8 @@ def _friction(scene: Scene, answer: Solution) -> Number | None:
         return None
     order = f", to first order by {100 * effect.first_order[0]:+.2g} %" if effect.one_direction[0] else ""
     # The bound at a coefficient mu is mu U/(1 - mu U).
-    slip = high / (1 + high) / TYPICAL_FRICTION if math.isfinite(high) else 1 / TYPICAL_FRICTION
-    below = " and ".join(f"less than {100 * s:g} % if mu < {s / (1 + s) / slip:.2g}" for s in FORCE_SHARES)
+    U = high / (1 + high) / TYPICAL_FRICTION if math.isfinite(high) else 1 / TYPICAL_FRICTION
+    below = " and ".join(f"less than {100 * s:g} % if mu < {s / (1 + s) / U:.2g}" for s in FORCE_SHARES)
     meaning = (
         f"Friction with mu = {TYPICAL_FRICTION:g} changes the force at this depth by {100 * low:.2g} to "
         f"{100 * high:+.2g} %{order}. Neglecting friction costs {below}. Finite elements solve the effect Friction."
@@ -155,7 +157,7 @@ def _friction(scene: Scene, answer: Solution) -> Number | None:
 
 
 def _adhesion(scene: Scene, answer: Solution, accuracy: float) -> list[Number]:
-    """dl/delta compares the critical elongation with the depth; the half-space's spring stiffness is E*."""
+    """dl/delta and dl/z0 with the critical elongation dl of the half-space and z0 the range of atomic forces."""
     adhesion = scene.effect(Adhesion)
     work = 0.0 if adhesion is None else adhesion.work_of_adhesion
     radius, depth = _largest(answer, "contact_radius"), _largest(answer, "indentation_depth")
@@ -181,7 +183,7 @@ def _neglected(effect: str, change: float, accuracy: float) -> str:
 
 
 def _duration(answer: Solution) -> float:
-    """T [s]: of the contact, or of a whole history."""
+    """Duration T [s] of the contact in an impact, or of a whole history."""
     if isinstance(answer, ImpactHistory):
         return answer.contact_time
     time: FloatArray = np.asarray(getattr(answer, "time", (0.0, math.inf)))
@@ -189,7 +191,7 @@ def _duration(answer: Solution) -> float:
 
 
 def _relaxation(scene: Scene, duration: float, accuracy: float) -> list[Number]:
-    """Whether a dashpot counts; branches are judged by `advise`, which solves without them."""
+    """tau/T of a dashpot, tau = eta/G(0); empty without a dashpot. Maxwell branches are left to `advise`."""
     model = scene.effect(Viscoelasticity)
     if model is None or not model.relaxation.viscosity:
         return []
@@ -198,7 +200,7 @@ def _relaxation(scene: Scene, duration: float, accuracy: float) -> list[Number]:
 
 
 def _inertia(scene: Scene, answer: ImpactHistory) -> Number:
-    """Over the contact radius or the thickness, whichever is less: that is as deep as the layer moves."""
+    """Time of a shear wave through the deformed depth min(a, h) over the contact time."""
     wave = math.sqrt(scene.layer.shear_modulus / TYPICAL_DENSITY)
     depth = min(scene.layer.thickness, answer.peak_contact_radius)
     value = depth / (wave * answer.contact_time)

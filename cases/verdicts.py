@@ -22,7 +22,7 @@ RECORD = ConfigDict(extra="forbid")
 
 
 class Status(StrEnum):
-    """The end of an answer, of a claim, of a comparison; a non-finite number is INVALID and never equal to itself."""
+    """Result of a solution, a claim or a comparison; non-finite numbers are INVALID."""
 
     PASS = "PASS"
     FAIL = "FAIL"  # accuracy, order, agreement or invariant: the kind of the claim says which
@@ -149,7 +149,7 @@ class Verdict:
         scene: Name of the scene, or of the last of the scenes that the claim is about.
         methods: Label of the method, or of the two methods compared.
         quantity: Name of the quantity that is compared.
-        status: End of the comparison; decides the exit code.
+        status: Result of the comparison; decides the exit code.
         error: Measured relative error or difference, signed, or the observed order; None when nothing was compared.
         expected: Number compared with; None where there is none.
         tolerance: Largest permitted error, same unit as the error.
@@ -182,6 +182,6 @@ class Verdict:
 
     @property
     def word(self) -> str:
-        """The word for the reader: AGREE and DISAGREE of two methods, else the status."""
+        """Word shown to readers: AGREE or DISAGREE for two methods, else the status."""
         words = {Status.PASS: "AGREE", Status.FAIL: "DISAGREE"} if self.kind is Kind.AGREEMENT else {}
         return words.get(self.status, self.status.value)

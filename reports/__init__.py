@@ -3,7 +3,7 @@
 - ``command_line``, ``commands``: `contact-verify`, the console command
 - ``page``: report.html, one page per case and comparison.html
 - ``ci``: summary.md, junit.xml and annotations
-- ``findings``, ``tables``: what a run found, in words and as tables
+- ``findings``, ``tables``: results of a run in words and as tables
 - ``charts``, ``pictures``, ``inside``, ``fit_figures``: pictures
 - ``answer``, ``fit_tables``: single answers and fits as tables and CSV files
 - ``style``, ``words``: one look for all figures; numbers with units and no digit beyond their uncertainty

@@ -1,4 +1,4 @@
-"""An answer as people and spreadsheets read it: tables with error estimates, and CSV with every digit."""
+"""Tables of answers with error estimates, and CSV files with every digit."""
 
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
@@ -43,7 +43,7 @@ BRACKETS = (
     "Digits in brackets: error of the last digits, stated by the method; (?) where it states none. Other numbers are "
     "right to the digits printed."
 )
-# Digits of a printed number whose uncertainty is beyond them: as many as anybody compares by eye.
+# Most digits of a printed number, also where its uncertainty is smaller.
 DIGITS = 6
 # Rows of a printed table: half as many hide a curve, twice as many push what stands above off the screen.
 MOST_ROWS = 10
@@ -85,13 +85,13 @@ def _title(solution: Solution) -> str:
 
 
 def _readable(value: float, uncertainty: float) -> str:
-    """At most `DIGITS` digits; fewer where the uncertainty allows no more."""
+    """The value to at most `DIGITS` digits, or with its absolute uncertainty in brackets where that allows fewer."""
     if uncertainty < 0.5 * abs(value) * 10.0**-DIGITS:
         return f"{value:.{DIGITS}g}"
     return measured(value, uncertainty)
 
 
-# What a loading prescribes is exact.
+# Arrays of an answer that the loading prescribes, and that have no error.
 GIVEN = {
     "ContactRadii": ("contact_radius",),
     "IndentationDepths": ("indentation_depth",),
@@ -164,6 +164,7 @@ def solution_facts(solution: Solution) -> list[tuple[str, str]]:
 
 
 def _critical_value(solution: Solution, name: str) -> str:
+    """A single number of the answer with its stated uncertainty in brackets, and its unit."""
     value = float(getattr(solution, name))
     relative = solution.error_estimate.get(name)
     factor, unit = scaled_unit(value, UNITS[name])
@@ -183,33 +184,34 @@ def solution_csv(solution: Solution) -> str:
 
 
 def _stage(stage: StageRecord) -> str:
-    """The effect ledger in words: what ran, how long, how often, and the bytes it declared."""
+    """A stage of the solution in words: name, time, number of calls and declared memory."""
     times = "" if stage.calls == 1 else f" in {stage.calls} calls"
     size = f", {memory(stage.bytes)}" if stage.bytes else ""
     return f"{quantity_words(stage.name)} {duration(stage.wall_seconds)}{times}{size}"
 
 
-# Pairs of quantities are listed from this correlation on.
-TOGETHER = 0.5
+# Least correlation of a pair of quantities that is printed.
+LEAST_CORRELATION = 0.5
 
 
 def propagated_table(propagated: "Propagated") -> Table:
-    """Value, numerical error, uncertainty by the inputs and what each input contributes, of the last step."""
+    """Value, numerical error, uncertainty by the inputs and the contribution of each input, at the last step."""
     names = list(propagated.quantities[0].by_input) if propagated.quantities else []
     words = [quantity_words(quantity.name) for quantity in propagated.quantities]
     note = "Standard uncertainty by the inputs at the last step, and the error of the method; "
     note += f"{propagated.solved} scenes solved{'' if names else ', by samples'}."
-    if bent := [word for word, quantity in zip(words, propagated.quantities, strict=True) if quantity.bends]:
-        note += f" Not linear over these uncertainties: {', '.join(bent)}; --samples takes the whole of it."
+    if nonlinear := [word for word, q in zip(words, propagated.quantities, strict=True) if q.is_nonlinear]:
+        note += f" Not linear over these uncertainties: {', '.join(nonlinear)}; --samples uses whole distributions."
     pairs = [(words[i], words[j], float(propagated.correlation[i, j])) for j in range(len(words)) for i in range(j)]
-    if together := [f"{a} and {b} ({share:+.2f})" for a, b, share in pairs if abs(share) >= TOGETHER]:
-        note += f" Correlated: {', '.join(together)}."
+    if correlated := [f"{a} and {b} ({share:+.2f})" for a, b, share in pairs if abs(share) >= LEAST_CORRELATION]:
+        note += f" Correlated: {', '.join(correlated)}."
     heads = ("quantity", "value", "numerical error", "by inputs", "relative", *names)
     rows = tuple(_row(quantity, names) for quantity in propagated.quantities)
     return Table(title="Uncertain inputs", note=note, heads=heads, rows=rows)
 
 
 def _row(quantity: "PropagatedQuantity", names: list[str]) -> tuple[str, ...]:
+    """Cells of a quantity at its last step: value, numerical error, uncertainty, and change by each input."""
     value, spread = float(quantity.values[-1]), float(quantity.inputs[-1])
     factor, unit = scaled_unit(value, quantity.unit)
     size = abs(value) or 1.0

@@ -14,7 +14,7 @@ from reports.words import display_name
 
 # More prescribed states than these are drawn as a line, fewer as symbols.
 _MOST_SYMBOLS: Final = 40
-# Values where contact is lost, by the array that they lie on.
+# Value at the loss of contact, by the array to which it belongs.
 _AT_LOSS: Final = {
     "indentation_depth": "pull_off_depth",
     "normal_force": "force_at_loss",
@@ -46,8 +46,8 @@ def draw(answer: Solution, axes: Axes, x: str, y: str, curve: Solution | None = 
     """One array over another with the stated error: a line with a band, or symbols with bars at few prescribed states.
 
     Args:
-        answer: Of a detachment, the states stable under its control are a line and the whole branch is dotted.
-        axes: Where to draw.
+        answer: Answer; of a detachment the states stable under its control are a line, the whole branch is dotted.
+        axes: Axes on which the answer is drawn.
         x: Name of the array on the horizontal axis.
         y: Name of the array on the vertical axis.
         curve: The same scene with states between the prescribed ones, drawn as the line; None where there is none.

@@ -44,7 +44,7 @@ def _section(table: Table) -> str:
 
 
 def scene_table(case: Case) -> Table:
-    """The scenes with the parameters that set them apart, and who solves them."""
+    """The scenes with their parameters and the methods that solve them."""
     names = tuple(dict.fromkeys(name for scene in case.scenes for name in scene.parameters))
     rows = tuple(
         (scene.name, *(f"{scene.parameters.get(name, '')}" for name in names), _solvers(case, scene))
@@ -81,6 +81,7 @@ def claim_table(case: Case) -> Table:
 
 
 def _claim_row(claim: Study) -> tuple[str, ...]:
+    """Cells of a claim, or of a study, which has neither tolerance nor reason."""
     if not isinstance(claim, Claim):
         return claim.kind, claim.name, getattr(claim, "quantity", ""), "", "", "", ""
     why = claim.why

@@ -27,15 +27,15 @@ Place = tuple[float, float]
 SMALLEST: Final = 1e-17
 # Comparisons that the picture of a case shows, the worst first. Its table has all of them.
 WORST_DRAWN: Final = 12
-# Width and height of a front picture [inches]: a third of a desk's width, or a phone's whole one.
+# Width and height of a picture on the front page [inches]: a third of a screen, or the width of a telephone.
 FRONT: Final = (4.7, 3.9)
-# Curves of one panel: more are not told apart.
+# Most curves of one panel: more cannot be distinguished.
 MOST_CURVES: Final = 8
 # Largest number of letters of a scene in a row: more would cover the axes.
 LONGEST: Final = 40
 # Colours and markers of quantities, not of methods.
 QUANTITY_LOOKS: Final = ((BLACK, "o"), ("#8c510a", "^"), ("#01665e", "D"), ("#762a83", "v"), (GREY, "s"))
-# The quantity that is drawn of an answer: the first of these that it has.
+# Quantities that are drawn over a parameter: the first one that the answers have.
 SHOWN_QUANTITIES: Final = (
     "pull_off_force",
     "coefficient_of_restitution",
@@ -117,6 +117,7 @@ def _crosses(axes: Axes, places: Iterable[Place], colour: str, **more: Any) -> N
 
 
 def _draw_convergence(axes: Axes, studies: Sequence[Convergence]) -> None:
+    """Error over discretisation length, or over number of refinements where convergence is exponential."""
     first = studies[0]
     exponential = first.formal_order is None
     axes.set(xscale="linear" if exponential else "log", yscale="log", ylabel="relative error")
@@ -167,6 +168,7 @@ def _cost(cost: CostOfAccuracy) -> Picture:
 
 
 def _draw_cost(cost: CostOfAccuracy) -> Figure:
+    """Error bound over time of each setting, with the Pareto front and the error of the reference."""
     label = f"bound of the relative error, {quantity_words(cost.quantity)}"
     drawing, axes = _logarithmic((6.4, 4.2), "median time [s]", label)
     for method, points in timed_methods(cost).items():
@@ -195,6 +197,7 @@ def _place(point: Point) -> Place:
 
 
 def _draw_stress_test(axes: Axes, tests: Sequence[StressTest]) -> None:
+    """Shared digits over the parameter, with crosses at steps without an answer."""
     first = tests[0]
     unit = "" if first.unit == "1" else f" [{first.unit}]"
     axes.set(xscale="log", xlabel=f"{first.parameter}{unit}", title=first.name)
@@ -222,6 +225,7 @@ def _stated(verdict: Verdict) -> float:
 
 
 def _draw_differences(verdicts: Sequence[Verdict]) -> Figure:
+    """Difference of two methods over the error that both state; below the diagonal the errors cover it."""
     drawing, axes = _logarithmic(FRONT, "error stated by both", "relative difference")
     largest = SMALLEST
     for methods, same in grouped(verdicts, lambda v: v.methods).items():
@@ -236,6 +240,7 @@ def _draw_differences(verdicts: Sequence[Verdict]) -> Figure:
 
 
 def _draw_costs(costs: Sequence[CostOfAccuracy]) -> Figure:
+    """Error bound over time along the Pareto front of every method, in all studies of cost."""
     drawing, axes = _logarithmic(FRONT, "median time [s]", "bound of the relative error")
     fronts = [pareto_front(points, 0.0) for cost in costs for points in timed_methods(cost).values()]
     for method, points in grouped((p for front in fronts for p in front), lambda p: p.method).items():
@@ -244,6 +249,7 @@ def _draw_costs(costs: Sequence[CostOfAccuracy]) -> Figure:
 
 
 def _draw_ends(tests: Sequence[StressTest]) -> Figure:
+    """Share of the completed steps of each stress test."""
     drawing, (axes,) = panels(1, size=(FRONT[0], max(FRONT[1], 1.0 + 0.24 * len(tests))))
     for row, test in enumerate(tests):
         number = completed(test)

@@ -1,4 +1,4 @@
-"""What continuous integration reads of a run: summary.md, junit.xml, and `::error` lines that GitHub shows on a job."""
+"""Results of a run for continuous integration: summary.md, junit.xml, and `::error` lines that GitHub shows."""
 
 import html
 import re
@@ -24,15 +24,15 @@ from reports.findings import (
 from reports.tables import matrix_table
 from reports.words import duration, markdown_table, small
 
-# Bytes of a summary: what a reader scrolls through. GitHub refuses a job summary above 1 MiB.
+# Most bytes of a summary that a reader still scrolls through. GitHub refuses a job summary above 1 MiB.
 LARGEST = 64_000
 # GitHub shows ten annotations of a step and hides the rest: nine leave room for its own.
 MOST = 9
-# What Markdown would take for a cell's end, code, a link, an address, a person, or emphasis at a word's edge.
+# Characters that Markdown reads as the end of a cell, code, a link, an address, a person, or emphasis.
 MARKDOWN = re.compile(r"[`*~\\@]|\](?=[(\[:])|:(?=//)|(?<![^\W_])_|_(?![^\W_])")
 # Statuses that JUnit calls an error (no answer) and not a failure (a wrong answer).
 BROKEN = (Status.INVALID, Status.TIMEOUT, Status.INCOMPARABLE)
-# Neither passed nor failed.
+# Statuses that neither pass nor fail.
 OPEN = (Status.SKIP, Status.XFAIL, Status.INCONCLUSIVE)
 
 HEADS = ("verdict", "case", "claim", "method", "scenes", "relative error", "error / tolerance", "what was seen")
@@ -43,8 +43,8 @@ def summary_text(run: Run, *, largest: int = LARGEST) -> str:
     judged = run.judged
     tally = ", ".join(f"{number} {status}" for status, number in counts(run))
     suite = f"Suite {judged.suite}" if judged.suite else "Chosen cases"
-    taken = f"{suite}, revision {judged.stamp.revision[:12]}, {duration(judged.stamp.wall_seconds)}."
-    text = f"# {_escaped(headline(run)[0])}\n\n{tally}. {_escaped(taken)} {_escaped(baseline_sentence(run))}\n\n"
+    facts = f"{suite}, revision {judged.stamp.revision[:12]}, {duration(judged.stamp.wall_seconds)}."
+    text = f"# {_escaped(headline(run)[0])}\n\n{tally}. {_escaped(facts)} {_escaped(baseline_sentence(run))}\n\n"
     text += "".join(f"{_escaped(sentence)}\n\n" for sentence in causes(run))
     table = matrix_table(run)
     matrix = markdown_table(table.heads, (map(_escaped, row) for row in table.rows)) if run.statuses else ""
@@ -61,6 +61,7 @@ def summary_text(run: Run, *, largest: int = LARGEST) -> str:
 
 
 def _row(finding: Finding) -> str:
+    """Row of a finding in Markdown."""
     word = _escaped(finding.word)
     fraction = small(finding.fraction) if finding.fraction else ""
     cells = (
@@ -76,7 +77,7 @@ def _row(finding: Finding) -> str:
 
 
 def _measured(finding: Finding) -> str:
-    """The sizes of all, or what was measured at the only one."""
+    """Errors over all scenes in words, or the measured error of the only scene."""
     return finding.size or (observed_text(finding.worst) if finding.worst else "")
 
 
@@ -117,6 +118,7 @@ def junit_text(run: Run) -> str:
 
 
 def _of_verdict(verdict: Verdict) -> ET.Element:
+    """Test case of a verdict in JUnit XML, with the facts of a failure."""
     name = verdict.claim if verdict.scene in verdict.claim else f"{verdict.claim} [{verdict.scene}]"
     test = _test(verdict.case, verdict.methods, name)
     _end(test, verdict.status, f"{word_of(verdict)}: {verdict.message}")

@@ -155,9 +155,9 @@ def _fit(add: Add) -> None:
     columns = "Table with columns of depth (or height) and force (or deflection), and time for scenes that relax"
     microscopes = "or a microscope's file (.jpk-force, .h5, .tab, .ibw, .csv of AFM Workshop)."
     add("file", metavar="CURVE", type=Path, help=f"{columns}; {microscopes}")
-    taken = "Scene in TOML, as printed by contact-verify solve --example. Layer, tip and effects are used. The modulus "
+    used = "Scene in TOML, as printed by contact-verify solve --example. Layer, tip and effects are used. The modulus "
     ignored = "that is fitted and the depths of the loading are not, though a scene must name them."
-    add("scene_file", metavar="SCENE", type=Path, help=taken + ignored)
+    add("scene_file", metavar="SCENE", type=Path, help=used + ignored)
     moduli = "Moduli to fit: youngs_modulus; of stacks layer[0].youngs_modulus, base.youngs_modulus; of scenes that "
     add("--fit", default="", help=f"{moduli}relax moduli,times (or moduli, which keeps the times).")
     also = "What else is fitted: contact_point,baseline,tilt (all, the default), thickness, work_of_adhesion."
@@ -310,7 +310,7 @@ def main() -> None:
     """Entry point of the console command; every way to end has its exit code."""
     show_in_any_encoding()
     code = run(sys.argv[1:])
-    # The process ends: nothing is gained by looking for garbage once more.
+    # The process ends, so that garbage need not be collected.
     gc.freeze()
     sys.exit(code)
 
@@ -356,7 +356,7 @@ def carry_out(arguments: list[str]) -> int:
         _all_commands().parse_args([name])
     given = command_parser(name).parse_intermixed_args(arguments[1:])
     _, module, function = COMMANDS[name]
-    # Collections of garbage during imports walk all that is loaded so far again and again.
+    # Garbage collections during imports visit all loaded objects repeatedly.
     gc.disable()
     try:
         carry_out_command = getattr(import_module(module), function)

@@ -1,4 +1,4 @@
-"""Two runs side by side, the second against the first: claims that ended otherwise, and numbers that changed."""
+"""Comparison of a second run with a first one: claims with another status, and numbers that changed."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -20,7 +20,7 @@ WHY = Why(
 
 
 def changed_claims(first: Run, second: Run) -> list[Verdict]:
-    """The verdicts of the second run that the first one has otherwise or not at all."""
+    """The verdicts of the second run whose status differs in the first run or is absent there."""
     before = {(v.case, v.claim, v.scene, v.methods): v for v in first.judged.verdicts}
     pairs = [(v, before.get((v.case, v.claim, v.scene, v.methods))) for v in second.judged.verdicts]
     return [
@@ -79,6 +79,7 @@ def _verdict(
     change: float | None = None,
     stated: float | None = None,
 ) -> Verdict:
+    """Verdict on a quantity of two runs from its change and stated error, both over its scale."""
     return Verdict(
         case=old.case,
         claim=f"{quantity_words(quantity)} of both runs",

@@ -1,7 +1,7 @@
-"""What a run found, in words: the verdict, failures grouped per claim, and the cause they point at.
+"""Results of a run in words: the verdict, failures grouped per claim, and their probable cause.
 
-A finding is a claim that ended alike on several scenes ("20 of 20 scenes, +1.0e-3 each"), or one reason why a method
-gave no answer. Page, summary, JUnit file and terminal all show findings, worst first.
+A finding is a claim with the same status on several scenes ("20 of 20 scenes, +1.0e-3 each"), or one reason why a
+method gave no answer. Page, summary, JUnit file and terminal all show findings, worst first.
 """
 
 import re
@@ -34,11 +34,11 @@ EXPLANATIONS: Mapping[Status, str] = {
     Status.PASS: "within tolerance",
 }
 WORST_FIRST = tuple(EXPLANATIONS)
-# Relative errors this near to their median, as a share of it, are one error: half as much splits rounded factors.
+# Relative errors within this share of their median count as equal; half of it splits rounded factors.
 ALIKE = 0.05
 # A relative tolerance beyond this is shown with the verdict, since AGREE within 5 % is a weak statement.
 WIDE = 1e-2
-# Where to look when a method has the first quantity wrong while it has the second right.
+# Place of a mistake if the first quantity of a method is wrong while the second one is right.
 PLACES = (
     ("contact_stiffness", "", "k_N, Eq. (10), and the kernel of the layer"),
     ("indentation_depth", "contact_stiffness", "g, Eq. (8)"),
@@ -75,12 +75,12 @@ def severity(verdict: Verdict) -> tuple[int, float]:
 
 
 def who(methods: Iterable[str], between: str = " – ") -> str:
-    """Methods by the names that readers know."""
+    """Methods by their display names."""
     return between.join(map(display_name, methods))
 
 
 def in_words(message: str) -> str:
-    """A message with short powers of ten and non-finite numbers in words, so that a search finds stray ones."""
+    """A message with short powers of ten, and with non-finite numbers in words."""
     names = {"nan": "not-a-number", "inf": "infinity"}
     return re.sub(r"(?<![\w-])([-+]?)(nan|inf)\b", lambda match: match[1] + names[match[2]], short_exponents(message))
 
@@ -119,7 +119,7 @@ def is_wide(verdict: Verdict) -> bool:
 
 @dataclass(frozen=True, kw_only=True)
 class Finding:
-    """A claim that ended alike on several scenes, or one reason why a method gave no answers.
+    """A claim with the same status on several scenes, or one reason why a method gave no answers.
 
     Attributes:
         status: Status of the verdicts or answers.
@@ -165,20 +165,20 @@ class Finding:
 
 
 def findings(run: Run, verdicts: Collection[Verdict] | None = None) -> list[Finding]:
-    """All that did not pass, grouped, worst first; of some verdicts only if they are given."""
+    """The findings that did not pass, worst first, of the whole run or of the given verdicts alone."""
     answers = _unanswered(run) if verdicts is None else []
     result = [_of_answers(same) for same in grouped(answers, _reason).values()]
     chosen = run.judged.verdicts if verdicts is None else verdicts
     for same in grouped((v for v in chosen if v.status is not Status.SKIP), _claim).values():
         by_status = grouped((v for v in same if v.status is not Status.PASS), lambda v: v.status)
         result += [_of_verdicts(alike, len(same)) for alike in by_status.values()]
-    # Each reason of a skip once: what a method does not model is not compared either.
-    known = {finding.message for finding in result}
+    # Each reason of a skip is shown once: scenes that a method does not model are not compared either.
+    messages = {finding.message for finding in result}
     skipped = grouped((v for v in chosen if v.status is Status.SKIP), _skip_reason)
     result += [
         _finding(same, "not compared", reason, methods=dict.fromkeys(method for v in same for method in v.methods))
         for reason, same in skipped.items()
-        if reason not in known
+        if reason not in messages
     ]
     return sorted(result, key=lambda finding: (WORST_FIRST.index(finding.status), -finding.fraction))
 
@@ -186,7 +186,7 @@ def findings(run: Run, verdicts: Collection[Verdict] | None = None) -> list[Find
 def _finding(
     same: Sequence[Verdict | Answer], claim: str, message: str, *, methods: Iterable[str], **more: Any
 ) -> Finding:
-    """The finding of verdicts or answers that ended alike."""
+    """The finding of verdicts or answers with the same status."""
     cases = list(dict.fromkeys(record.case for record in same))
     return Finding(
         status=same[0].status,
@@ -206,6 +206,7 @@ def _claim(verdict: Verdict) -> tuple[str, ...]:
 
 
 def _of_verdicts(same: Sequence[Verdict], total: int) -> Finding:
+    """Finding of verdicts with the same status, out of ``total`` scenes of the claim."""
     worst = min(same, key=severity)
     errors = [error for v in same if (error := relative_error(v)) is not None]
     sizes = {"size": size_text(errors) if len(same) > 1 else "", "fraction": worst.fraction or 0.0, "worst": worst}
@@ -315,6 +316,7 @@ def causes(run: Run) -> list[str]:
     return sentences
 
 
+# Signed relative errors by comparison partner.
 Errors = dict[str, list[float]]
 
 
@@ -342,6 +344,7 @@ def _partner(method: str, verdict: Verdict) -> str:
 
 
 def _cause(method: str, quantity: str, errors: Errors, right: Sequence[str]) -> str:
+    """Sentence about a wrong quantity of a method: partners, errors, a common factor, and where to look."""
     all_errors = [error for same in errors.values() for error in same]
     *others, last = errors
     against = f"{', '.join(others)} and {last} alike" if others else last

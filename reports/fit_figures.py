@@ -40,6 +40,7 @@ def _measured(axes: Axes, x: FloatArray, y: FloatArray) -> None:
 
 
 def _draw_curve(axes: Axes, fit: CurveFit, x: FloatArray) -> None:
+    """Measured points, fitted curve with its band, and forces of formulas with the fitted modulus."""
     modulus, order = with_prefix(fit.youngs_modulus, "Pa"), np.argsort(x)
     factor, prefix = prefix_for(fit.measured.tolist())
     axes.set(title="Force curve", ylabel=f"force [{prefix}N]" if fit.response == "force" else f"depth [{prefix}m]")
@@ -53,7 +54,7 @@ def _draw_curve(axes: Axes, fit: CurveFit, x: FloatArray) -> None:
 
 
 def _draw_moduli(axes: Axes, fit: CurveFit, x: FloatArray) -> None:
-    """The modulus of each point alone, and those that formulas take from the fitted force; the true one is level."""
+    """Draw moduli by each measured point and by formulas from the fitted force, and the fitted modulus as a line."""
     factor, prefix = prefix_for([fit.youngs_modulus])
     pressed = (fit.indentation > LEAST_SHARE * fit.indentation.max()) & np.isfinite(fit.modulus_at_depth)
     positive = pressed & (fit.modulus_at_depth > 0.0)

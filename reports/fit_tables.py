@@ -33,7 +33,7 @@ def shares_table(uncertain: UncertainFit) -> Table:
         numbers = [f"{change / factor:+.3g}" for change in changes.values()]
         scatter, inputs = (f"{errors[name] / factor:.3g}" for errors in (fit.standard_error, fit.input_error))
         rows.append((quantity_words(name), scatter, *numbers, inputs, unit))
-    heads = [f"{given.name} ({given.in_words()})" for given in uncertain.inputs.inputs]
+    heads = [f"{entry.name} ({entry.in_words()})" for entry in uncertain.inputs.inputs]
     return Table(
         title="Standard uncertainties (one standard deviation)",
         note="Interval: +- sqrt(scatter^2 + inputs^2), times Student's quantile.",
@@ -89,23 +89,23 @@ def map_csv(fits: MapFit) -> str:
 
 def map_facts(fits: MapFit) -> list[tuple[str, str]]:
     """Summary of a map, by name."""
-    known = fits.youngs_modulus[fits.converged]
-    if not known.size:
+    moduli = fits.youngs_modulus[fits.converged]
+    if not moduli.size:
         return [("warning", f"no curve could be fitted; the first: {fits.reasons[0]}")]
-    low, middle, high = np.quantile(known, (0.05, 0.5, 0.95))
-    error = float(np.median(fits.standard_error[fits.converged] / known))
-    error_of_computation = max(fit.numerical_error for fit in fits.curves if fit is not None)
+    low, middle, high = np.quantile(moduli, (0.05, 0.5, 0.95))
+    error = float(np.median(fits.standard_error[fits.converged] / moduli))
+    numerical_error = max(fit.numerical_error for fit in fits.curves if fit is not None)
     warned = [fit for fit in fits.curves if fit is not None and fit.warnings]
     first = next((reason for reason in fits.reasons if reason), "")
     facts = [("warning", f"{len(warned)} curves, the first: {warned[0].warnings[0]}")] if warned else []
     facts += [("not fitted", f"the first: {first}")] if first else []
     return [
         *facts,
-        ("curves", f"{known.size} of {fits.converged.size} fitted"),
+        ("curves", f"{moduli.size} of {fits.converged.size} fitted"),
         (
             "median E",
             f"{with_prefix(middle, 'Pa')}; nine in ten from {with_prefix(low, 'Pa')} to {with_prefix(high, 'Pa')}",
         ),
         ("standard error of E", f"{100 * error:.2g} % in the median, from the scatter of each curve"),
-        ("numerical error", f"{small(error_of_computation)} of E, included in the intervals"),
+        ("numerical error", f"{small(numerical_error)} of E, included in the intervals"),
     ]

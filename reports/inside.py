@@ -27,16 +27,16 @@ POINTS = (200, 100)
 WIDTH, LEAST_HEIGHT, MOST_HEIGHT, AROUND_MAP = 5.6, 0.95, 2.4, 0.85
 # The largest displacement is drawn as about this share of the section's depth.
 DRAWN_SHARE = 0.12
-# Colours leave out the rest of all values, at either end, since stresses may be infinite at edges.
+# Share of the values within the range of colours at either end, since stresses may be infinite at edges.
 SHARE_OF_COLOURS = 0.995
-# Decades of the differences: further down only zeros of the difference would be seen.
+# Decades of the colours of differences: smaller ones occur only near zeros of the difference.
 DECADES = 3
 # Arrows along r and z.
 ARROWS = (8, 6)
 # Lightness of this map falls evenly, so that it reads in grey and with any colour vision.
 COLOURS = "cividis_r"
-# Words on the maps have a light outline, since colours below them may be dark.
-RIM = [withStroke(linewidth=2.0, foreground="white")]
+# Light outline of words on the maps, since colours below them may be dark.
+OUTLINE = [withStroke(linewidth=2.0, foreground="white")]
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,7 +88,7 @@ def draw_inside(solution: Solution, other: Solution | None) -> Figure:
         for half in halves if compared else ():
             axes.text(
                 0.5 + 0.48 * half.side, 0.04, display_name(half.path.method), transform=axes.transAxes, fontsize=8.0,
-                ha="right" if half.side > 0 else "left", weight="bold", path_effects=RIM,
+                ha="right" if half.side > 0 else "left", weight="bold", path_effects=OUTLINE,
             )  # fmt: skip
     notes = ["", _draw_arrows(maps[1], halves), *([_draw_differences(maps[2], halves)] if compared else [])]
     for axes, note in zip(maps, notes, strict=True):
@@ -98,6 +98,7 @@ def draw_inside(solution: Solution, other: Solution | None) -> Figure:
 
 
 def _halves(left: ContactPath, right: ContactPath) -> tuple[Half, Half]:
+    """Half-sections left and right of the axis, on equal points and with equal magnification."""
     a, h = float(left.contact_radius[-1]), left.scene.layer.thickness
     width, deepest = max(1.6 * a, min(2.5 * a, a + 1.5 * h)), min(h, 2.0 * a)
     r, z = np.meshgrid(np.linspace(0.0, width, POINTS[0]), np.linspace(1e-3 * deepest, deepest, POINTS[1]))
@@ -115,6 +116,7 @@ def _height(half: Half) -> float:
 
 
 def _headline(halves: tuple[Half, Half], *, compared: bool) -> str:
+    """Scene, contact radius, stated errors and legend of the picture."""
     left, scene = halves[0], halves[0].path.scene
     size = "at true size" if left.enlarged == 1.0 else f"{left.enlarged:g} times"
     stated = [f"{display_name(h.path.method)} {h.fields.error_estimate['stress']:.0e}" for h in halves[: 1 + compared]]
@@ -139,6 +141,7 @@ def _coloured(axes: Axes, halves: tuple[Half, Half], values: list[FloatArray], n
 
 
 def _draw_map(axes: Axes, halves: tuple[Half, Half], name: str) -> None:
+    """Draw a field of both halves in colours with contour lines."""
     values = [getattr(half.fields, name) for half in halves]
     bottom, top = np.quantile(np.array(values), [1.0 - SHARE_OF_COLOURS, SHARE_OF_COLOURS]).tolist()
     factor, prefix = prefix_for(np.array([top]))
@@ -149,7 +152,7 @@ def _draw_map(axes: Axes, halves: tuple[Half, Half], name: str) -> None:
     for half, field in zip(halves, values, strict=True):
         lines = axes.contour(*half.places, field, levels=steps, colors=BLACK, linewidths=0.5)
         for text in axes.clabel(lines, fontsize=7.5, fmt="%g") if half.side < 0 else ():
-            text.set(path_effects=RIM, rotation=0.0)
+            text.set(path_effects=OUTLINE, rotation=0.0)
     axes.set_title("von Mises stress" if name == "von_mises" else "hydrostatic pressure")
 
 
@@ -179,7 +182,7 @@ def _draw_arrows(axes: Axes, halves: tuple[Half, Half]) -> str:
 
 
 def _draw_differences(axes: Axes, halves: tuple[Half, Half]) -> str:
-    """Distance of the two answers.
+    """Draw the differences of two answers, von Mises stress left of the axis and pressure right of it.
 
     Returns:
         Caption with the size of the differences.
@@ -197,7 +200,7 @@ def _draw_differences(axes: Axes, halves: tuple[Half, Half]) -> str:
         axes, halves, [np.maximum(field / factor, least) for field in values], LogNorm(least, top), f"[{prefix}Pa]"
     )
     axes.set_title("difference: von Mises left, pressure right")
-    sizes = [f"{field / most:.0e}" for field, most in zip(shown, whole, strict=True)]
+    sizes = [f"{field / largest:.0e}" for field, largest in zip(shown, whole, strict=True)]
     return f"at 99.5 % of points below {sizes[0]} (left) and {sizes[1]} (right) of the darkest above"
 
 

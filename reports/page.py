@@ -31,7 +31,7 @@ QUESTIONS = ("Do the methods agree?", "What does accuracy cost?", "Where does it
 BEFORE_UNIT = re.compile(r"(?<=\d) (?=(?:min|%|[pnuµmkMG]?(?:s|m|N|Pa|B|J))(?!\w))")
 # Letters of a word with digits that is kept on one line: longer ones are names, and columns are narrow.
 LONGEST_NUMBER = 24
-# The accuracies whose price the front page states.
+# Accuracies whose run times the front page states.
 PRICED = (1e-4, 1e-6)
 
 
@@ -56,7 +56,7 @@ def write_report(run: Run, directory: Path, *, single_file: bool = False) -> Pat
         pictures = {case.name: _placed(of_case(run, case), directory) for case in cases}
         answered = zip(QUESTIONS, (_agreement(run), _cost(run), _breakdown(run)), front(run), strict=True)
         questions = [
-            (asked, words, _placed([picture] if picture else [], directory)) for asked, words, picture in answered
+            (question, words, _placed([picture] if picture else [], directory)) for question, words, picture in answered
         ]
     judged = grouped(run.judged.verdicts, lambda verdict: verdict.case)
     common = {"run": run, "pictures": pictures, "names": set(pictures), "judged_of": judged}
@@ -111,6 +111,7 @@ def blocks(verdicts: Iterable[Verdict]) -> list[dict[str, Any]]:
 
 
 def _agreement(run: Run) -> list[str]:
+    """Sentences on the agreement of methods: number within tolerance, and median differences by pair."""
     verdicts = tables.compared(run)
     if not verdicts:
         return ["No two methods were compared in this run."]
@@ -128,6 +129,7 @@ def _agreement(run: Run) -> list[str]:
 
 
 def _cost(run: Run) -> list[str]:
+    """Sentences on the median time of each method to the accuracies `PRICED`."""
     costs = [tables.timed_methods(cost) for cost in run.judged.costs]
     if not costs:
         return ["Nothing was timed in this run."]
@@ -142,6 +144,7 @@ def _cost(run: Run) -> list[str]:
 
 
 def _breakdown(run: Run) -> list[str]:
+    """Sentence on the numbers of stress tests that were completed, refused or failed."""
     tests = run.judged.stress_tests
     if not tests:
         return ["No stress test was made in this run: the suite nightly does that."]
@@ -176,7 +179,7 @@ def _rendered(template: str, **values: Any) -> str:
 
 
 def unbroken(text: str) -> Markup:
-    """The text with numbers that are never broken at the end of a line, nor parted from their units."""
+    """The text as HTML in which no line ends within a number or between a number and its unit."""
     words = BEFORE_UNIT.sub("\u00a0", text).split(" ")
     number = Markup("<span class=nb>{}</span>")
     parts = (
@@ -188,6 +191,7 @@ def unbroken(text: str) -> Markup:
 
 @cache
 def _environment() -> jinja2.Environment:
+    """Templates with the functions and filters that they use."""
     environment = jinja2.Environment(
         loader=jinja2.PackageLoader("reports"), autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True
     )

@@ -15,12 +15,13 @@ WORDS = {"good": "solved", "skip": "skipped", "warn": "open", "bad": "failed"}
 
 @contextmanager
 def run_progress(*, quiet: bool) -> Iterator[Progress]:
-    """A bar on a terminal and a line for each failure; a quiet user sees only that a run stopped."""
+    """A bar on a terminal and a line per failure; with ``quiet`` only a line if the run stopped."""
     counts: Counter[str] = Counter()
     terminal = console()
     with progress_bar("solving", on=terminal, hidden=quiet) as update:
 
         def show(event: ProgressEvent) -> None:
+            """Print the line of an event and update the bar."""
             line, tone = _line(event)
             if line and (not quiet or event.kind == "stopped"):
                 terminal.print(Text(line, style=STYLES.get(tone, "")))

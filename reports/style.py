@@ -1,6 +1,6 @@
 """How figures look: one colour and marker per method, one font, files that come out the same byte for byte.
 
-Colours are those of Okabe and Ito (2008), told apart by readers with any colour vision. Methods also differ in marker
+Colours are those of Okabe and Ito (2008), distinct for readers with any colour vision. Methods also differ in marker
 and dash, so that a grey print still reads. Text stays text: it can be searched and copied, and files stay small.
 """
 

@@ -48,7 +48,7 @@ class Cell:
 
 
 def cell_of(verdicts: Iterable[Verdict]) -> Cell:
-    """The cell of at least one verdict; those that were skipped are counted apart, unless all were."""
+    """The cell of at least one verdict; skipped verdicts are counted separately, unless all were skipped."""
     ordered = sorted(verdicts, key=severity)
     ran = [v for v in ordered if v.status is not Status.SKIP] or ordered
     worst = ran[0]
@@ -62,10 +62,10 @@ def cell_of(verdicts: Iterable[Verdict]) -> Cell:
     )
 
 
-def _solved_cell(answers: Sequence[Answer], silent: Sequence[str]) -> Cell:
-    """Cell for the solutions of a case; a chosen method that was skipped everywhere is not hidden behind the others."""
-    hidden = [answer for answer in answers if answer.status is Status.SKIP and answer.method in silent]
-    ran = hidden or [answer for answer in answers if answer.status is not Status.SKIP] or answers
+def _solved_cell(answers: Sequence[Answer], unjudged: Sequence[str]) -> Cell:
+    """Cell for the solutions of a case; the skips of unjudged methods come before the solutions of the others."""
+    skipped = [answer for answer in answers if answer.status is Status.SKIP and answer.method in unjudged]
+    ran = skipped or [answer for answer in answers if answer.status is not Status.SKIP] or answers
     worst = max(ran, key=lambda answer: (answer.status.is_failure, answer.status is Status.SKIP))
     return Cell(
         word=worst.status.value,
@@ -136,13 +136,13 @@ def shared_things(run: Run) -> Table | None:
         {
             "what": lambda thing: thing.name,
             "kind": lambda thing: thing.kind.value,
-            "where": lambda thing: thing.place,
+            "module": lambda thing: thing.place,
             "used by": lambda thing: "all" if thing.methods == EVERY else who(thing.methods, ", "),
             "enters": lambda thing: quantity_words(", ".join((*thing.quantities, *thing.cases))) or "everything",
-            "what notices a mistake in it": lambda thing: thing.guard,
+            "checks that detect a mistake": lambda thing: thing.guard,
         },
         title="What two methods share",
-        note="Agreement says nothing about what both methods use. A comparison is called independent where it rests on "
+        note="Agreement does not check what both methods use. A comparison is called independent where it rests on "
         "no shared code; others name it. Each of these planted wrong by one per cent, and the checks that fail: "
         "docs/shared.md.",
         words=6,
@@ -327,7 +327,7 @@ def effects(parts: Sequence[Effect]) -> Table | None:
         },
         title="What each effect costs and changes",
         note="Each part of a scene is left out in turn. Costs: share of the processor time of a first solution. It may "
-        "be left out where no quantity changes by more than the accuracy asked for.",
+        "be left out where no quantity changes by more than the accuracy.",
         words=6,
     )
 
@@ -364,6 +364,7 @@ def _final(answer: Answer) -> dict[str, Values]:
 
 
 def _last_value(name: str, quantity: Values) -> str:
+    """Last value of a quantity with its stated uncertainty in brackets, and its unit."""
     if not quantity.error and name not in UNITS:
         return small(quantity.values[-1])  # a residual vanishes but for rounding and has no error of its own
     factor, unit = scaled_unit(quantity.values[-1], quantity.unit)

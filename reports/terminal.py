@@ -1,4 +1,4 @@
-"""The terminal: tables, facts and bars; characters that steer a terminal are shown as escapes."""
+"""Tables, facts and bars on a terminal, which shows control characters as escapes."""
 
 import os
 import sys
@@ -15,16 +15,16 @@ from contact.records.errors import printable
 from reports.words import Table
 
 WIDTH_WITHOUT_TERMINAL = 160
-# Seconds after which a computation shows that it goes on: half as many flicker, with twice as many a user wonders.
+# Seconds after which a bar is shown: at half of it short computations flicker, at twice of it a user sees nothing.
 PATIENCE = 2.0
 STYLES = {"bad": "bold white on red", "warn": "black on yellow", "skip": "dim", "good": "green"}
 
 
 class Terminal(Console):
-    """A console that shows characters which would steer it as escapes."""
+    """A console that shows control characters as escapes."""
 
     def print(self, *objects: Any, **options: Any) -> None:
-        """Print; a text that holds such a character loses its styles."""
+        """Print; a text with control characters loses its styles."""
         super().print(*(_plain(item) for item in objects), **options)
 
 
@@ -58,7 +58,7 @@ def show_table(table: Table, *, on: Console) -> None:
 
 
 def show_facts(facts: Iterable[tuple[str, str]], *, on: Console) -> None:
-    """One fact a line, its name dim before it."""
+    """Print one fact per line, after its name in dim letters."""
     for name, fact in facts:
         on.print(Text.assemble((f"{name}: ", "dim"), fact))
 

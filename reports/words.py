@@ -24,13 +24,13 @@ NAMES: Mapping[str, str] = {
     "tamaas": "Tamaas",
 }
 
-# What stands where a number should be and is none; the letters of a floating point NaN never reach a page.
+# Text in place of a number that is not finite; no page shows "nan".
 NOT_FINITE = "not finite"
 
 # Magnitudes outside these are written with a power of ten.
 LARGEST_PLAIN, SMALLEST_PLAIN = 1e5, 1e-3
 
-# A double carries so many significant digits.
+# Significant digits of double precision.
 DOUBLE_DIGITS = 16
 
 
@@ -53,7 +53,7 @@ def measured(value: float, uncertainty: float) -> str:
 
 
 def _bracketed(value: float, uncertainty: float, exponent: int) -> str:
-    """Both numbers to the second digit of the uncertainty, but never past the digits a double carries."""
+    """Both numbers to the second digit of the uncertainty, at most to the digits of double precision."""
     decimals = max(0, min(1 - _leading_power(uncertainty), DOUBLE_DIGITS - 1 - exponent))
     # The uncertainty is rounded up: never less than it is.
     digits = max(1, math.ceil(round(uncertainty * 10.0**decimals, 6)))
@@ -155,7 +155,7 @@ def base_of(method: str) -> str:
 
 
 def display_name(method: str) -> str:
-    """The label with its method as readers know it, "MDR fft"; a method from elsewhere keeps its own name."""
+    """The label with the display name of its method, "MDR fft"; a method of another package keeps its name."""
     base = base_of(method)
     return NAMES.get(base, base) + method[len(base) :]
 
@@ -190,7 +190,7 @@ def markdown_table(heads: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
 def tabulated(
     records: Iterable[R], columns: Mapping[str, Callable[[R], str]], *, title: str, note: str = "", words: int = 1
 ) -> Table | None:
-    """A table of one row a record; None without records.
+    """A table of one row per record; None without records.
 
     Args:
         records: Records in the order of the rows.

@@ -362,16 +362,17 @@ BY_NAME = {one.name: one for one in CAREFUL}
 # -- page ------------------------------------------------------------------------------------------------------------
 
 PAGE = Path(__file__).parent.parent / "docs" / "combinations.md"
-_HEAD = """# Combinations of kinds, compared or refused
+_HEAD = """# Combinations of layers, indenters, loadings and effects
 
-Every two kinds of layer, indenter, loading and effect occur together in at least one row, with a random scene of
-`tests/random_scenes.py`. Two independent ways answer it: MDR, and finite elements, the direct integral equation,
-boundary elements, or a closed form (hereditary integral, energy). The difference and the sum of both stated errors are
-those of the quantity where their ratio is largest, over its scale. Where there are no two answers, the reason stands.
+Any two kinds of layer, indenter, loading and effect occur together in at least one row, with a random scene of
+`tests/random_scenes.py`. MDR and a second method solve it: finite elements, the direct integral equation, boundary
+elements, or a closed form (hereditary integral, energy). Each row shows the quantity for which the difference over the
+sum of both stated errors is largest; both are relative to its scale. Combinations that have no two answers are
+refused, with the reason.
 
 `tests/test_combinations.py` writes this page (marker `slow`).
 
-| draw | layer | indenter | loading | effect | compared | quantity | difference | stated |
+| random scene | layer | indenter | loading | effect | compared | quantity | difference | stated errors |
 |---|---|---|---|---|---|---|---|---|
 """
 

@@ -1,1 +1,1 @@
-"""The table of methods and what is known of them: settings, shared inputs, uncertain inputs; the list of cases."""
+"""The table of methods with their settings and shared inputs, uncertain inputs of scenes, and the list of cases."""

@@ -25,8 +25,8 @@ from contact import (
 from contact.answer.small_strains import with_depth_note
 from contact.records.errors import shown
 
-# Relative difference of a prescribed quantity beyond which an answer is one to another question.
-ANOTHER_QUESTION: Final = 1e-2
+# Relative difference from a prescribed quantity beyond which an answer belongs to another scene.
+PRESCRIBED_TOLERANCE: Final = 1e-2
 
 PRESCRIBED: Final = {
     ContactRadii: "contact_radius",
@@ -36,10 +36,10 @@ PRESCRIBED: Final = {
 
 
 class BrokenMethodError(ContactError):
-    """A method of an installed package crashed, or what it answered is no answer; the message names the method."""
+    """A method of an installed package crashed or returned an invalid answer; the message names the method."""
 
 
-# A class of errors that another package derives from one of these may want other arguments.
+# Errors are raised again as one of these classes: subclasses by other packages may need other arguments.
 KINDS: Final = (BrokenMethodError, InvalidInput, UnsupportedSceneError, NotConvergedError, ContactError)
 
 T = TypeVar("T")
@@ -47,7 +47,7 @@ T = TypeVar("T")
 
 @dataclass(frozen=True)
 class GuardedMethod:
-    """A method of another package under the name it is registered with: asked whether it supports what it solves.
+    """A method of another package under its registered name; its support of a scene and its answers are checked.
 
     Raises:
         BrokenMethodError: If the method crashes or answers nonsense.
@@ -65,7 +65,7 @@ class GuardedMethod:
         return Unsupported(str(getattr(support, "reason", "it gives no reason")))
 
     def solve(self, scene: Scene) -> Solution:
-        """The method's answer, if it is one to this scene."""
+        """The method's answer, checked against the scene."""
         support = self.supports(scene)
         if isinstance(support, Unsupported):
             raise UnsupportedSceneError(f"method {self.name!r} does not model this scene: {support.reason}")
@@ -95,7 +95,7 @@ def build_guarded(name: str, settings: dict[str, Any]) -> Method:
 
 
 def _blamed(name: str, place: str, call: Callable[[], T]) -> T:
-    """What a call into another package returns; its errors carry the method's name."""
+    """Result of a call into another package; its errors are raised with the method's name."""
     try:
         return call()
     except ContactError as error:
@@ -112,16 +112,16 @@ def _faults(answer: object, scene: Scene) -> list[str]:
     if not isinstance(answer, Solution):
         return [f"{shown(answer)} is no Solution"]
     prescribed = PRESCRIBED.get(type(scene.loading), "")
-    wanted = getattr(scene.loading, "values", np.empty(0))
-    given = np.asarray(getattr(answer, prescribed, wanted), dtype=np.float64)
+    required = getattr(scene.loading, "values", np.empty(0))
+    reached = np.asarray(getattr(answer, prescribed, required), dtype=np.float64)
     conditions = {
         "it belongs to another scene": answer.scene != scene,
         "its cost is no Cost": not isinstance(answer.cost, Cost),
-        f"{len(wanted)} values are prescribed, it has {given.size}": prescribed and given.shape != wanted.shape,
+        f"{len(required)} values are prescribed, it has {reached.size}": prescribed and reached.shape != required.shape,
     }
     faults = [fault for fault, is_wrong in conditions.items() if is_wrong]
-    if not faults and prescribed and not np.allclose(given, wanted, rtol=ANOTHER_QUESTION, atol=0.0):
-        faults.append(f"its {prescribed} is {shown(given)}, prescribed is {shown(wanted)}")
+    if not faults and prescribed and not np.allclose(reached, required, rtol=PRESCRIBED_TOLERANCE, atol=0.0):
+        faults.append(f"its {prescribed} is {shown(reached)}, prescribed is {shown(required)}")
     faults += [f"it states a negative error of {name}" for name, e in answer.error_estimate.items() if np.min(e) < 0]
     radius = getattr(answer, "contact_radius", np.zeros(1))
     return faults + ["a contact radius is negative"] * bool(np.min(radius) < 0)

@@ -21,7 +21,7 @@ from contact.records.extras import missing_extra
 ENTRY_POINT_GROUP = "contact_verification.methods"
 HOW_TO_ADD = f"a package adds one by an entry point of the group {ENTRY_POINT_GROUP} (examples/hertz_half_space)"
 
-# Names of methods become names of files and stand in pages, tables and commands.
+# Permitted names of methods, which occur in names of files, pages, tables and commands.
 NAME: Final = re.compile(r"[A-Za-z][A-Za-z0-9_.-]{0,59}")
 
 
@@ -40,7 +40,7 @@ class MethodUse:
 
 @dataclass(frozen=True, kw_only=True)
 class TableEntry:
-    """Where a built-in method lives: a class, or a function that returns one."""
+    """Module and name of a built-in method: of its class, or of a function that returns the method."""
 
     module: str
     attribute: str
@@ -55,7 +55,7 @@ BUILT_IN: Mapping[str, TableEntry] = {
 }
 
 
-# Solvers of others that this project can ask, as if their packages had registered them.
+# Outside solvers with an adapter in `cases.referees`, as if their packages had registered them.
 REFEREES: Mapping[str, EntryPoint] = {
     name: EntryPoint(name, f"cases.referees.{place}", ENTRY_POINT_GROUP)
     for name, place in {
@@ -88,7 +88,7 @@ def _entries(read: Callable[..., Iterable[EntryPoint]], _path: tuple[str, ...]) 
 
 
 def check_name(name: str, place: str) -> None:
-    """Refuse a name of a method that could not name a file or would not stand as it is in a page.
+    """Refuse a name of a method that is not valid in file names and pages.
 
     Raises:
         InvalidInput: Naming the entry point's `place`.
@@ -110,9 +110,9 @@ def check_known(name: str, labels: Iterable[str] = ()) -> None:
     Raises:
         InvalidInput: Listing the names that there are.
     """
-    known = dict.fromkeys((*method_names(), *labels))
-    if name not in known:
-        raise InvalidInput(f"no method {name!r}; there are {', '.join(known)}; {HOW_TO_ADD}")
+    names = dict.fromkeys((*method_names(), *labels))
+    if name not in names:
+        raise InvalidInput(f"no method {name!r}; there are {', '.join(names)}; {HOW_TO_ADD}")
 
 
 def method_names() -> tuple[str, ...]:
@@ -133,7 +133,7 @@ def build(name: str, settings: Mapping[str, Any]) -> Method:
 
 
 def shared_inputs(method: Method) -> tuple[str, ...]:
-    """Return what answers of this method share with others; a method may say so itself as ``shared_inputs``."""
+    """Return the names of code and data that a method shares with others, or its own ``shared_inputs``."""
     names = getattr(method, "shared_inputs", None)
     if names is not None:
         return tuple(names)
@@ -154,7 +154,7 @@ def location(name: str) -> tuple[str, str]:
     return entry.module, entry.attr
 
 
-# The type of a class from another package is not known here.
+# The class may be of another package, so that its type is open.
 def load(name: str) -> Any:
     """Return the class of the method called ``name``.
 

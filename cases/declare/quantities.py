@@ -1,4 +1,4 @@
-"""The numbers of an answer by name, as every study, run and table reads them."""
+"""The numbers of an answer by name, for studies, runs and tables."""
 
 from typing import Final
 
@@ -18,7 +18,7 @@ IMPACT_NUMBERS: Final = (
 
 
 def values_of(answer: Solution, quantity: str) -> FloatArray:
-    """All values of a quantity, shape (n,); one of a single number."""
+    """All values of a quantity, shape (n,); n = 1 for a single number."""
     return np.atleast_1d(np.asarray(getattr(answer, quantity), dtype=np.float64))
 
 

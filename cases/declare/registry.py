@@ -35,7 +35,7 @@ def by_name(cases: Iterable[Case]) -> dict[str, Case]:
 
 
 def select(cases: dict[str, Case], *, names: Iterable[str] = (), suite: str = "") -> tuple[Case, ...]:
-    """Return the cases asked for by name, or those of a suite (as it runs them), or all.
+    """Return the cases of a suite (all without one) as it runs them; of named cases those alone.
 
     Raises:
         InvalidInput: For an unknown name or suite.
@@ -54,6 +54,7 @@ def _last(module: str) -> str:
 
 
 def _case_of(module: str) -> Case:
+    """The `CASE` of a module of the library."""
     case = getattr(importlib.import_module(module), "CASE", None)
     if not isinstance(case, Case):
         raise InvalidInput(f"{module.replace('.', '/')}.py defines no CASE; a module of the library is one case")

@@ -12,19 +12,19 @@ from cases.declare.methods import MethodUse, build, load, registered
 from contact import InvalidInput
 from contact.records.errors import shown
 
-# By name of a method: its settings by name; a table is those of the scene of that name.
+# Settings by method and name. A nested table has the settings for the scene of its name.
 Settings: TypeAlias = Mapping[str, Mapping[str, Any]]
 
 WORDS: Final = re.compile(r"(?:(?P<method>[^=]+)\.)?(?P<name>\w+)=(?P<value>.*)", re.DOTALL)
 
 
 def read_settings(texts: Iterable[str], methods: Collection[str]) -> dict[str, dict[str, Any]]:
-    """Return what was asked for; the last of two settings of one name counts.
+    """Return settings by method and name; the later of two equal names counts.
 
     Args:
-        texts: Each is ``name=value``, ``method.name=value``, or a TOML file with a table for each method.  Values are
-            written as in TOML; what is no TOML is a word.
-        methods: Chosen ones; a setting without a method belongs to the only registered one among them.
+        texts: Each is ``name=value``, ``method.name=value``, or a TOML file with a table per method. Values are
+            written as in TOML; any other value is a string.
+        methods: Chosen methods; a setting without a method belongs to the only registered one among them.
 
     Raises:
         InvalidInput: If a text is none of these, or if its method is not registered.
@@ -42,6 +42,7 @@ def read_settings(texts: Iterable[str], methods: Collection[str]) -> dict[str, d
 
 
 def _of_words(text: str, methods: Collection[str]) -> dict[str, dict[str, Any]]:
+    """Setting in a text "name=value" or "method.name=value", by method and name."""
     words = WORDS.fullmatch(text)
     if words is None:
         raise InvalidInput(f"--setting {shown(text)}: write name=value, method.name=value, or the name of a TOML file")
@@ -85,16 +86,16 @@ def with_settings(case: Case, settings: Settings) -> Case:
 
 
 def _changed(use: MethodUse, settings: Settings, scene: str) -> MethodUse:
-    """The method with its settings for all scenes, then with those in the table of the scene."""
-    asked = settings.get(use.method or use.label, {})
-    of_scene = asked.get(scene, {})
-    wanted = {key: value for key, value in asked.items() if not isinstance(value, dict)}
+    """The method with its settings for all scenes, overridden by those for the scene."""
+    of_method = settings.get(use.method or use.label, {})
+    of_scene = of_method.get(scene, {})
+    wanted = {key: value for key, value in of_method.items() if not isinstance(value, dict)}
     wanted |= of_scene if isinstance(of_scene, dict) else {}
     return _checked(replace(use, settings={**use.settings, **wanted})) if wanted else use
 
 
 def ladder(name: str, settings: Mapping[str, Any]) -> tuple[MethodUse, ...]:
-    """Return the settings that ``cost`` times: a list has one value per setting, anything else belongs to all of them.
+    """Return the settings that ``cost`` times: one per entry of the lists; other values belong to all of them.
 
     Raises:
         InvalidInput: If lists differ in length, or if the method does not take a value.
@@ -113,7 +114,7 @@ def _words(settings: Mapping[str, Any]) -> str:
 
 
 def _checked(use: MethodUse) -> MethodUse:
-    """The use, once its method has taken the settings."""
+    """The use itself; refuses settings that its method does not accept."""
     name = use.method or use.label
     try:
         build(name, use.settings)

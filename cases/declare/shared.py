@@ -1,7 +1,7 @@
 """Code and data that two methods share, in one list for claims, reports and tests of planted faults.
 
-Agreement of two methods says nothing about what both use. Whatever `shared.toml` lists is planted wrong by one per cent
-in `tests/planted/sharing.py`; the table of what then fails is `docs/shared.md`.
+Agreement of two methods does not check what both use. `tests/planted/sharing.py` changes each entry of `shared.toml` by
+one per cent; `docs/shared.md` lists the checks that then fail.
 """
 
 import tomllib
@@ -19,7 +19,7 @@ class Sharing(StrEnum):
 
     CODE = "code"  # lines that compute numbers of the answer
     QUESTION = "question"  # the scene as the user gave it: without it there is nothing to compare
-    RECORD = "record"  # how answers are kept and compared, whoever gave them
+    RECORD = "record"  # how answers of all methods are stored and compared
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -51,11 +51,11 @@ class Shared:
 
 _TABLE = tomllib.loads(Path(__file__).with_name("shared.toml").read_text(encoding="utf-8"))
 SHARED = tuple(Shared(name=name, **entry) for name, entry in _TABLE.items())
-BY_NAME = {one.name: one for one in SHARED}
+BY_NAME = {entry.name: entry for entry in SHARED}
 
 
 def used_by(method: str) -> tuple[str, ...]:
-    """Names of what a built-in method may have in common with others; nothing is known of other methods."""
+    """Names of the code and data that a built-in method shares with others; `NOT_SAID` for any other method."""
     return tuple(entry.name for entry in SHARED if method in entry.methods) or (NOT_SAID,)
 
 

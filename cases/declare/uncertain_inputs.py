@@ -15,7 +15,7 @@ from contact.records.units import read_quantity
 from contact.records.validation import FloatArray
 
 PARTS = ("layer", "indenter", "loading")
-# A range is taken as equally likely throughout; its standard deviation is its width over this.
+# Width of a uniform distribution over its standard deviation.
 WIDTH_OVER_DEVIATION = math.sqrt(12)
 EXAMPLE = 'write "thickness=3%, poissons_ratio=0.48..0.5, thickness~youngs_modulus=0.8"'
 
@@ -26,7 +26,7 @@ class UncertainInput:
 
     Attributes:
         name: Name of its field, with the part of the scene before a dot where two parts have one.
-        deviation: Standard deviation: absolute of a range, relative otherwise.
+        deviation: Standard deviation, absolute for a range, relative for a percentage.
         low: Smallest value of a range; None for a percentage, which is normally distributed.
         high: Largest value of a range.
     """
@@ -38,14 +38,13 @@ class UncertainInput:
 
     @property
     def is_range(self) -> bool:
-        """Whether all values between two are equally likely."""
+        """Whether the input is uniformly distributed between two values."""
         return self.low is not None
 
     def value_at(self, number: float, value: Any, *, drawn: bool = False) -> Any:
-        """The value so many standard deviations from the middle.
+        """The input ``number`` standard deviations from its middle.
 
-        Where it is drawn, the number is standard normal: in a range it stands for the place with the same share of
-        values below it.
+        If ``drawn``, the number is standard normal and is mapped into a range by the cumulative distribution function.
         """
         if self.low is None or self.high is None:
             return value * (1 + number * self.deviation)
@@ -54,7 +53,7 @@ class UncertainInput:
         return (self.low + self.high) / 2 + number * self.deviation
 
     def in_words(self) -> str:
-        """As people read it: "3 %" or "0.48 to 0.5"."""
+        """The uncertainty as text: "3 %" or "0.48 to 0.5"."""
         return f"{self.low:g} to {self.high:g}" if self.is_range else f"{100 * self.deviation:g} %"
 
 
@@ -71,7 +70,7 @@ class UncertainInputs:
     correlation: FloatArray
 
     def scene_at(self, scene: Scene, numbers: FloatArray, *, drawn: bool = False) -> Scene:
-        """The scene with each input so many standard deviations from its middle, or drawn by them, shape (n,).
+        """The scene with each input ``numbers``, shape (n,), standard deviations from its middle, as in `value_at`.
 
         Raises:
             InvalidInput: If it has no such number, or not with that value.
@@ -88,7 +87,7 @@ class UncertainInputs:
         return scene
 
     def spread(self, changes: FloatArray) -> FloatArray:
-        """Standard uncertainty by changes per deviation of each input, shape (inputs, steps): the root of D R D^T."""
+        """Standard uncertainty, the root of D^T R D, from changes D per deviation, shape (inputs, steps)."""
         return np.asarray(np.sqrt(np.einsum("is,ij,js->s", changes, self.correlation, changes)))
 
 
@@ -97,11 +96,11 @@ def read_inputs(text: str, scene: Scene | None = None, *, with_units: bool = Fal
 
     Args:
         text: Inputs, separated by commas; ends of ranges may have units, as in "thickness=4um..6um".
-        scene: Whose numbers are uncertain; without it, ends of ranges are in SI.
+        scene: Scene whose numbers are uncertain; without it, ends of ranges are in SI units.
         with_units: Whether the scene was written with units; ends of ranges need theirs then.
 
     Raises:
-        InvalidInput: For what is no such text; nothing is guessed.
+        InvalidInput: For any other text.
     """
     inputs, pairs = list[UncertainInput](), dict[tuple[str, str], float]()
     for part in filter(None, (part.strip() for part in text.split(","))):
@@ -120,6 +119,7 @@ def read_inputs(text: str, scene: Scene | None = None, *, with_units: bool = Fal
 
 
 def _input(part: str, name: str, value: str, scene: Scene | None, with_units: bool) -> UncertainInput:
+    """Uncertain input "name=value", the value a percentage or a range; ``part`` is the whole text for messages."""
     if value.endswith("%"):
         return UncertainInput(name=name, deviation=_number(part, value[:-1], 0.0, 100.0) / 100)
     low, dots, high = value.partition("..")
@@ -136,12 +136,12 @@ def _input(part: str, name: str, value: str, scene: Scene | None, with_units: bo
 
 
 def range_ends(place: str, ends: tuple[str, str], unit: str | None, with_units: bool) -> tuple[str, str]:
-    """Ends of a range in SI, as texts; an end that is no quantity is returned as it came.
+    """Ends of a range in SI units, as texts; an end that is no quantity is returned unchanged.
 
     Args:
-        place: For messages.
-        ends: As written, with or without a unit.
-        unit: SI unit of the number; None for a pure one.
+        place: Name of the range in messages.
+        ends: Ends as written, with or without a unit.
+        unit: SI unit of the number; None for a pure number.
         with_units: Whether the scene was written with units.
 
     Raises:
@@ -150,13 +150,15 @@ def range_ends(place: str, ends: tuple[str, str], unit: str | None, with_units: 
     if unit is None:
         return ends
     low, high = (str(read_quantity(end, unit, place)) for end in ends)
-    bare = [end for end, number in zip(ends, (low, high), strict=True) if end == number and end.strip("+-0.")]
-    if bare and (with_units or (low, high) != ends):
-        raise InvalidInput(f"{place} = {bare[0]}: no unit, but the scene or the other end has; write {bare[0]}{unit}")
+    unitless = [end for end, number in zip(ends, (low, high), strict=True) if end == number and end.strip("+-0.")]
+    if unitless and (with_units or (low, high) != ends):
+        end = unitless[0]
+        raise InvalidInput(f"{place} = {end}: no unit, but the scene or the other end has; write {end}{unit}")
     return low, high
 
 
 def _number(part: str, text: str, low: float, high: float) -> float:
+    """The number in a text, refused unless it lies between ``low`` and ``high``."""
     match = re.fullmatch(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?", text.strip())
     value = float(text) if match else math.nan
     if not (math.isfinite(value) and low <= value <= high):
@@ -165,6 +167,7 @@ def _number(part: str, text: str, low: float, high: float) -> float:
 
 
 def _correlation(names: list[str], pairs: Mapping[tuple[str, str], float]) -> FloatArray:
+    """Correlation matrix of the inputs, shape (n, n), from the correlations of pairs of names."""
     matrix = np.eye(len(names))
     for (first, second), value in pairs.items():
         for name in (first, second):

@@ -1,4 +1,4 @@
-"""What was accepted stays accepted: baselines, the gate that compares with them, and the only way to change them.
+"""Baselines of accepted numbers, the gate that compares a run with them, and the only writer of new ones.
 
-Enters: a judged run, the folder of baselines. Leaves: the run with its regression verdicts, or new baselines.
+Input: a judged run and the folder of baselines. Output: the run with regression verdicts, or new baselines.
 """

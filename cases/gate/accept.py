@@ -39,8 +39,8 @@ class WriteConditions:
 
     Attributes:
         revision: Commit of the source; "unknown" outside a repository.
-        changed: Files that differ from it, baselines apart: those are what is being written.
-        in_ci: Whether a continuous integration job asks.
+        changed: Files that differ from the commit, except baselines.
+        in_ci: Whether this is a job of continuous integration.
     """
 
     revision: str
@@ -65,10 +65,10 @@ def _changed_files(repository: Path, baselines: Path) -> tuple[str, ...]:
 
 
 def git(repository: Path, *arguments: str) -> str:
-    """Return what git prints.
+    """Return the output of a git command.
 
     Raises:
-        InvalidInput: If git refuses, with its own words.
+        InvalidInput: If git fails, with its message.
     """
     command = ["git", "-C", str(repository), *arguments]
     try:
@@ -91,7 +91,7 @@ class Change:
 
     @property
     def step(self) -> int | None:
-        """The step that changed most; None where nothing can be subtracted."""
+        """The step that changed most; None where the values cannot be subtracted."""
         old, new = self.old, self.new
         if old is None or new is None or old.unit != new.unit or not 0 < len(old.values) == len(new.values):
             return None
@@ -105,12 +105,12 @@ class Change:
 
     @property
     def in_tolerances(self) -> float | None:
-        """New minus old over the permitted change; None where nothing can be subtracted."""
+        """New minus old value over the permitted change; None where they cannot be subtracted."""
         return self._over(permitted_change(self.old, self.step)) if self.old and self.step is not None else None
 
     @property
     def in_stated_errors(self) -> float | None:
-        """New minus old over the error stated now; None where the method states none, or zero."""
+        """New minus old value over the new stated error; None where the method states none, or zero."""
         return self._over(self.new.error[self.step]) if self.new and self.new.error and self.step is not None else None
 
     def _over(self, size: float) -> float | None:
@@ -119,7 +119,7 @@ class Change:
 
     @property
     def loosens(self) -> bool:
-        """Whether later runs may differ more than before, or differ unseen."""
+        """Whether later runs may differ more than before, or are no longer compared."""
         if self.old is None or self.new is None:
             return self.old is not None
         is_wider = _relative_width(self.new) > (1 + 1e-9) * _relative_width(self.old)
@@ -129,7 +129,7 @@ class Change:
 
 @dataclass(frozen=True, kw_only=True)
 class Proposal:
-    """The baseline a case would have, every change this makes, and counters and claims no longer watched."""
+    """A new baseline of a case, its changes against the old one, and counters and claims that it no longer checks."""
 
     baseline: Baseline
     changes: tuple[Change, ...]
@@ -151,16 +151,16 @@ def propose(
     reason: str,
     unsolved: Collection[tuple[str, str]] = (),
 ) -> Proposal:
-    """Return what accepting a case as it ran would change.
+    """Return the baseline that accepting a case would write, with its changes.
 
     Args:
-        run: Answers and verdicts that are watched.
+        run: Answers and verdicts that are accepted.
         case: Name of the case.
         suites: Suites to which the case belongs.
         before: Baseline accepted so far.
         spreads: Measured relative spread by method, scene and quantity.
         reason: Reason in the user's words.
-        unsolved: Scenes and methods that the run need not solve; what was accepted of them stays.
+        unsolved: Scenes and methods that the run need not solve; their accepted answers stay.
 
     Raises:
         InvalidInput: If the spread of a quantity was not measured.
@@ -168,8 +168,8 @@ def propose(
     old = {(a.scene, a.method): a for a in before.answers} if before else {}
     solved = {(a.scene, a.method): a for a in run.answers.of_case(case) if a.solved}
     new = {place: _with_spreads(answer, old.get(place), spreads) for place, answer in solved.items()}
-    left_as_accepted = {place: answer for place, answer in old.items() if place in unsolved}
-    answers = tuple(sorted((left_as_accepted | new).values(), key=lambda answer: answer.identity))
+    unchanged = {place: answer for place, answer in old.items() if place in unsolved}
+    answers = tuple(sorted((unchanged | new).values(), key=lambda answer: answer.identity))
     judged = run.judged
     accepted = Accepted(
         case=case,
@@ -180,14 +180,14 @@ def propose(
     )
     if before is not None and answers == before.answers:
         # Where nothing changes the reason stays, too.
-        kept_reason = replace(accepted, reason=before.accepted.reason)
-        accepted = before.accepted if kept_reason == before.accepted else accepted
+        with_old_reason = replace(accepted, reason=before.accepted.reason)
+        accepted = before.accepted if with_old_reason == before.accepted else accepted
     after = Baseline(accepted=accepted, answers=answers)
     return Proposal(baseline=after, changes=tuple(_changes(before, after)), lost=tuple(_lost(before, after)))
 
 
 def _with_spreads(answer: Answer, old: Answer | None, spreads: Spreads) -> Answer:
-    """The answer as the baseline keeps it, with the widest spread measured so far.
+    """The answer as the baseline stores it, with the widest spread measured so far.
 
     A repetition that agrees by chance does not reduce the tolerance.
     """
@@ -200,14 +200,14 @@ def _with_spreads(answer: Answer, old: Answer | None, spreads: Spreads) -> Answe
         spread = 0.0 if q.at else spreads[place]
         if not (math.isfinite(spread) and spread >= 0):
             raise InvalidInput(f"the spread of {' / '.join(place)} is {spread}: it must be finite; measure it again")
-        known = before[name].spread if name in before else 0.0
-        quantities[name] = replace(
-            q, spread=known if OF_SPREAD * spread <= max(OF_SPREAD * known, SMALLEST_RELATIVE) else spread
-        )
+        accepted = before[name].spread if name in before else 0.0
+        is_within = OF_SPREAD * spread <= max(OF_SPREAD * accepted, SMALLEST_RELATIVE)
+        quantities[name] = replace(q, spread=accepted if is_within else spread)
     return replace(stored_part(answer), quantities=quantities)
 
 
 def _changes(before: Baseline | None, after: Baseline) -> Iterator[Change]:
+    """Yield the quantities that differ between two baselines."""
     old, new = (_quantities(baseline) for baseline in (before, after))
     for place in dict.fromkeys([*old, *new]):
         if old.get(place) != new.get(place):
@@ -222,6 +222,7 @@ def _quantities(baseline: Baseline | None) -> dict[tuple[str, str, str], Values]
 
 
 def _lost(before: Baseline | None, after: Baseline) -> Iterator[str]:
+    """Names of counters, claims and steps of stress tests that the new baseline lacks or has worse."""
     if before is None:
         return
     counters = {answer.identity: answer.counters for answer in after.answers}
@@ -304,6 +305,7 @@ def _refused_run(answers: Iterable[Answer], verdicts: Iterable[Verdict]) -> Iter
 
 
 def _not_finite(answers: Iterable[Answer]) -> Iterator[str]:
+    """Reasons in quantities that are not finite."""
     for answer in answers:
         for name, q in answer.quantities.items():
             if not all(map(math.isfinite, (*q.values, *q.error, q.spread, q.scale))):
@@ -320,6 +322,7 @@ def _loosenings(proposal: Proposal) -> Iterator[str]:
 
 
 def _loosening(change: Change) -> str:
+    """How a change loosens the baseline, in words."""
     name = f"{change.quantity} of {change.scene!r} by {change.method}"
     if change.old is None or change.new is None:
         return f"{name} would no longer be watched"

@@ -1,7 +1,7 @@
 """Accepted answers: one file per case, ``baselines/<case>.jsonl``, written by ``accept`` alone.
 
-Its first line says what was accepted; every other one is an answer (`cases.answers`) with the measured spread of its
-quantities. Fields are not kept, only their stated errors.
+The first line is an `Accepted` record; each other line is an answer (`cases.answers`) with the measured spread of its
+quantities. Of fields the stated errors alone are stored.
 """
 
 from dataclasses import replace
@@ -19,7 +19,7 @@ from contact import InvalidInput
 from contact.files.whole import write_whole
 
 REMEDY = "restore it from the repository, or accept the case anew"
-# Fraction of the accepted stated error by which a value may move. Processors round differently, and a searched radius
+# Fraction of the accepted stated error by which a value may change. Processors round differently, and a searched radius
 # or a mesh amplifies that to 3e-9. Half of it is not enough for finite elements, twice is still far below any error.
 OF_STATED_ERROR = 0.01
 # Tolerance over the measured spread. Three repetitions show about a third of it; with half the factor a gate fails by
@@ -39,7 +39,7 @@ class AcceptedClaim:
 
     @property
     def identity(self) -> tuple[str, Kind, str, tuple[str, ...]]:
-        """Everything but the count."""
+        """Name, kind, quantity and methods of the claim."""
         return self.name, self.kind, self.quantity, self.methods
 
 
@@ -117,6 +117,7 @@ def read_baselines(folder: Path) -> tuple[Baseline, ...]:
 
 
 def _read(path: Path) -> Baseline:
+    """The baseline in a file, whose name is that of the case."""
     first = path.read_bytes().partition(b"\n")[0]
     accepted = validated(_ACCEPTED, first, place=f"{path}, line 1", remedy=REMEDY)
     answers = tuple(read_answers(path, skip=1))

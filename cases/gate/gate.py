@@ -22,8 +22,8 @@ from cases.studies import StressTest
 from cases.verdicts import Kind, Origin, Status, Verdict, Why
 from contact.records.extras import NOT_INSTALLED
 
-# A stated error may be this many times larger or smaller than the accepted one: half of it would see no bug, twice as
-# much is more than another mesh makes of it.
+# Largest permitted ratio of a stated error to the accepted one, and of its inverse: half of it fails for other meshes,
+# twice of it misses a wrong error estimate.
 LARGEST_RATIO = 10.0
 UNKNOWNS = "unknowns"
 VALUES = "max(10 x measured spread, 1e-12) of the accepted value or its scale, at least 1 % of its stated error"
@@ -47,14 +47,14 @@ def gate(
 ) -> Run:
     """Return ``run`` with a regression verdict for every quantity and counter that was accepted or is new.
 
-    The stated error that changed most is another one for each answer, as is each accepted claim that is missing. A
-    method that is not installed where the run was made is named once and not compared.
+    Further verdicts are about the stated error that changed most of each answer, and about each accepted claim that is
+    missing. A method that was not installed gets a single skipped verdict.
 
     Args:
         run: Run whose claims are judged.
         baselines: Accepted results; a case of the run's suite that the run does not have counts as missing.
         methods: Labels of the methods that are compared; empty for all.
-        watched: Whether an answer needs accepted numbers; those of the nightly suite alone do not.
+        watched: Function that returns whether an answer needs accepted numbers; those of suite nightly alone do not.
     """
     accepted = {baseline.accepted.case: baseline for baseline in baselines}
     present = {text.name for text in run.judged.cases}
@@ -87,16 +87,17 @@ def _lost_case(name: str) -> CaseText:
 def _of_case(
     run: Run, case: str, baseline: Baseline | None, watched: Watched, methods: Collection[str]
 ) -> Iterator[Verdict]:
-    now = {(a.scene, a.method): a for a in run.answers.of_case(case)}
-    then = {(a.scene, a.method): a for a in baseline.answers} if baseline else {}
-    absent = _not_installed(now.values())
+    """Yield the verdicts of a case against its baseline, without methods that were not installed."""
+    current = {(a.scene, a.method): a for a in run.answers.of_case(case)}
+    accepted = {(a.scene, a.method): a for a in baseline.answers} if baseline else {}
+    absent = _not_installed(current.values())
     for method, reason in absent.items():
-        count = sum(len(answer.quantities) for answer in then.values() if answer.method == method)
+        count = sum(len(answer.quantities) for answer in accepted.values() if answer.method == method)
         if count:
             judged = nothing_compared(Status.SKIP, f"{reason}; {count} accepted numbers are not compared")
             yield _verdict((case, "", (method,)), "numbers", judged, ABSENT)
-    for place in dict.fromkeys([*then, *now]):
-        new, old = now.get(place), then.get(place)
+    for place in dict.fromkeys([*accepted, *current]):
+        new, old = current.get(place), accepted.get(place)
         shown = new or old
         if shown is not None and shown.method not in absent and watched(shown):
             yield from _of_answer((case, shown.scene, (shown.method,)), new, old)
@@ -108,11 +109,11 @@ def _of_case(
 
 
 def _not_installed(answers: Iterable[Answer]) -> dict[str, str]:
-    """Methods skipped on every scene, once at least since they are not installed, and that reason."""
+    """Methods that skipped every scene, at least one because they are not installed, with that reason."""
     answers = tuple(answers)
     named = {answer.method: answer.reason for answer in answers if NOT_INSTALLED in answer.reason}
-    asked = {answer.method for answer in answers if answer.status is not Status.SKIP}
-    return {method: reason for method, reason in named.items() if method not in asked}
+    ran = {answer.method for answer in answers if answer.status is not Status.SKIP}
+    return {method: reason for method, reason in named.items() if method not in ran}
 
 
 def _of_answer(place: Place, new: Answer | None, old: Answer | None) -> Iterator[Verdict]:
@@ -134,38 +135,40 @@ def _of_answer(place: Place, new: Answer | None, old: Answer | None) -> Iterator
             yield from _stated(place, after, before)
 
 
-def _absent(what: str, now: object, then: object, new: Answer | None, old: Answer | None) -> Judgement | None:
-    """Why there is nothing to compare: nobody accepted it, or this run does not have it."""
-    if then is None or old is None:
+def _absent(what: str, current: object, accepted: object, new: Answer | None, old: Answer | None) -> Judgement | None:
+    """Judgement of a value that was not accepted or that this run does not have; None if both values are there."""
+    if accepted is None or old is None:
         scene = new.scene if new else ""
         message = f"extra: {what} of {scene!r} has no accepted value; look at it, then accept the case"
         return nothing_compared(Status.INCOMPARABLE, message)
-    if now is None or new is None:
+    if current is None or new is None:
         status = new.status if new and new.status.is_failure else Status.INCOMPARABLE
         reason = f": {new.method} ended with {new.status}, {new.reason}" if new and not new.solved else ""
         return nothing_compared(status, f"missing: {what} of {old.scene!r} was accepted, this run has none{reason}")
     return None
 
 
-def _worst_value(now: Values, then: Values, new: Answer | None, old: Answer | None) -> tuple[Judgement, dict[str, Any]]:
+def _worst_value(
+    current: Values, accepted: Values, new: Answer | None, old: Answer | None
+) -> tuple[Judgement, dict[str, Any]]:
     """Judgement of the worst step, its tolerance and accepted value.
 
     Answers to another question, or with another unit or number of steps, cannot be compared.
     """
     for what, a, b in (
         ("scene or settings", new and new.question, old and old.question),
-        ("unit", now.unit, then.unit),
-        ("number of steps", len(now.values), len(then.values)),
+        ("unit", current.unit, accepted.unit),
+        ("number of steps", len(current.values), len(accepted.values)),
     ):
         if a != b:
             message = f"{what} changed: {a}, accepted {b}; accept the case if that was meant"
             return nothing_compared(Status.INCOMPARABLE, message), {}
-    permitted = [permitted_change(then, step) for step in range(len(then.values))]
-    rows = zip(now.values, then.values, permitted, strict=True)
+    permitted = [permitted_change(accepted, step) for step in range(len(accepted.values))]
+    rows = zip(current.values, accepted.values, permitted, strict=True)
     steps = [judge_regression(x, b, permitted=most) for x, b, most in rows]
     worst = worst_judgement(steps)
     step = steps.index(worst)
-    return worst, {"tolerance": permitted[step], "expected": then.values[step]}
+    return worst, {"tolerance": permitted[step], "expected": accepted.values[step]}
 
 
 def _counters(answer: Answer | None) -> dict[str, int]:
@@ -173,7 +176,7 @@ def _counters(answer: Answer | None) -> dict[str, int]:
 
 
 def _count(place: Place, name: str, value: int, accepted: int | None, absent: Judgement | None) -> Verdict:
-    """Judge a deterministic counter, which no noise on the machine changes; half a count permits not a single one."""
+    """Judge the change of a deterministic counter; the tolerance of an exact counter is 0.5."""
     permitted = permitted_count_change(name, accepted or 0)
     change = abs(value - (accepted or 0))
     message = f"{name} {value} against accepted {accepted}, permitted change {permitted:g}"
@@ -188,12 +191,12 @@ def permitted_count_change(name: str, accepted: int) -> float:
     return 0.02 * accepted if name == UNKNOWNS else max(3.0, 0.2 * accepted)
 
 
-def _stated(place: Place, now: dict[str, Values], then: dict[str, Values]) -> Iterator[Verdict]:
+def _stated(place: Place, current: dict[str, Values], accepted: dict[str, Values]) -> Iterator[Verdict]:
     """Judge the stated error that changed most: it may neither grow nor shrink unnoticed."""
     judgements = {
-        f"uncertainty of {name}": _stated_error(f"uncertainty of {name}", now[name], b)
-        for name, b in then.items()
-        if name in now and len(now[name].values) == len(b.values) and (now[name].error or b.error)
+        f"uncertainty of {name}": _stated_error(f"uncertainty of {name}", current[name], b)
+        for name, b in accepted.items()
+        if name in current and len(current[name].values) == len(b.values) and (current[name].error or b.error)
     }
     if judgements:
         worst = worst_judgement(list(judgements.values()))
@@ -201,13 +204,13 @@ def _stated(place: Place, now: dict[str, Values], then: dict[str, Values]) -> It
         yield _verdict(place, what, worst, ERRORS, tolerance=LARGEST_RATIO, expected=1.0)
 
 
-def _stated_error(what: str, now: Values, then: Values) -> Judgement:
+def _stated_error(what: str, current: Values, accepted: Values) -> Judgement:
     """Judge the stated error of the worst step, or of a field."""
-    if len(now.error) != len(then.error):
-        words = f"extra: nobody accepted an {what}" if now.error else f"missing: this run does not state the {what}"
+    if len(current.error) != len(accepted.error):
+        words = f"extra: nobody accepted an {what}" if current.error else f"missing: this run does not state the {what}"
         return nothing_compared(Status.INCOMPARABLE, words)
-    sizes = [1.0] if then.at else [max(abs(value), then.scale) for value in then.values]
-    rows = zip(now.error, then.error, sizes, strict=True)
+    sizes = [1.0] if accepted.at else [max(abs(value), accepted.scale) for value in accepted.values]
+    rows = zip(current.error, accepted.error, sizes, strict=True)
     return worst_judgement([judge_stated(what, x, y, SMALLEST_RELATIVE * size) for x, y, size in rows])
 
 
@@ -227,7 +230,7 @@ def judge_stated(name: str, stated: float, accepted: float, floor: float) -> Jud
 
 
 def judged_claims(verdicts: Iterable[Verdict]) -> tuple[AcceptedClaim, ...]:
-    """Return how often each claim was judged; regression, which the gate itself adds, is none of them."""
+    """Return each claim with the number of its verdicts, without regressions, which the gate itself adds."""
     judged = (verdict for verdict in verdicts if verdict.kind is not Kind.REGRESSION)
     counts = Counter((v.claim, v.kind, v.quantity, v.methods) for v in judged)
     return tuple(
@@ -245,8 +248,8 @@ def _missing_claims(
 ) -> Iterator[Verdict]:
     """Yield a failure, under the claim's own name, for each accepted claim that the run does not judge as often.
 
-    Claims that need an absent method, or another one than the chosen ``methods``, are left out, and then so are orders:
-    these may be measured against the answer of another method, which an accepted claim does not name.
+    Claims about absent methods or methods that were not chosen are left out. If ``methods`` are chosen, orders of
+    convergence are left out too: their reference may be another method, which an accepted claim does not name.
     """
     counts = {claim.identity: claim.judged for claim in judged_claims(verdicts)}
     for claim in accepted:
@@ -265,25 +268,25 @@ def _missing_claims(
 
 
 def _stress_tests(case: str, tests: list[StressTest], accepted: Iterable[StressTest]) -> Iterator[Verdict]:
-    """One verdict per stress test: no earlier breakdown, no more than one digit lost.
+    """Yield a verdict per stress test: no earlier breakdown, no more than one digit lost.
 
-    A test that its method no longer takes though it takes others and others take it fails by its name. Nothing is
-    claimed as long as none was accepted.
+    An accepted test by a method fails if it is missing while both occur in other tests of the run. Without accepted
+    tests there are no verdicts.
     """
     before = {(test.name, test.method): test for test in accepted}
-    now = {(test.name, test.method): test for test in tests}
-    names, methods = {name for name, _ in now}, {method for _, method in now}
+    current = {(test.name, test.method): test for test in tests}
+    names, methods = {name for name, _ in current}, {method for _, method in current}
     lost = {place: test for place, test in sorted(before.items()) if place[0] in names and place[1] in methods}
-    for place, shown in ({**lost, **now} if before else {}).items():
-        then = before.get(place)
-        if then is None:
+    for place, shown in ({**lost, **current} if before else {}).items():
+        old = before.get(place)
+        if old is None:
             message = "extra: this stress test was never accepted; look at it, then accept the run"
             judged = nothing_compared(Status.INCOMPARABLE, message)
         else:
-            worse = worse_than(now.get(place, replace(then, steps=())), then)
+            worse = worse_than(current.get(place, replace(old, steps=())), old)
             words = "; ".join(worse) or "no step lost, no more than one digit lost"
             judged = replace(judge_residual(float(len(worse)), tolerance=0.5, failure=Status.DIFF), message=words)
-        expected = None if then is None else 0.0
+        expected = None if old is None else 0.0
         more: dict[str, Any] = {"tolerance": 0.5, "expected": expected}
         verdict = _verdict((case, shown.name, (shown.method,)), "steps and digits", judged, DIGITS, **more)
         yield replace(verdict, quantity=shown.quantity)

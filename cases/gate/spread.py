@@ -24,7 +24,7 @@ from cases.units import changed
 from contact import DepthFunction, InvalidInput, Scene
 from contact.records.record import Record
 
-# Fields of layers and loadings.
+# Fields of layers and loadings that are changed by one unit in the last place.
 NUDGED = ("youngs_modulus", "thickness", "values", "depth", "force")
 PLAIN_KERNEL = "Prescott"  # every x86-64 processor has it; a library other than OpenBLAS takes no notice
 
@@ -68,6 +68,7 @@ def _submit(executor: Executor, towards: float, task: Task) -> Future[Answer]:
 
 
 def _spreads(task: Task, answers: list[Answer]) -> Iterator[tuple[tuple[str, str, str], float]]:
+    """Yield method, scene and quantity with the largest relative spread of the answers over the steps."""
     for name, q in answers[0].quantities.items():
         if not q.at:
             place = task.use.label, task.scene, name
@@ -81,7 +82,7 @@ def _spreads(task: Task, answers: list[Answer]) -> Iterator[tuple[tuple[str, str
 def nudged_scene(scene: Scene, towards: float) -> Scene:
     """Return the scene with modulus, thickness and loading one unit in the last place nearer to ``towards``.
 
-    Where that is no scene (a radius beyond the end of a table) the loading stays as it is.
+    The loading stays if the changed one is invalid, such as a radius beyond the end of a table.
     """
     nudge = partial(_nudged, towards)
     nudged = scene.replace(layer=changed(scene.layer, nudge))
@@ -92,7 +93,7 @@ def nudged_scene(scene: Scene, towards: float) -> Scene:
 
 
 def _nudged(towards: float, record: Record, name: str, value: Any) -> Any:
-    """The number one unit in the last place away; a zero means that nothing is pressed, and stays."""
+    """The number changed by one unit in the last place; zero and infinity stay."""
     if name not in NUDGED or isinstance(value, DepthFunction):
         return value
     neighbour = np.where((value == 0.0) | np.isinf(value), value, np.nextafter(value, towards))

@@ -1,1 +1,1 @@
-"""The cases, one file each; Python walks the folder to find them."""
+"""The cases, one file per case; `cases.declare.registry` finds them in this folder."""

@@ -1,7 +1,7 @@
 """What cases share: layers, scenes, methods, reasons, requirements, reference numbers, and the claims that most make.
 
 A requirement is a tolerance that is fixed beforehand. No method sets its own: stated errors are shown with the
-verdict. A method that is too coarse is told so (INCONCLUSIVE), and one that misses it by more than it states disagrees.
+verdict. A method that is too coarse is INCONCLUSIVE; one that misses it by more than its stated error disagrees.
 """
 
 import re
@@ -69,15 +69,15 @@ def paper(
     """Return the case of a module, whose docstring is a title, a question, its source (equations) and the text.
 
     Args:
-        module: name of the module, which is that of the case.
-        text: its docstring.
-        scenes: that are solved.
-        methods: that solve a scene without methods of its own.
-        claims: about the answers.
-        suites: that the case is in.
+        module: Name of the module, which is that of the case.
+        text: Docstring of the module.
+        scenes: Scenes that are solved.
+        methods: Methods that solve each scene without methods of its own.
+        claims: Claims about the answers, and studies.
+        suites: Suites that the case belongs to.
 
     Raises:
-        InvalidInput: if the docstring lacks the question or the source.
+        InvalidInput: If the docstring lacks the question or the source.
     """
     name = module.rpartition(".")[2]
     if (head := HEAD.fullmatch((text or "").strip())) is None:
@@ -104,7 +104,7 @@ def paper(
 def _in_ci(case: str, label: str, scene: str) -> bool:
     """Whether the suite ci solves a scene by a method."""
     lists = (IN_CI.get(case, {}).get(key) for key in ("*", label))
-    return all(any(fnmatchcase(scene, pattern) for pattern in own) for own in lists if own is not None)
+    return all(any(fnmatchcase(scene, pattern) for pattern in names) for names in lists if names is not None)
 
 
 # -- reasons ----------------------------------------------------------------------------------------------------------
@@ -116,13 +116,13 @@ def reasons(case: str) -> dict[str, Why]:
     """Return the reasons of a case (or those that several share) by name.
 
     Raises:
-        InvalidInput: for an entry that leaves something out.
+        InvalidInput: For an entry without one of the fields.
     """
     return {name: _reason(f"{case}.{name}", entry) for name, entry in REASONS[case].items()}
 
 
 def _reason(place: str, entry: Mapping[str, str]) -> Why:
-    """Return an entry, with what the entry that it is like says beside it."""
+    """Return the reason of an entry; missing fields are those of the entry that its ``like`` names."""
     case, _, name = entry.get("like", "").partition(".")
     whole = {**REASONS[case][name], **entry} if name else entry
     try:
@@ -199,25 +199,25 @@ def scene(
     """Return a scene of a case.
 
     Args:
-        name: unique within the case.
-        layer: or stack.
-        indenter: its profile.
-        loading: what is prescribed.
-        effects: in addition to elasticity.
-        steep: whether its strains are beyond small ones; the scene is solved all the same.
-        sampling: what is kept of each answer.
-        methods: that solve it; empty for those of the case.
-        parameters: what sets it apart.
+        name: Name, unique within the case.
+        layer: Layer, stack or graded layer.
+        indenter: Profile of the indenter.
+        loading: Prescribed radii, depths, forces or history.
+        effects: Effects in addition to elasticity.
+        steep: Whether strains may be large; the scene is solved all the same.
+        sampling: Fields recorded from each answer.
+        methods: Methods that solve the scene; empty for those of the case.
+        parameters: Parameters that distinguish the scene.
     """
     problem: AnyScene = Scene(
         layer=layer, indenter=indenter, loading=loading, effects=effects, beyond_small_strains=steep
     )
-    kept = Sampling() if sampling is None else sampling
-    return CaseScene(name=name, parameters=parameters, scene=problem, sampling=kept, methods=methods)
+    sampling = Sampling() if sampling is None else sampling
+    return CaseScene(name=name, parameters=parameters, scene=problem, sampling=sampling, methods=methods)
 
 
 def rings(contact_radius: float, *fractions: float) -> Sampling:
-    """Keep the pressure on rings between fractions of the contact radius [m]."""
+    """Return the sampling of the pressure on rings between fractions of the contact radius [m]."""
     return Sampling(ring_edges=tuple(float(x) for x in contact_radius * np.asarray(fractions)))
 
 
@@ -246,7 +246,7 @@ def half_space_stiffness(scene: AnyScene) -> float:
     return 2 * contact_modulus(scene.layer) * radius(scene)
 
 
-def known(
+def reference_numbers(
     kind: str,
     scenes: Scenes,
     unit: Callable[[AnyScene], Mapping[str, float]],
@@ -255,32 +255,32 @@ def known(
     """Return reference numbers of a kind by scene and quantity.
 
     Args:
-        kind: of ``NUMBERS``.
-        scenes: those without numbers are left out.
-        unit: SI value of one, by quantity, in the order of the numbers.
-        name: of the numbers, by that of the scene.
+        kind: Key of ``NUMBERS``.
+        scenes: Scenes; those without numbers are left out.
+        unit: Function that returns the unit of each number of a scene in SI, by quantity, in the order of the numbers.
+        name: Function that returns the name of the numbers for the name of a scene.
     """
     rows = {s.name: (NUMBERS[kind].get(name(s.name)), unit(s.scene)) for s in scenes}
     return {
-        place: {quantity: number * one for number, (quantity, one) in zip(row, units.items(), strict=False)}
+        place: {quantity: number * size for number, (quantity, size) in zip(row, units.items(), strict=False)}
         for place, (row, units) in rows.items()
         if row
     }
 
 
-def known_stiffness(scenes: Scenes) -> dict[str, dict[str, float]]:
+def reference_stiffness(scenes: Scenes) -> dict[str, dict[str, float]]:
     """Return the reference stiffness k_N [N/m] of flat punches by scene."""
-    return known("stiffness", scenes, lambda scene: {"contact_stiffness": half_space_stiffness(scene)})
+    return reference_numbers("stiffness", scenes, lambda scene: {"contact_stiffness": half_space_stiffness(scene)})
 
 
-# Exact twins of a scene.
+# Changed scenes whose answers follow exactly from those of the original.
 def doubled_modulus(scene: AnyScene) -> AnyScene:
     """Return the scene with twice Young's modulus: at given radii depth stays and force doubles."""
     return scene.replace(layer=scene.layer.replace(youngs_modulus=2 * scene.layer.youngs_modulus))
 
 
 def other_poissons_ratio(scene: AnyScene) -> AnyScene:
-    """Return the scene with nu = 0.1 at the same E*: an unbonded layer must not see the difference."""
+    """Return the scene with nu = 0.1 at the same E*: the answer of an unbonded layer is the same."""
     modulus = contact_modulus(scene.layer) * (1 - 0.1**2)
     return scene.replace(layer=scene.layer.replace(poissons_ratio=0.1, youngs_modulus=modulus))
 
@@ -305,18 +305,18 @@ EVERY = (MDR, FEM, BEM, EQUATION, TABLE)
 
 # -- requirements -----------------------------------------------------------------------------------------------------
 PATH = ("indentation_depth", "normal_force", "contact_stiffness")
-# Finite elements and the integral equation serve as references: six and nine digits. Grids of some hundred cells serve
-# for two or three digits where a layer is as thick as many cells, ..
+# Finite elements and the integral equation are references: six and nine digits. Grids of some hundred cells have two or
+# three digits where a layer is as thick as many cells, ..
 BY_METHOD: dict[str, dict[str, float]] = {
     "fem": {**dict.fromkeys(PATH, 3e-6), "contact_radius": 2e-5, "pressure": 2e-4},
     "integral_equation": dict.fromkeys((*PATH, "contact_radius"), 1e-9),
     "bem": dict.fromkeys((*PATH, "contact_radius"), 2e-3),
     "mdr_table": dict(zip(PATH, (2.5e-3, 6e-3, 3e-4), strict=True)),
 }
-# .. for less where a cell is a sixth (a/h = 10) or a third (a/h = 20) of the thickness, ..
+# .. fewer where a cell is a sixth (a/h = 10) or a third (a/h = 20) of the thickness, ..
 COARSE = {"mdr_table": dict(zip(PATH, (1e-2, 5e-2, 5e-3), strict=True))}
 VERY_COARSE = {"mdr_table": dict(zip(PATH, (3e-2, 1e-1, 1.5e-2), strict=True))}
-# .. and for the order of magnitude of the load where it is half of it (a/h = 40).
+# .. and the order of magnitude of the load where a cell is half of the thickness (a/h = 40).
 COARSEST = {
     "bem": dict(zip(PATH, (1.5e-2, 1.2e-2, 1.5e-3), strict=True)),
     "mdr_table": dict(zip(PATH, (4e-2, 1.8e-1, 2e-2), strict=True)),
@@ -336,15 +336,15 @@ def claim(kind: type[C], name: str, quantity: str, scenes: Scenes, why: Why, /, 
     """Return a claim.
 
     Args:
-        kind: of the claim.
-        name: of the claim.
-        quantity: that is compared.
-        scenes: on which it is judged; empty for all, or for those that have an expected number.
-        why: origin of the expected number and reason of the tolerance.
-        words: other fields of the kind. A word that is no field is the label of a method, its value the tolerance.
+        kind: Class of the claim.
+        name: Name of the claim.
+        quantity: Quantity that is compared.
+        scenes: Scenes on which it is judged; empty for all, or for those that have an expected number.
+        why: Origin of the expected number and reason of the tolerance.
+        words: Other fields of the class. Any other name is the label of a method, and its value the tolerance.
     """
-    own = {field.name for field in fields(kind)}
-    tolerances = {label: words.pop(label) for label in tuple(words) if label not in own}
+    field_names = {field.name for field in fields(kind)}
+    tolerances = {label: words.pop(label) for label in tuple(words) if label not in field_names}
     return kind(name=name, quantity=quantity, scenes=names_of(scenes), why=why, tolerances=tolerances, **words)
 
 
@@ -394,27 +394,27 @@ def agreements(
     suffix: str = "",
     **words: Any,
 ) -> Iterator[Agree]:
-    """Yield the agreement of MDR with each method of ``tolerances`` (or those of its quantities) in ``quantities``.
+    """Yield the agreement of ``fast`` with each method of ``tolerances`` in each of the quantities.
 
     Args:
-        scenes: what they answer.
-        tolerances: by label, or by label and quantity.
-        quantities: what is compared.
-        why: in place of the usual one of the method, which holds for ``PATH``.
-        derived_from: how these tolerances were chosen, where that is not what the reason says.
-        fast: label of the method under test.
-        name: of the claims, with {} for the quantity.
-        suffix: of the usual names of the claims.
-        words: other fields of `Agree`.
+        scenes: Scenes on which the methods are compared.
+        tolerances: Tolerances by label, or by label and quantity.
+        quantities: Quantities that are compared.
+        why: Reason in place of the usual one of the method, which holds for ``PATH``.
+        derived_from: Choice of the tolerances, if it is not that of the reason.
+        fast: Label of the method under test.
+        name: Name of the claims, with {} for the quantity.
+        suffix: Suffix of the usual names of the claims.
+        words: Other fields of `Agree`.
     """
     for label, tolerance in tolerances.items():
         whole = why or SHARED[label]
         whole = replace(whole, tolerance=derived_from) if derived_from else whole
         for quantity in tuple(quantities):
-            own = (name or f"{{}}: MDR and {label}{suffix}").format(quantity.replace("_", " "))
-            held = tolerance[quantity] if isinstance(tolerance, Mapping) else tolerance
-            more: Words = {"fast": fast, "reference": label, "tolerance": held, **words}
-            yield claim(Agree, own, quantity, scenes, whole, **more)
+            claim_name = (name or f"{{}}: MDR and {label}{suffix}").format(quantity.replace("_", " "))
+            permitted = tolerance[quantity] if isinstance(tolerance, Mapping) else tolerance
+            more: Words = {"fast": fast, "reference": label, "tolerance": permitted, **words}
+            yield claim(Agree, claim_name, quantity, scenes, whole, **more)
 
 
 def pressure_agreements(scenes: Scenes, norms: Mapping[str, Norm], limit: str) -> Iterator[Agree]:
@@ -429,12 +429,12 @@ def pressure_agreements(scenes: Scenes, norms: Mapping[str, Norm], limit: str) -
 
 def carried_force(name: str, scenes: Scenes, method: str) -> Zero:
     """Return the claim that sampled pressures add up to the force; the rings must reach the contact's edge."""
-    words: Words = {"tolerance": 1e-3, "methods": (method,), "derive": lacking_force}
+    words: Words = {"tolerance": 1e-3, "methods": (method,), "derive": force_residual}
     return zero(name, "pressure", scenes, SHARED["equilibrium"], **words)
 
 
-def lacking_force(scene: CaseScene, answer: Answer) -> list[float]:
-    """Return what the loads of rings out to the contact's edge lack of the normal force of the last step."""
+def force_residual(scene: CaseScene, answer: Answer) -> list[float]:
+    """Return (sum of ring loads)/F_N - 1 of the last step."""
     load = float(np.sum(scene.sampling.rings.loads(np.array(answer.quantities["pressure"].values))))
     return [load / answer.quantities["normal_force"].values[-1] - 1]
 
@@ -457,7 +457,7 @@ def chebyshev_radii(lowest: float, highest: float, count: int) -> FloatArray:
 
 
 def energy_balance(scenes: Scenes, time_steps: int, **tolerances: Any) -> Zero:
-    """Return the claim that the energies of an impact add up, by finite elements in so many ``time_steps``."""
+    """Return the claim that the energies of an impact add up; finite elements take ``time_steps`` steps."""
     steps = f"finite elements: 1e-5 by {time_steps} time steps, ten times"
     why = replace(SHARED["energy balance"], tolerance=f"MDR: tolerance of its time integration; {steps}")
     return zero("energy balance", "energy_residual", scenes, why, tolerance=1e-7, **tolerances)

@@ -8,16 +8,16 @@ from cases.declare.methods import MethodUse
 from cases.library._common import Scenes, Words, names_of, reasons, table
 
 TABLE = table("refinements.toml")
-# A finest answer of the fast method itself, where nothing independent is as exact as its coarser ones.
+# Reference by the finest MDR, where no independent method is as accurate as the coarser ones.
 FINEST_MDR = MethodUse(label="mdr, 32 nodes", method="mdr", settings={"nodes": 32, "accuracy": 1e-12})
-# Errors against the direct equation, or MDR; late ones in the suite nightly alone.
+# Errors against the direct equation, or MDR; "LATE" claims are judged in the suite nightly alone.
 TO_EQUATION: Words = {"against": "integral_equation"}
 LATE: Words = TO_EQUATION | {"nightly": True}
 TO_MDR_LATE: Words = {"against": "mdr", "nightly": True}
 
 
 def _many(what: str, number: int, **fixed: int) -> MethodUse:
-    """Tables with so many rows or columns that reading between them costs nothing."""
+    """MDR on tables with ``number`` rows or columns, whose interpolation error is negligible."""
     return MethodUse(label=f"mdr_table, {number} {what}", method="mdr_table", settings=fixed)
 
 
@@ -27,32 +27,34 @@ MANY_COLUMNS = _many("columns", 1200, radii=1200, cells=64, ratios=61)
 
 def refinement(name: str) -> Words:
     """Return a refinement of the table as fields of `Order`."""
-    own = dict(TABLE[name])
-    refined, case_and_reason = own.pop("name"), own.pop("why").rpartition(".")
-    fixed, setting, values = own.pop("fixed", {}), own.pop("setting"), own.pop("values")
+    entry = dict(TABLE[name])
+    refined, case_and_reason = entry.pop("name"), entry.pop("why").rpartition(".")
+    fixed, setting, values = entry.pop("fixed", {}), entry.pop("setting"), entry.pop("values")
     ladder = tuple(
-        tuple({**fixed, setting: one} for one in value) if isinstance(value, list) else {**fixed, setting: value}
+        tuple({**fixed, setting: of_grid} for of_grid in value)
+        if isinstance(value, list)
+        else {**fixed, setting: value}
         for value in values
     )
     why = reasons(case_and_reason[0] or "convergence")[case_and_reason[2]]
-    return {"mesh_family": refined, "ladder": ladder, "why": why, **own}
+    return {"mesh_family": refined, "ladder": ladder, "why": why, **entry}
 
 
 def studies(
     scenes: Scenes, refined: str, orders: Mapping[str, float] | Iterable[str], *, name: str = "", **words: Any
 ) -> Iterator[Order]:
-    """Yield the claim that quantities converge as they should.
+    """Yield the claims that quantities converge with their formal orders.
 
     Args:
-        scenes: on which.
-        refined: name of the refinement: which method, and how.
-        orders: formal order by quantity; quantities alone where convergence is exponential.
-        name: of the claim, where it is another than method, refinement and quantity.
-        words: other fields of `Order`, such as ``against`` and ``nightly``.
+        scenes: Scenes that are solved on each grid.
+        refined: Name of the refinement in ``refinements.toml``.
+        orders: Formal order by quantity; quantities alone where convergence is exponential.
+        name: Name of the claim in place of method, refinement and quantity.
+        words: Other fields of `Order`, such as ``against`` and ``nightly``.
     """
     formal = orders if isinstance(orders, Mapping) else dict.fromkeys(orders)
-    own = refinement(refined)
+    settings = refinement(refined)
     for quantity, order in formal.items():
-        usual = f"{own['method']}, {own['mesh_family']}: {quantity.replace('_', ' ')}"
-        more = {"scenes": names_of(scenes), "formal_order": order, "tolerance": 0.2, **own, **words}
+        usual = f"{settings['method']}, {settings['mesh_family']}: {quantity.replace('_', ' ')}"
+        more = {"scenes": names_of(scenes), "formal_order": order, "tolerance": 0.2, **settings, **words}
         yield Order(name=name or usual, quantity=quantity, **more)

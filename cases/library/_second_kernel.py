@@ -1,8 +1,8 @@
-"""The compliance of layered bodies once more, by Airy's stress functions in one global linear system.
+"""A second kernel of stacks and graded layers, by Airy's stress functions in one global linear system.
 
-For a wavenumber k the stress function of a layer is a sum of four exponentials in depth, with unknown amplitudes; what
-meets at faces and interfaces gives as many equations. Nothing of it is shared with `bem.kernels`, where layers are
-added one by one. With q = k z and stresses sigma_zz = -psi, sigma_xz = psi', displacements times 2 G k are
+For a wavenumber k the stress function of a layer is a sum of four exponentials in depth, with unknown amplitudes. The
+conditions at surface, interfaces and base give as many equations. No code is shared with `bem.kernels`, where layers
+are added one by one. With q = k z and stresses sigma_zz = -psi, sigma_xz = psi', displacements times 2 G k are
 
     u = (1 - nu) psi'' + nu psi,    w = (1 - nu) psi''' - (2 - nu) psi'
 
@@ -24,7 +24,7 @@ SHEAR, NORMAL, SIDEWAYS, DOWN = range(4)
 def surface_compliance(layer: ElasticLayer, wavenumber: FloatArray) -> FloatArray:
     """Displacement of the surface by a unit pressure times k [1/Pa], at wavenumbers k [1/m] of shape (n,)."""
     if isinstance(layer, LayerStack):
-        sheets = [_uniform(one, wavenumber) for one in layer.sublayers]
+        sheets = [_uniform(sublayer, wavenumber) for sublayer in layer.sublayers]
         slips = [face == "unbonded" for face in layer.interfaces]
     elif isinstance(layer, GradedLayer):
         sheets, slips = [_exponential(layer, wavenumber)], []
@@ -39,21 +39,24 @@ def surface_compliance(layer: ElasticLayer, wavenumber: FloatArray) -> FloatArra
 
 
 def _solved(sheets: list[tuple[FloatArray, FloatArray]], slips: list[bool], base: object) -> FloatArray:
-    """k w at the surface, from the equations of all faces."""
+    """k w at the surface by a unit pressure [1/Pa], shape (n,), from the equations of all faces.
+
+    ``sheets`` has the states at the top and the bottom of each layer, ``slips`` whether each interface is unbonded.
+    """
     size = sum(top.shape[-1] for top, _ in sheets)
     rows, start = [_placed(sheets[0][0][:, [SHEAR, NORMAL]], 0, size)], 0
     for (upper, lower), slip in zip(pairwise(sheets), slips, strict=True):
         above, width = upper[1], upper[1].shape[-1]
-        own, other = _placed(above, start, size), _placed(lower[0], start + width, size)
-        jump = own - other
-        free = [jump[:, [NORMAL, DOWN]], own[:, [SHEAR]], other[:, [SHEAR]]]
+        upper_state, lower_state = _placed(above, start, size), _placed(lower[0], start + width, size)
+        jump = upper_state - lower_state
+        free = [jump[:, [NORMAL, DOWN]], upper_state[:, [SHEAR]], lower_state[:, [SHEAR]]]
         rows += free if slip else [jump]
         start += width
     if not isinstance(base, ElasticBase):
-        held = [SHEAR if base == "unbonded" else SIDEWAYS, DOWN]
-        rows.append(_placed(sheets[-1][1][:, held], start, size))
+        vanishing = [SHEAR if base == "unbonded" else SIDEWAYS, DOWN]
+        rows.append(_placed(sheets[-1][1][:, vanishing], start, size))
     matrix = np.concatenate(rows, axis=1)
-    # Rows differ by moduli, columns by how far exponentials have fallen.
+    # Rows are scaled, since moduli and displacements differ by orders of magnitude.
     scale = np.abs(matrix).max(axis=2, keepdims=True)
     load = np.zeros((len(matrix), size, 1), dtype=matrix.dtype)
     load[:, 1, 0] = -1 / scale[:, 1, 0]
@@ -72,7 +75,7 @@ def _placed(rows: FloatArray, start: int, size: int) -> FloatArray:
 def _uniform(layer: Sublayer | ElasticBase, k: FloatArray) -> tuple[FloatArray, FloatArray]:
     """States at the top and the bottom of the four exponentials of a uniform layer, shape (n, 4, 4) each.
 
-    The first two fall from the top, the others from the bottom; of a half-space the first two alone count.
+    The first two decay from the top, the others from the bottom; a half-space has the first two alone.
     """
     nu, G = layer.poissons_ratio, layer.youngs_modulus / (2 * (1 + layer.poissons_ratio))
     depth = k * getattr(layer, "thickness", 0.0)
@@ -93,7 +96,10 @@ def _uniform(layer: Sublayer | ElasticBase, k: FloatArray) -> tuple[FloatArray, 
 
 
 def _exponential(layer: GradedLayer, k: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """The same of a layer with exponential modulus and constant Poisson's ratio."""
+    """States of the four solutions at the top and the bottom of a layer with exponential modulus and constant nu.
+
+    Shapes are (n, 4, 4); the first two solutions decay from the top, the others from the bottom.
+    """
     modulus, nu = layer.youngs_modulus, layer.poissons_ratio
     if not isinstance(modulus, ExponentialDepth) or not isinstance(nu, float):
         raise InvalidInput("youngs_modulus: this kernel is that of an exponential modulus and a constant nu")

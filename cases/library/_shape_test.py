@@ -1,7 +1,7 @@
-"""The shape test: the contact's pressure, applied to the layer by a second kernel, presses in the indenter's shape.
+"""The shape test: the contact pressure displaces the surface by the shape of the indenter, by a second kernel.
 
-Methods that share a kernel agree on a wrong one. The sampled pressure alone enters here: its transform, and the
-displacement it causes, are computed from `_second_kernel`. Inside the contact that must be delta - f(r).
+Methods that share a kernel agree also if it is wrong. Here the sampled pressure alone is taken from an answer. The
+displacement that it causes follows from `_second_kernel`, and must be delta - f(r) inside the contact.
 """
 
 from collections.abc import Callable
@@ -24,20 +24,20 @@ Compliance = Callable[[ElasticLayer, FloatArray], FloatArray]
 # Shares of the contact radius where the displacement is compared.
 COMPARED = np.array([0.0, 0.3, 0.7, 0.95])
 NODES = 20
-# Wavenumbers times the thickness of the surface material beyond which the half-space answers, to exp(-2 x 24).
+# Wavenumber times the thickness of the surface material beyond which the kernel is the half-space's, to exp(-2 x 24).
 WAVES = 24.0
 
 
 def unlike_shape(
     scene: CaseScene, answer: Answer, compliance: Compliance = surface_compliance, radial_waves: float = 0.0
 ) -> list[float]:
-    """Return how far the displacement by the sampled pressure is from delta - f(r), relative to delta.
+    """Return max |w(r) - (delta - f(r))|/delta with the displacement w by the sampled pressure.
 
     Args:
-        scene: whose pressure is sampled at the last step.
-        answer: with that pressure.
-        compliance: the second kernel.
-        radial_waves: the least wavenumber times the contact radius up to which kernels that fall like 1/k are taken.
+        scene: Scene whose pressure is sampled at the last step.
+        answer: Answer with this pressure.
+        compliance: Second kernel.
+        radial_waves: Least k a up to which the integral runs, for kernels that differ from the half-space's like 1/k.
     """
     indenter, layer, rings = scene.scene.indenter, scene.scene.layer, scene.sampling.rings
     pressure = np.array(answer.quantities["pressure"].values)
@@ -54,9 +54,9 @@ class Pressed:
     """A sampled pressure.
 
     Attributes:
-        rings: their nodes reach to the contact's edge.
+        rings: Rings whose nodes reach to the edge of the contact.
         pressure: p at the nodes [Pa].
-        singular: whether p is infinite at the edge, else it vanishes there like a root.
+        singular: Whether p is infinite at the edge; otherwise it vanishes there like a root.
     """
 
     rings: RingQuadrature
@@ -81,25 +81,26 @@ class Pressed:
     def displacement(
         self, layer: ElasticLayer, compliance: Compliance, radius: FloatArray, largest: float, *, tapered: bool = False
     ) -> FloatArray:
-        """w [m] at radii inside: as on the half-space, and what the layer answers otherwise up to k = largest [1/m].
+        """w [m] at radii inside the contact: the half-space's, plus the integral of the kernels' difference over k.
 
-        An answer that falls like 1/k swings about its limit with the last wavenumber, by cos(k a): tapered over the
-        upper half, so that the swings cancel, it is the limit.
+        The integral ends at k = ``largest`` [1/m]. A difference that falls like 1/k makes it oscillate like cos(k a)
+        with this end; tapering the upper half of the wavenumbers cancels the oscillation.
         """
         x, w = leggauss(NODES)
         sine = np.sin(np.pi / 4 * (x + 1))
         k, dk = self._wavenumbers(largest)
-        softer = compliance(layer, k) - 2 / layer.contact_modulus
+        difference = compliance(layer, k) - 2 / layer.contact_modulus
         if tapered:
-            softer *= np.cos(np.pi / 2 * np.maximum(2 * k / largest - 1, 0.0)) ** 2
-        whole = [np.pi / 4 * w @ self._inner(r * sine) for r in radius]
+            difference *= np.cos(np.pi / 2 * np.maximum(2 * k / largest - 1, 0.0)) ** 2
+        half_space = [np.pi / 4 * w @ self._inner(r * sine) for r in radius]
         t, dt = self._positions(float(k[-1]))
         transform = np.cos(np.multiply.outer(k, t)) @ (dt * self._inner(t))
-        answer = j0(np.multiply.outer(radius, k)) @ (dk * softer * transform)
+        correction = j0(np.multiply.outer(radius, k)) @ (dk * difference * transform)
         # p^ = (2/pi) times the transform of the density, and 2/E* that of the half-space.
-        return np.asarray(2 / np.pi * (2 / layer.contact_modulus * np.array(whole) + answer))
+        return np.asarray(2 / np.pi * (2 / layer.contact_modulus * np.array(half_space) + correction))
 
     def _inner(self, t: FloatArray) -> FloatArray:
+        """The density at t <= a, with t = a moved inside by rounding."""
         return self.density(np.minimum(t, self.rings.edges[-1] * (1 - 1e-15)))
 
     def _smooth(self, ring: int, r: FloatArray) -> FloatArray:
@@ -118,7 +119,7 @@ class Pressed:
         return gauss_panels(ends, NODES)
 
     def _wavenumbers(self, largest: float) -> tuple[FloatArray, FloatArray]:
-        """Gauss nodes and weights on panels that double from small ones, up to what resolves J0(k r) cos(k t)."""
+        """Gauss nodes and weights in k on panels whose width doubles up to that which resolves J0(k r) cos(k t)."""
         widest = 6 / self.rings.edges[-1]
         doubling = min(widest, largest) * 2.0 ** np.arange(-16, 1)
         ends = np.concatenate([[0.0], doubling, np.arange(widest * 2, largest, widest), [largest]])

@@ -1,4 +1,4 @@
-"""What the cases of layered bodies share: stacks from numbers, indenters, scenes, and claims that all of them make."""
+"""Stacks, indenters, scenes and claims that the cases of stacks and graded layers share."""
 
 import math
 from collections.abc import Callable, Iterator, Mapping
@@ -26,7 +26,7 @@ from contact.scene.layer import Interface, Support
 
 WHY = c.reasons("stacks")
 METHODS = (c.MDR, c.EQUATION, c.FEM, c.BEM)
-# What two methods must agree within, whatever they state.
+# Tolerance of MDR against each other method, a requirement.
 REQUIRED = {"integral_equation": 1e-10, "fem": 1e-5, "bem": 1e-3}
 RADIUS_OF_CURVATURE = 1e-2  # m
 SLOPE = 0.05
@@ -115,6 +115,6 @@ def stiffness_limit(
     largest: float,
     parameter: Callable[[c.AnyScene], float] = c.thinness,
 ) -> Approach:
-    """The stiffness of both fast methods approaches a limit with first order in a parameter, in the suite nightly."""
+    """Return the claim that the stiffness by both fast methods approaches a limit with first order, nightly."""
     more: c.Words = {"largest": largest, "parameter": parameter, "methods": FAST, "nightly": True}
     return c.approach(name, "contact_stiffness", scenes, limit, WHY[why], **more)

@@ -69,8 +69,8 @@ THIN = tuple(unequal(ratio) for ratio in (75.0, 150.0))
 
 def one_body_on_its_plane(scene: Scene) -> Scene:
     """Return one coated body pressed by a rigid plane: the full modulus, the body's own radius."""
-    own = c.layer_of(POISSONS_RATIO, scene.layer.support)
-    return scene.replace(layer=own, indenter=Paraboloid(radius_of_curvature=RADIUS))
+    coating = c.layer_of(POISSONS_RATIO, scene.layer.support)
+    return scene.replace(layer=coating, indenter=Paraboloid(radius_of_curvature=RADIUS))
 
 
 def beds_in_series(scene: Scene) -> float:

@@ -28,7 +28,7 @@ from contact.records.validation import FloatArray
 # Modulus of the film over that of the substrate.
 CONTRASTS = (0.01, 0.1, 0.5, 2.0, 10.0, 100.0)
 RATIOS = (0.1, 1.0, 5.0)
-# Flat ends do not pull on these.
+# Contrasts at which flat ends of indenters need no tension.
 SOFT = (0.1, 0.5, 2.0)
 
 
@@ -48,7 +48,7 @@ FILMS = tuple(film(contrast, ratio) for contrast in CONTRASTS for ratio in RATIO
 FLAT = tuple(film(contrast, 1.0, indenter) for contrast in SOFT for indenter in s.INDENTERS[1:])
 NO_FILM = tuple(film(1.0, ratio) for ratio in RATIOS)
 WIDE = tuple(film(2.0, ratio) for ratio in (10.0, 20.0))
-# A stiffness that moves by a tenth of a per cent when the depth moves by ten is less than grids tell radii by.
+# Grids do not solve the last one: its stiffness changes by 0.1 % when the depth changes by 10 %, less than their error.
 PLATES = (plate(1e3, *s.METHODS), plate(1e4, *s.METHODS[:3]))
 
 
@@ -58,7 +58,7 @@ def closed_form(layer: ElasticLayer, wavenumber: FloatArray) -> FloatArray:
     top, support = layer.surface, layer.support
     assert isinstance(support, ElasticBase)
     (G, kappa), (G_base, kappa_base) = (
-        (one.youngs_modulus / (2 * (1 + one.poissons_ratio)), 3 - 4 * one.poissons_ratio) for one in (top, support)
+        (part.youngs_modulus / (2 * (1 + part.poissons_ratio)), 3 - 4 * part.poissons_ratio) for part in (top, support)
     )
     m, q = G / G_base, wavenumber * top.thickness
     first, second = 1 - (1 + kappa) / (1 + m * kappa_base), (m - 1) / (m + kappa)

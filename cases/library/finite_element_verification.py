@@ -3,8 +3,8 @@
 Question: Do the finite elements solve their own equations, at formal orders and at every Poisson's ratio?
 Source: Taylor, Simo, Zienkiewicz, Chan 1986.
 
-The finite elements verified as a program: manufactured solutions, inf-sup constants, patch test, locking. Before finite
-elements judge anybody else they are judged themselves, by problems whose answers need no other method.
+The finite elements verified as a program: manufactured solutions, inf-sup constants, patch test, locking. Finite
+elements are a reference for other methods; here they are tested by problems whose solutions need no other method.
 
 Manufactured solutions: u = (-r^3 cos z, 4 r^2 sin z), which has no divergence, with p = cos r cos z at nu = 1/2; at
 nu = 0.3 the gradient of (r^4/4) sin z is added, and p is minus K times the divergence. The body force that belongs to
@@ -12,13 +12,13 @@ them acts on irregular meshes of the unit square, refined by halving. Degree k m
 and pressures of order k in the L2 norm, by mixed pairs at both nu, by displacements alone at nu = 0.3.
 
 Inf-sup constant: how well displacements control the pressure, on uniform meshes and on one graded towards the edge of a
-contact. A stable pair keeps it away from zero as meshes refine; two unstable pairs are included and must be
-caught. Compressibility only adds to the constant, so that nu = 1/2 is the worst case.
+contact. A stable pair keeps it away from zero as meshes refine; two unstable pairs are included and must be detected.
+Compressibility only adds to the constant, so that nu = 1/2 is the worst case.
 
 Patch test: a constant strain on a graded mesh leaves every inner equation satisfied but for rounding, at every nu.
 
 Locking: the stiffness of a flat punch at a/h = 1 on one mesh as nu goes to 1/2, against the direct integral equation.
-Mixed pairs keep their error; displacements alone lose it, and are seen to.
+The error of mixed pairs must stay the same; that of displacements alone must grow.
 """
 
 import time
@@ -63,7 +63,7 @@ QUANTITIES = ("displacement", "pressure")
 GRADED, AROUND_A_PUNCH = (2.0, ((1.0, 0.02),), 0.5), (11.0, ((1.0, 1e-5),), 0.5)
 section = cache(partial(section_mesh, uniform(0.5)))
 # Measured values by name.
-Found = Mapping[str, tuple[float, ...]]
+Measured = Mapping[str, tuple[float, ...]]
 
 
 def punch(poissons_ratio: float) -> Scene:
@@ -117,30 +117,30 @@ def ratios_of_patches(pair: str) -> tuple[float, ...]:
 
 
 def locking(pair: str) -> dict[str, list[float]]:
-    """Relative errors of the punch's stiffness as nu goes to 1/2; a displacement formulation ends before it."""
+    """Relative errors of the punch's stiffness as nu goes to 1/2; displacements alone stop before 1/2."""
     ratios = [0.5 - gap for gap in COMPRESSIBILITIES if gap >= 1e-5 or PAIRS[pair].is_mixed]
     return {"stiffness error": [abs(punch_stiffness(pair, nu) / exact_stiffness(nu) - 1) for nu in ratios]}
 
 
 def fields(kind: str, place: tuple[Any, ...], method: Method, scene: Scene) -> dict[str, Any]:
-    """Measures a property (key of `MEASURED`) of a pair, and returns its values by name as those of an answer."""
-    found = MEASURED[kind][0](*place)
-    return {"quantities": {name: Values(unit="1", scale=1.0, values=tuple(v)) for name, v in found.items()}}
+    """Measures a property, a key of `MEASURED`, and returns its values as the quantities of an `Answer`."""
+    measured = MEASURED[kind][0](*place)
+    return {"quantities": {name: Values(unit="1", scale=1.0, values=tuple(v)) for name, v in measured.items()}}
 
 
 def verdict(claim: str, scene: str, quantity: str, why: str, judged: Any, **more: Any) -> Verdict:
-    """The verdict of a judgement about finite elements, against mathematics."""
+    """The verdict of a judgement about finite elements."""
     place: c.Words = {"case": CASE.name, "claim": claim, "scene": scene, "quantity": quantity, "methods": ("fem",)}
     return Verdict(**{"kind": Kind.INVARIANT, "why": WHY[why], **place, **vars(judged), **more})
 
 
-def convergences(found: Found, pair: str, nu: float) -> Iterator[Convergence]:
+def convergences(measured: Measured, pair: str, nu: float) -> Iterator[Convergence]:
     """The studies of displacement and pressure of a manufactured problem."""
     degree, cells = PAIRS[pair].degree, CELLS[PAIRS[pair].degree]
     lengths = [cells[-1] / number for number in cells]
     for quantity, order in zip(QUANTITIES, (degree + 1, degree), strict=True):
-        errors = found[quantity]
-        rows = zip(lengths, errors, found["seconds"], found["unknowns"], strict=True)
+        errors = measured[quantity]
+        rows = zip(lengths, errors, measured["seconds"], measured["unknowns"], strict=True)
         yield Convergence(
             case=CASE.name,
             scene=f"{pair}, nu={nu:g}",
@@ -160,18 +160,18 @@ def convergences(found: Found, pair: str, nu: float) -> Iterator[Convergence]:
         )
 
 
-def order_claims(found: Found, pair: str, nu: float) -> Iterator[Verdict]:
-    """Observed orders are in the band of the formal ones."""
-    for study in convergences(found, pair, nu):
+def order_claims(measured: Measured, pair: str, nu: float) -> Iterator[Verdict]:
+    """Judge that observed orders are in the band of the formal ones."""
+    for study in convergences(measured, pair, nu):
         name = f"order of the {study.quantity.removeprefix('L2 error of the ')}"
         judged = judge_order(study.observed_order, study.formal_order or 0.0, study.kind)
         more: c.Words = {"kind": Kind.ORDER, "expected": study.formal_order, "tolerance": 0.2}
         yield verdict(name, study.scene, study.quantity, "order", judged, **more)
 
 
-def inf_sup_claims(found: Found, pair: str) -> Iterator[Verdict]:
-    """A stable pair keeps its constant; that of an unstable pair is seen to vanish or to fall with the mesh."""
-    constants = found["inf-sup constant"]
+def inf_sup_claims(measured: Measured, pair: str) -> Iterator[Verdict]:
+    """Judge that the constant of a stable pair is bounded below, and that of an unstable pair vanishes or falls."""
+    constants = measured["inf-sup constant"]
     uniform_ones, stable = constants[:-1], PAIRS[pair].inf_sup_stable
     shown = ", ".join(f"{constant:.3f}" for constant in uniform_ones)
     words = f"inf-sup constants {shown} on refined meshes, {constants[-1]:.3f} graded"
@@ -182,16 +182,16 @@ def inf_sup_claims(found: Found, pair: str) -> Iterator[Verdict]:
     yield verdict(claim, pair, "inf-sup constant", "inf-sup", decided(share < 1, share, share, words), tolerance=1.0)
 
 
-def patch_claims(found: Found, pair: str) -> Iterator[Verdict]:
-    """A constant strain is in equilibrium."""
-    for nu, defect in zip(ratios_of_patches(pair), found["patch_defect"], strict=True):
+def patch_claims(measured: Measured, pair: str) -> Iterator[Verdict]:
+    """Judge that a constant strain is in equilibrium."""
+    for nu, defect in zip(ratios_of_patches(pair), measured["patch_defect"], strict=True):
         judged, more = judge_residual(defect, tolerance=LARGEST_DEFECT), {"expected": 0.0, "tolerance": LARGEST_DEFECT}
         yield verdict("patch test", f"{pair}, nu={nu:g}", "patch_defect", "patch", judged, **more)
 
 
-def locking_claims(found: Found, pair: str) -> Iterator[Verdict]:
-    """Mixed pairs are at most three times less exact than at nu = 0.3; displacements lose a digit at least."""
-    errors = found["stiffness error"]
+def locking_claims(measured: Measured, pair: str) -> Iterator[Verdict]:
+    """Judge the growth of the error from nu = 0.3 on: at most threefold by mixed pairs, at least tenfold by others."""
+    errors = measured["stiffness error"]
     growth = max(errors) / errors[0]
     words = f"the largest error on one mesh is {growth:.2g} times that at nu = 0.3"
     if PAIRS[pair].is_mixed:
@@ -202,7 +202,7 @@ def locking_claims(found: Found, pair: str) -> Iterator[Verdict]:
     yield verdict(claim, pair, "contact_stiffness", "locking", judged, tolerance=tolerance)
 
 
-# By what is measured: what computes it, what judges it, and the pairs (and Poisson's ratios) it is measured for.
+# By property: the function that measures it, the function that judges it, and the pairs (and Poisson's ratios).
 MEASURED: Mapping[str, tuple[Callable[..., Any], Callable[..., Iterator[Verdict]], tuple[tuple[Any, ...], ...]]] = {
     "manufactured solution": (
         manufactured,
@@ -217,7 +217,7 @@ MEASURED: Mapping[str, tuple[Callable[..., Any], Callable[..., Iterator[Verdict]
 
 @dataclass(frozen=True, kw_only=True)
 class Verified(Study):
-    """The program solves its equations: all that is measured of it, and the verdicts."""
+    """Study of the finite element program alone: its measured properties, and their verdicts."""
 
     def tasks(self, case: Case) -> Iterator[Task]:
         """Yield one task per kind of measurement, pair and Poisson's ratio."""
@@ -227,8 +227,8 @@ class Verified(Study):
                 task = Task(case=case.name, scene=name, variant=kind, use=case.methods[0], problem=punch(nu))
                 yield replace(task, measure=partial(fields, kind, place))
 
-    def _found(self, case: Case, answers: Table) -> Iterator[tuple[str, tuple[Any, ...], Found]]:
-        """What was measured, where, and its values."""
+    def _measured(self, case: Case, answers: Table) -> Iterator[tuple[str, tuple[Any, ...], Measured]]:
+        """Yield each measured property, its pair (and Poisson's ratio), and the values by name."""
         for task in self.tasks(case):
             answer = answers.get(task.identity)
             if answer is not None and answer.solved and isinstance(task.measure, partial):
@@ -236,14 +236,14 @@ class Verified(Study):
 
     def judge(self, case: Case, answers: Table) -> Iterator[Verdict]:
         """Judge orders, constants, defects and locking."""
-        for kind, place, found in self._found(case, answers):
-            yield from MEASURED[kind][1](found, *place)
+        for kind, place, measured in self._measured(case, answers):
+            yield from MEASURED[kind][1](measured, *place)
 
     def records(self, case: Case, answers: Table) -> Iterator[Convergence]:
         """Yield two studies, of displacement and pressure, for each pair and Poisson's ratio."""
-        for kind, place, found in self._found(case, answers):
+        for kind, place, measured in self._measured(case, answers):
             if kind == "manufactured solution":
-                yield from convergences(found, *place)
+                yield from convergences(measured, *place)
 
 
 CASE = c.paper(__name__, __doc__, (), (c.FEM,), (Verified(name="the program solves its equations"),))

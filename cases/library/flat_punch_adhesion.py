@@ -95,11 +95,11 @@ CLAIMS = (
     ),
     c.equal("force of abrupt detachment", FORCE, abrupt_force, ABRUPT, WHY["griffith"], tolerance=1e-6, **LOOSER),
     *c.agreements(COMPARED, TO_A_THOUSANDTH, PULL_OFF[:2], derived_from=THOUSANDTH),
-    # Where the branch turns, the depth of a table's springs is known to their root only: it is not compared.
+    # At the turning point the error of a table's depth is the root of that of its springs: it is not compared.
     *c.agreements(COMPARED, {"mdr_table": 5e-4}, (FORCE,), derived_from="a requirement: 5e-4 of the force"),
     *c.agreements(FURTHER, TO_A_THOUSANDTH, PULL_OFF[:2], derived_from=THOUSANDTH, suffix=", Figs. 8 and 9"),
     *r.studies(BEYOND_MAXIMUM[:1], "nodes", PULL_OFF, against=r.FINEST_MDR),
-    # Beyond the maximum the contact lets go at a fifth of the punch's radius, which is 11 cells of 96: too few to
+    # Beyond the maximum contact is lost at a fifth of the punch's radius, which is 11 cells of 96: too few to
     # show an order. Abrupt detachment happens at the radius of the punch.
     *r.studies(ABRUPT, "points under a punch", dict.fromkeys(PULL_OFF[:2], 2.5), against=r.FINEST_MDR, nightly=True),
     Ablation(scene=BEYOND_MAXIMUM[0].name, slow=("fem", "bem")),

@@ -31,6 +31,7 @@ RADIUS = 1e-3  # m
 LAYER_DAMPING = 0.3
 DAMPING_RATIOS = (0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 0.9, 1.0, 1.5, 2.0, 3.0)
 QUICK = (0.1, 1.0)
+# Support, a/h and the name of the reference stiffness.
 PLACES: tuple[tuple[Support, float, str], ...] = (
     ("bonded", 1.0, "bonded nu=0.5 a/h=1"),
     ("bonded", 2.0, "bonded nu=0.5 a/h=2"),
@@ -93,7 +94,7 @@ RESTITUTION = "coefficient_of_restitution"
 HALF_SPACE = tuple(on_half_space(damping) for damping in DAMPING_RATIOS)
 ON_LAYERS = tuple(on_layer(support, ratio) for support, ratio, _ in PLACES)
 RESTITUTIONS = {s.name: restitution(damping) for damping, s in zip(DAMPING_RATIOS, HALF_SPACE, strict=True)}
-KBARS = {s.name: c.NUMBERS["stiffness"][known][0] for s, (_, _, known) in zip(ON_LAYERS, PLACES, strict=True)}
+KBARS = {s.name: c.NUMBERS["stiffness"][name][0] for s, (_, _, name) in zip(ON_LAYERS, PLACES, strict=True)}
 MOTIONS = {name: motion(kbar) for name, kbar in KBARS.items()}
 ON_THE_WAY = (RESTITUTION, "peak_depth", "peak_force", "contact_time")
 IN_TIME = (RESTITUTION, "contact_time", "peak_depth")

@@ -32,7 +32,7 @@ LAYERS = BONDED | {"unbonded": c.layer_of(0.3, "unbonded")}
 # At the ratios where every column of Hayes has a number.
 HAYES_RATIOS = (0.2, 0.4, 0.6, 0.8, 1.0, 2.0)
 HERMANOWICZ_RATIOS = np.geomspace(0.1, 30, 25)
-# Ratios at which depth and stiffness are known in extended precision.
+# Ratios with depth and stiffness in extended precision.
 EXPONENT_RATIOS = {"unbonded": (1.0, 2.0), "bonded nu=0.3": (1.0,), "bonded nu=0.5": (0.2, 1.0, 2.0)}
 
 
@@ -86,10 +86,10 @@ BY_FACTOR = {name: on_walk(scene, rows[:, 1]) for name, (scene, rows) in ROWS.it
 COLUMNS = zip(HAYES_WALKS, c.HAYES.values(), strict=True)
 HAYES = {walk.name: on_walk(walk.scene, [column[ratio] for ratio in HAYES_RATIOS]) for walk, column in COLUMNS}
 STIFFNESS, BY_MDR = "contact_stiffness", ("mdr",)
-KNOWN, FITS = c.known_stiffness(PUNCHES), (STIFFNESS, fitted)
+KNOWN, FITS = c.reference_stiffness(PUNCHES), (STIFFNESS, fitted)
 TEN_DIGITS: c.Words = {"tolerance": 1e-10, "fem": 3e-6, "bem": 3e-5, "mdr_table": 3e-4}
 M_KAPPA: c.Words = {"tolerance": 1e-10, "fem": 1e-4}
-ACCURACY = "a requirement: 1e-4, the accuracy finite elements are asked for"
+ACCURACY = "a requirement: 1e-4, the requested accuracy of finite elements"
 M_AND_KAPPA: c.Words = {"derived_from": ACCURACY, "suffix": ", m and kappa"}
 AT_ONE, AT_TWO = ((punch("bonded nu=0.5", ratio),) for ratio in (1.0, 2.0))
 COMPRESSIBLE = (punch("bonded nu=0.3", 1.0),)

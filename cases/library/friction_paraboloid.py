@@ -10,9 +10,9 @@ the next: each new point keeps the radial displacement with which it touched, an
 it. MDR solves full stick without a mesh, and states for finite coefficients, from its frictionless answer and the
 radial displacement u_r1 under the frictionless unit punch, a bound, |F - F_0| <= mu max |u_r1| F at the true radius,
 and the first order in mu, F_0 mu int p_0 |u_r1| dA/F_0. On half-spaces and thick layers the stick radius is a fixed
-share of the contact radius that knows mu and nu only; radius, force, stick radius and heat there are those of Spence's
-coupled equations, solved by themselves (`benchmarks.references.partial_slip`). On the way back slip reverses from the
-edge on, the force is less at each depth, and the loop between is heat; friction never gives any back.
+share of the contact radius that depends on mu and nu only; radius, force, stick radius and heat there are those of
+Spence's coupled equations, solved by themselves (`benchmarks.references.partial_slip`). On the way back slip reverses
+from the edge on, the force is less at each depth, and the loop between is heat; friction never gives any back.
 """
 
 import math
@@ -50,7 +50,7 @@ def rubbed(name: str, layer: Layer, mu: float, *methods: MethodUse, loading: Loa
 
 
 def partly_stuck(name: str, layer: Layer, solved: str, depth: float) -> CaseScene:
-    """Return a paraboloid with the coefficient that makes it stick, on a half-space, on a known share of its radius."""
+    """Return a paraboloid with the coefficient at which a half-space sticks on a given share of the contact radius."""
     mesh, share = NARROW if solved.endswith("=0.9") else CELLS, float(solved.rpartition("=")[2])
     scene = rubbed(name, layer, SPENCE[solved][0], mesh, loading=IndentationDepths([depth]))
     return replace(scene, parameters={**scene.parameters, "c_over_a": share})
@@ -74,7 +74,7 @@ STUCK_LAYERS = {**{f"nu={nu:g}": c.layer_of(nu) for nu in (0.5, 0.3, 0.0)}, "unb
 STUCK = tuple(rubbed(f"{name} stick", layer, math.inf) for name, layer in STUCK_LAYERS.items())
 REFINED = tuple(rubbed(f"nu={nu:g} mu=0.1, two grids", c.layer_of(nu), 0.1, CELLS, MORE_CELLS) for nu in (0.5, 0.0))
 HALF_SPACES = tuple(rubbed(f"half-space nu={nu:g} stick", c.half_space(nu), math.inf) for nu in (0.0, 0.3))
-SELF_SIMILAR = tuple(partly_stuck(f"half-space {one}", c.half_space(nu_of(one)), one, DEPTH) for one in SPENCE)
+SELF_SIMILAR = tuple(partly_stuck(f"half-space {name}", c.half_space(nu_of(name)), name, DEPTH) for name in SPENCE)
 ON_THICK = partly_stuck("thick nu=0.49 c/a=0.6", THICK_LAYER, "nu=0.49 c/a=0.6", 0.02 * c.THICKNESS)
 TO_AND_FRO = DepthHistory(time=np.arange(6.0), depth=DEPTH * np.array([0.0, 1.0, 0.5, 1.0, 0.5, 0.0]))
 CYCLE = rubbed("nu=0.5 cycle", INCOMPRESSIBLE, 0.2, CELLS, loading=TO_AND_FRO)
@@ -102,9 +102,9 @@ def to_first_order(scene: c.AnyScene) -> float:
 
 
 def of_spence(scene: c.AnyScene) -> dict[str, float]:
-    """Return c, a, F and the heat of Spence's problem for a scene with one of its coefficients."""
+    """Return stick radius c, a, F and heat of partial slip on the half-space, scaled from the numbers of `SPENCE`."""
     mu, nu = coefficient(scene), scene.layer.poissons_ratio
-    (solved,) = (name for name, known in SPENCE.items() if known[0] == mu and nu_of(name) == nu)
+    (solved,) = (name for name, numbers in SPENCE.items() if numbers[0] == mu and nu_of(name) == nu)
     _, depth_factor, force_factor, heat = SPENCE[solved]
     depth, radius = float(scene.loading.values[0]), INDENTER.radius_of_curvature
     a = math.sqrt(radius * depth / depth_factor)

@@ -3,7 +3,7 @@
 Question: Is a graded layer solved right, and how many sublayers stand for it?
 Source: Eq. (8); Eq. (10); Eq. (27).
 
-Layers whose modulus grows or falls exponentially with depth, and what many uniform sublayers make of them. Such a layer
+Layers whose modulus grows or falls exponentially with depth, and approximations by many uniform sublayers. Such a layer
 is stiffer or softer below than at its surface; its kernel differs from the half-space's like 1/k, so that the pressure
 has a logarithm at the edge of the contact. MDR solves it by edges in ln x, with the kernel on complex wavenumbers; the
 direct integral equation splits the logarithm off and stays on real ones. The kernel of an exponential modulus has a
@@ -22,7 +22,7 @@ from contact.scene.layer import Support
 
 GROWTH = 4.0
 POISSONS_RATIO = 0.3
-# What two methods must agree within on layers whose kernel is like a logarithm.
+# Tolerance of MDR against each other method, where the pressure has a logarithm at the edge of the contact.
 REQUIRED = {"integral_equation": 1e-8, "fem": 1e-4, "bem": 1e-3}
 
 

@@ -6,7 +6,7 @@ Source: Eq. (14); Eq. (15); Table 1.
 Thick layers: closed forms on the half-space, and the rate at which layers approach them. On the half-space flat punch,
 cone, paraboloid and power law have closed forms (Sneddon). Every method must give them. A thick layer is stiffer by
 kbar = 1 + alpha a/h + O((a/h)^2), where alpha = (2/pi) int (1 - chi) dq depends on the support only: 0.743303 unbonded,
-0.876533, 1.034807 and 1.126955 bonded with nu = 0.3, 0.45 and 0.5. With that term in the limit, what is left must fall
+0.876533, 1.034807 and 1.126955 bonded with nu = 0.3, 0.45 and 0.5. With that term in the limit, the remainder must fall
 with the second order of a/h.
 """
 
@@ -21,8 +21,7 @@ from contact import Cone, ContactRadii, FlatPunch, IndentationDepths, Loading, P
 
 WHY = c.reasons("half_space_limits")
 RADIUS = 1e-3  # m
-# Of the half-space.
-POISSONS_RATIO = 0.3
+POISSONS_RATIO = 0.3  # of the half-space
 SLOPE = 0.1
 RADIUS_OF_CURVATURE = 1e-2  # m
 HEIGHT = 1e-6  # m, of the quartic at the contact radius

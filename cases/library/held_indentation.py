@@ -51,7 +51,7 @@ BODIES = {"half-space": np.inf, "bonded layer": c.THICKNESS}
 
 
 def held(name: str, body: str, loading: DepthHistory | ForceHistory, *effects: object) -> CaseScene:
-    """Return the history on a body."""
+    """Return the scene of a history on the half-space or the bonded layer."""
     layer = Layer.incompressible(thickness=BODIES[body], shear_modulus=LASTING if DASHPOT in effects else INSTANTANEOUS)
     tip = Paraboloid(radius_of_curvature=impact.RADIUS_OF_CURVATURE)
     return c.scene(name, layer, tip, loading, effects=effects, layer=name)

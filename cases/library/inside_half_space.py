@@ -46,7 +46,7 @@ AXIAL, RADIAL, MISES = "axial_stress_inside", "radial_stress_inside", "von_mises
 def huber(scene: c.AnyScene) -> dict[str, FloatArray]:
     """Return the stresses under a paraboloid (Huber 1904), p0 = 2 E* a/(pi R).
 
-    The largest difference of two, twice the shear, is 2 times 0.310021 p0 for nu = 0.3.
+    Von Mises stress on the axis is |sigma_zz - sigma_rr|, twice the shear; its maximum is 2 x 0.310021 p0 for nu = 0.3.
     """
     p0 = 2 * c.contact_modulus(scene.layer) * RADIUS / (math.pi * RADIUS_OF_CURVATURE)
     nu, Z = scene.layer.poissons_ratio, DEPTHS
@@ -74,7 +74,7 @@ BY_BOTH = BY_MDR | {"methods": ("mdr", "fem")}
 SHEAR: c.Words = {"tolerance": 2e-6, "fem": 2e-3}
 CLAIMS = (
     c.equal("axial stress under a paraboloid", AXIAL, huber, HERTZ, WHY["Huber"], **CLOSED),
-    # Far below, where the radial stress has lost four digits, a mesh has none left of it.
+    # Deep below the surface four digits of the radial stress cancel, and a mesh gives no correct one.
     c.equal("radial stress under a paraboloid", RADIAL, huber, HERTZ, WHY["Huber"], **BY_MDR),
     c.equal("the largest shear", MISES, huber, HERTZ[:1], WHY["largest shear"], **SHEAR),
     c.equal("axial stress under a punch", AXIAL, sneddon, PUNCHES, WHY["Sneddon"], **CLOSED),

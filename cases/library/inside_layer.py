@@ -4,7 +4,7 @@ Question: Do two methods agree on displacement, stress and pressure inside, and 
 Source: Eq. (9); Eq. (14).
 
 The layer inside: displacement, stress, hydrostatic pressure and its gradient by two methods without common code. Under
-a paraboloid and a truncated cone, on bonded layers with nu = 0.3, 0.45 and 0.5 and on an unbonded one, MDR makes the
+a paraboloid and a truncated cone, on bonded layers with nu = 0.3, 0.45 and 0.5 and on an unbonded one, MDR computes the
 fields inside from the density of its pressure, closed forms of the half-space and an integral over wavenumbers; finite
 elements recover them from their own solution. At twelve points away from edges they agree: displacements in the fifth
 digit of the depth, stresses in the third of the mean pressure, and the hydrostatic pressure at nu = 1/2 as well as at
@@ -37,7 +37,7 @@ PARABOLOID, CONE = "paraboloid", "truncated cone"
 MIDDLE = (0.0, 0.5)
 POINTS = (*((r, z) for r in (0.0, 0.3, 0.8, 1.25) for z in (0.3, 0.6, 1.0)), MIDDLE)
 BELOW_CONTACT = tuple((r, z) for r, z in POINTS if r < 1.0)
-# Away from edges and faces; the cost of the last is measured.
+# Points away from edges and faces; the cost is measured at the last one.
 GRID = (*((r, z) for r in np.linspace(0.05, 1.45, 8).tolist() for z in np.linspace(0.15, 0.9, 8).tolist()), (0.5, 0.5))
 MESH = MethodUse(label="fem", settings={"growth": 0.18, "truncation": 1e-10})
 
@@ -53,8 +53,8 @@ def pressed(kind: str, label: str, body: Layer, ratio: float) -> CaseScene:
 
 def below(nu: float, ratio: float, points: c.Points = BELOW_CONTACT, *others: MethodUse) -> CaseScene:
     """Return a paraboloid on a bonded layer, without the laws; by MDR and other methods."""
-    one = pressed(PARABOLOID, f"bonded nu={nu:g}", c.layer_of(nu), ratio)
-    return replace(one, sampling=Sampling(inside=points, laws=False), methods=(c.MDR, *others))
+    scene = pressed(PARABOLOID, f"bonded nu={nu:g}", c.layer_of(nu), ratio)
+    return replace(scene, sampling=Sampling(inside=points, laws=False), methods=(c.MDR, *others))
 
 
 COMPARED = tuple(
@@ -66,9 +66,9 @@ LADDER = (
     *(below(nu, q, BELOW_CONTACT, MESH) for nu in (0.3, 0.5) for q in WIDE_RATIOS),
 )
 REFINED = tuple(
-    replace(one, name=f"{one.name}, refined", sampling=Sampling(inside=GRID, laws=False))
-    for one in COMPARED
-    if one.name in ("paraboloid, bonded nu=0.3 a/h=1", "paraboloid, bonded nu=0.5 a/h=1")
+    replace(scene, name=f"{scene.name}, refined", sampling=Sampling(inside=GRID, laws=False))
+    for scene in COMPARED
+    if scene.name in ("paraboloid, bonded nu=0.3 a/h=1", "paraboloid, bonded nu=0.5 a/h=1")
 )
 ORDERS = {"displacement_inside": 4.0, "stress_inside": 3.0, "pressure_inside": 3.0, "gradient_inside": 2.0}
 

@@ -7,7 +7,7 @@ A measured profile: radii and heights in a table, joined by each method in its o
 as tables. Here nine points of a paraboloid are given, joined by shape-preserving cubics (PCHIP), so the profile is not
 analytic at any of them. Finite elements compute the cubics themselves from the points; MDR takes the slopes of the
 profile through the transform of Eq. (15). A mistake in either, or in the cubics that MDR, integral equation and
-boundary elements share, parts the methods.
+boundary elements share, separates the methods.
 """
 
 import numpy as np

@@ -67,20 +67,20 @@ class EvenAccuracy(PerScene):
     def needed(self, case: Case, scene: CaseScene, use: MethodUse) -> Iterator[Task]:
         """Yield the reference of the scene, then both answers of the first scene."""
         first = case.scene(SCENES[0].name)
-        for one, label in ((scene, c.EQUATION.label), (first, use.label), (first, c.EQUATION.label)):
-            yield case.task(one, case.use(one, label))
+        for solved, label in ((scene, c.EQUATION.label), (first, use.label), (first, c.EQUATION.label)):
+            yield case.task(solved, case.use(solved, label))
 
     def judged(self, scene: CaseScene, label: str, answer: Answer, others: list[Answer]) -> Judgement:
         """Judge by how much the error is larger than that of the first scene."""
-        meshes = [one.settings.get("mesh") for one in (others[1], answer)]
+        meshes = [compared.settings.get("mesh") for compared in (others[1], answer)]
         if meshes[0] is None or meshes[0] != meshes[1]:
             return nothing_compared(Status.INCOMPARABLE, f"not one mesh: {meshes[0]} and {meshes[1]}")
-        own, exact, base, base_exact = (one.quantities[self.quantity].values[-1] for one in (answer, *others))
-        growth = abs(own / exact - 1) / abs(base / base_exact - 1) - 1
+        value, exact, first, first_exact = (a.quantities[self.quantity].values[-1] for a in (answer, *others))
+        growth = abs(value / exact - 1) / abs(first / first_exact - 1) - 1
         return judge_residual(growth, tolerance=self.tolerance)
 
 
-KNOWN = c.known_stiffness(SCENES)
+KNOWN = c.reference_stiffness(SCENES)
 STIFFNESS, EVEN = "contact_stiffness", "as accurate at nu = 1/2 as at nu = 0.3, on one mesh"
 TEN_DIGITS: c.Words = {"tolerance": 1e-10, "fem": 3e-6, "fem one mesh": 1e-5, "bem": 1e-5, "mdr_table": 1e-4}
 ON_ONE_MESH: c.Words = {"methods": (ONE_MESH.label,), "tolerance": 1.0}

@@ -49,11 +49,11 @@ def hertz(scene: c.AnyScene) -> float:
     """F = 2 pi E* a depth/(3 K) with A a^2 = depth (K - E)/(m K), B/A = [E/q^2 - K]/(K - E), q = b/a, m = 1 - q^2."""
     depth, tip = float(scene.loading.values[0]), TIP
 
-    def off(q: float) -> float:
+    def mismatch(q: float) -> float:
         K, E = ellipk(1 - q * q), ellipe(1 - q * q)
         return float((E / q**2 - K) / (K - E) - tip.second_radius / tip.first_radius)
 
-    m = 1 - brentq(off, 0.1, 1 - 1e-9) ** 2
+    m = 1 - brentq(mismatch, 0.1, 1 - 1e-9) ** 2
     a = np.sqrt(depth * (ellipk(m) - ellipe(m)) / (m * ellipk(m)) * 2 * tip.second_radius)
     return float(c.contact_modulus(scene.layer) * 2 * np.pi * a * depth / (3 * ellipk(m)))
 

@@ -3,8 +3,8 @@
 Question: Do solvers that nobody here wrote give the same answers, and at which price?
 Source: Eq. (4); Eq. (8); Eq. (29); Eq. (35); Eq. (40).
 
-Solvers that nobody here wrote answer the same scenes: who gets what right, and at which price. CalculiX (finite
-elements of displacements, a program of its own), ContactMechanics and Tamaas (grids with fast transforms) are asked,
+Solvers by other authors answer the same scenes: which quantities are right, and at which price. CalculiX (finite
+elements of displacements, a program of its own), ContactMechanics and Tamaas (grids with fast transforms) take part,
 and each may skip what it does not model. Elastic scenes prescribe the depth, since that is what these solvers take;
 contact radius, force and stiffness are compared with closed forms on the half-space and with the integral equation in
 extended precision on layers. A depth that belongs to a/h = 1 is known to fourteen digits.
@@ -35,7 +35,7 @@ PUNCH_DEPTH = 1e-5  # m
 CURVATURE = 1e-2  # m
 SLOPE, FLAT = 0.1, 0.5
 LABELS = ("half-space", "bonded nu=0.3", "bonded nu=0.5", "unbonded")
-# Each with the height f(a) in units of which depths are tabulated, that of a paraboloid twice.
+# Indenters, each with the unit of its tabulated depths: f(a), for the paraboloid 2 f(a).
 INDENTERS: dict[str, tuple[Profile, float]] = {
     "flat punch": (FlatPunch(radius=A), 0.0),
     "paraboloid": (Paraboloid(radius_of_curvature=CURVATURE), A**2 / CURVATURE),
@@ -92,9 +92,8 @@ PRICED = ("paraboloid, half-space", "flat punch, bonded nu=0.3", "truncated cone
 HALF = c.having(SCENES, layer="bonded nu=0.5")
 AWAY = tuple(scene for scene in SCENES if scene not in HALF)
 LAYERS = tuple(scene for scene in AWAY if scene.parameters["layer"] != "half-space")
-# Requirements by method: grids of others two digits, CalculiX five. At nu = 1/2 it is asked for four digits: it gets
-# there by extrapolation in nu. A contact radius is known to the root of what a force is known to, which is stationary
-# there.
+# Requirements by method: two digits for grids of outside solvers, five for CalculiX, four at nu = 1/2, where it
+# extrapolates in nu. The error of a contact radius is the root of that of the force, which is stationary there.
 TOLERANCES: c.Words = {"tolerance": 1e-9, "fem": 3e-6, "bem": 2e-3, "calculix": 1e-5}
 TOLERANCES |= dict.fromkeys(("contact_mechanics", "tamaas"), 1e-2)
 RADII = TOLERANCES | {"fem": 2e-5, "calculix": 2e-5} | dict.fromkeys(("contact_mechanics", "tamaas"), 3e-2)
@@ -110,14 +109,14 @@ def hertz_force(scene: c.AnyScene) -> FloatArray:
     return np.asarray(4 / 3 * c.contact_modulus(scene.layer) * np.sqrt(CURVATURE) * scene.loading.values**1.5)
 
 
-def found(quantity: str, scenes: c.Scenes) -> tuple[CaseScene, ...]:
-    """Return the scenes on which the quantity is not prescribed: the radius of a flat punch is."""
+def computing(quantity: str, scenes: c.Scenes) -> tuple[CaseScene, ...]:
+    """Return the scenes whose solution computes the quantity; the contact radius of a flat punch is given."""
     return tuple(s for s in scenes if quantity != "contact_radius" or s.parameters["indenter"] != "flat punch")
 
 
 CLAIMS = (
     *(
-        c.equal(f"{name.replace('_', ' ')}{where}", name, NUMBERS, found(name, scenes), WHY["exact"], **words)
+        c.equal(f"{name.replace('_', ' ')}{where}", name, NUMBERS, computing(name, scenes), WHY["exact"], **words)
         for name, within in WITHIN.items()
         for where, scenes, words in (
             ("", AWAY, within),

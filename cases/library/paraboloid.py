@@ -7,7 +7,7 @@ A paraboloid on layers: prescribed radii, depths and forces, five methods, and t
 paraboloid f(r) = r^2/(2R) presses on bonded and unbonded layers. Depth and force at five contact radii are compared
 with the Fredholm equation in extended precision, with the fit of Hermanowicz (2021) for the incompressible bonded
 layer, with finite elements, direct boundary elements, the direct integral equation, and MDR on FFT flat-punch tables as
-published. The same states are then asked for by depth and by force: the contact radius must come back.
+published. The same states are then prescribed by depth and by force: the contact radius must come back.
 """
 
 import math
@@ -79,7 +79,7 @@ def fitted_force(scene: c.AnyScene) -> float:
     return force * (polynomial - 7.1702772387228935 * x * root + 8.227673152332168 * x**2 + math.pi / 2 * x**3)
 
 
-REFERENCE = c.known("paraboloid", [at(*place) for place in PRESCRIBED], unit)
+REFERENCE = c.reference_numbers("paraboloid", [at(*place) for place in PRESCRIBED], unit)
 LOOSER: c.Words = {"tolerance": 1e-9, "fem": 3e-6, "bem": 1e-3, "mdr_table": 5e-3}
 FOUND = LOOSER | {"tolerance": 3e-5, "fem": 4e-5}
 FITTED: c.Words = {"tolerance": 1e-3, "bem": 2e-3, "mdr_table": 1.5e-2}

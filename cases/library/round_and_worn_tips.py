@@ -1,6 +1,6 @@
 """Indentation by spheres, cones with round apexes and worn paraboloids.
 
-Question: Do all methods know these tips?
+Question: Do all methods solve contacts of these tips alike?
 Source: Sneddon 1965; Eq. (8); Eq. (15).
 
 Tips as they are made and worn: the exact sphere, a cone with a spherical apex, and a paraboloid worn flat. On the

@@ -1,11 +1,11 @@
 """Impact of a sphere on a viscoelastic layer.
 
-Question: Does MDR hold in the rebound from a layer, where it was never proven?
+Question: Is MDR right in the rebound from a layer, where it was never proven?
 Source: Eq. (51); Eq. (52); Eq. (53); Fig. 12.
 
 Section 4.3 of Forsbach (2023): impact of a sphere on a standard-solid layer, Fig. 12. A rigid sphere of 20 g hits an
 incompressible layer of a standard solid, G_inf/G_1 = 1/9 and tau = 1 ms, and rebounds. The contact radius grows and
-shrinks, so there is no closed form; that MDR holds in the rebound from a layer was shown in the paper by explicit
+shrinks, so there is no closed form; that MDR is right in the rebound from a layer was shown in the paper by explicit
 finite elements only. The thinner the layer the stiffer the contact and, with these data, the livelier the rebound. R
 and v0 enter only as a product. Kinetic, stored and dissipated energy must add up.
 """
@@ -51,7 +51,7 @@ ON_LAYERS, HALF_SPACE = tuple(map(impact, (1e-3, 2e-3, 3e-3))), impact(0.0)
 STRUCK = ON_LAYERS[1:2]
 RESTITUTION, FORCE = "coefficient_of_restitution", "peak_force"
 EVERY_IMPACT, UNITS = (HALF_SPACE, *ON_LAYERS), {RESTITUTION: 1.0, FORCE: 1.0}
-KNOWN = c.known("sphere_impact", EVERY_IMPACT, lambda _: UNITS, lambda name: name.removeprefix("bonded "))
+KNOWN = c.reference_numbers("sphere_impact", EVERY_IMPACT, lambda _: UNITS, lambda name: name.removeprefix("bonded "))
 
 
 def twice_the_radius_at_half_the_speed(scene: c.AnyScene) -> c.AnyScene:
@@ -81,8 +81,10 @@ CLAIMS = (
     c.equal("restitution on the half-space", RESTITUTION, KNOWN, (HALF_SPACE,), WHY["reference"], tolerance=1e-7),
     c.equal("peak force", FORCE, KNOWN, (), WHY["reference"], **ON_LAYER | {"fem": 5e-4}),
     *(
-        c.equal(f"restitution as printed, {name}", RESTITUTION, to, (), WHY["printed"], tolerance=own, **BY_INPUTS)
-        for to, own in PRINTED
+        c.equal(
+            f"restitution as printed, {name}", RESTITUTION, to, (), WHY["printed"], tolerance=tolerance, **BY_INPUTS
+        )
+        for to, tolerance in PRINTED
         for name in to
     ),
     c.energy_balance(ON_LAYERS, 400, fem=1e-4, mdr_table=1e-4),

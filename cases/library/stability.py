@@ -3,9 +3,9 @@
 Question: Where does each method stop, how many digits are left, and does it say so?
 Source: Eq. (4); Eq. (9); Eq. (50).
 
-The stress tests: every hard parameter that contact with layers is known to break on. A parameter is made harder step by
-step for every method that supports the scene. Each step is solved again with all inputs moved by one unit in the last
-place, in other units, amid other steps and on two threads: the digits that all these answers share are significant.
+The stress tests: all parameters that are known to be hard for contact with layers. A parameter is made harder step by
+step for every method that supports the scene. Each step is solved again with all inputs changed by one unit in the last
+place, in other units, among other steps and on two threads: the digits that all these answers share are significant.
 Laws of mechanics are checked on every step, and so is the distance from the fast method. A step may be refused with a
 named error. A number beyond its stated error, a warning or a crash is a failure.
 """
@@ -91,9 +91,9 @@ def struck(long_term_share: float = 0.1, time: float = 1.0, speed: float = 0.1, 
 
     Args:
         long_term_share: G_inf / (G_inf + G_1).
-        time: relaxation time tau = eta/G_1 [s].
-        speed: impact speed v_0 [m/s].
-        lighter: whether the mass of 0.05 kg is divided by v_0^2 for v_0 > 1 m/s, so that a/h stays below 30.
+        time: Relaxation time tau = eta/G_1 [s].
+        speed: Impact speed v_0 [m/s].
+        lighter: Whether the mass of 0.05 kg is divided by v_0^2 for v_0 > 1 m/s, so that a/h stays below 30.
     """
     layer, mass = bonded(0.5), 0.05 * min(1.0, speed**-2) if lighter else 0.05
     maxwell = (1.0 - long_term_share) * layer.shear_modulus
@@ -116,8 +116,8 @@ def layered(*layers: tuple[float, float], nu: float = 0.3, ratio: float = 1.0) -
     """A paraboloid at a given a/H on bonded layers, each with its thickness and modulus, and nu of the first."""
     ratios = (nu, *(0.3 for _ in layers[1:]))
     parts = [
-        contact.Sublayer(thickness=h, youngs_modulus=E, poissons_ratio=own)
-        for (h, E), own in zip(layers, ratios, strict=True)
+        contact.Sublayer(thickness=h, youngs_modulus=E, poissons_ratio=ratio_of_poisson)
+        for (h, E), ratio_of_poisson in zip(layers, ratios, strict=True)
     ]
     bonds: Any = ("bonded",) * (len(parts) - 1)
     stack = contact.LayerStack(sublayers=tuple(parts), interfaces=bonds)
@@ -125,17 +125,17 @@ def layered(*layers: tuple[float, float], nu: float = 0.3, ratio: float = 1.0) -
 
 
 def alternating(count: float) -> c.AnyScene:
-    """The same on so many equally thick layers, every second one ten times as stiff."""
+    """A paraboloid at a/H = 0.5 on ``count`` equally thick layers, every second one ten times as stiff."""
     return layered(*((1.0 / count, 10.0 ** (n % 2)) for n in range(round(count))), ratio=0.5)
 
 
 def graded_in_depth(growth: float) -> c.AnyScene:
-    """The same on a layer whose modulus is `growth` times as large at the base as at the surface."""
+    """A paraboloid at a/h = 1 on a layer whose modulus is ``growth`` times as large at the base as at the surface."""
     modulus = contact.ExponentialDepth(surface=1.0, base=growth)
     return under_paraboloid(contact.GradedLayer(thickness=1.0, youngs_modulus=modulus, poissons_ratio=0.3), 1.0)
 
 
-# What counts are digits that repeats share, not the size of errors.
+# Coarse settings suffice: stress tests measure the digits that repeats share, not errors.
 METHODS = (c.MDR, c.TABLE, c.EQUATION, c.BEM, MethodUse(label="fem", settings={"order": 3, "edge_cell": 1e-5}))
 # A method of another package that states no errors would fail every step: none takes part.
 OWN = tuple(use.label for use in METHODS)

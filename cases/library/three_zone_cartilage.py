@@ -6,10 +6,10 @@ Source: Eq. (8); Eq. (10); Eq. (27).
 Articular cartilage as three zones on bone: superficial, middle and deep, under a spherical and a flat indenter. Under
 load too fast for fluid to flow each zone is nearly incompressible. The superficial tenth is soft, the middle zone is
 stiffer, the deep one stiffer still, and the bone below counts as rigid or, more honestly, as an elastic half-space a
-thousand times as stiff. The same tissue is asked for at equilibrium, when the fluid has been pressed out and the zones
-are compressible. MDR and the direct integral equation must agree; the pressure, applied to the zones by a kernel that
-is written separately, must press the indenter's shape. An elastic bone is softer than a rigid one, and no zone may be
-left out: a layer of the mean modulus alone errs by a multiple of what methods differ.
+thousand times as stiff. The same tissue is solved at equilibrium, when the fluid has been pressed out and the zones are
+compressible. MDR and the direct integral equation must agree; the pressure, applied to the zones by a kernel that is
+written separately, must press the indenter's shape. An elastic bone is softer than a rigid one, and no zone may be left
+out: a single layer of the mean modulus has an error of many times the difference of methods.
 """
 
 from cases.case import CaseScene
@@ -44,7 +44,7 @@ SCENES = tuple(
     for indenter in ("paraboloid", "flat punch")
     for ratio in (0.2, 1.0, 3.0)
 )
-RIGID = tuple(one for one in SCENES if "rigid" in one.name and "flat punch" in one.name)
+RIGID = tuple(scene for scene in SCENES if "rigid" in scene.name and "flat punch" in scene.name)
 ONE = (on_cartilage(*FIRST),)
 
 

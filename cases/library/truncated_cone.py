@@ -12,7 +12,7 @@ On the half-space the answer is known in closed form,
 delta = a tan(theta) arccos(b/a),  F = E* a^2 tan(theta) [arccos(b/a) + (b/a) sqrt(1 - b^2/a^2)].
 
 MDR, Eqs. (4) and (8), starts from flat-punch data of the layer kernel, Eqs. (29)-(31). The finite element model meshes
-the section and never sees that kernel; the two share no input. Depth, force and contact stiffness must agree within
+the section and does not use that kernel; the two share no input. Depth, force and contact stiffness must agree within
 3e-6. The pressure has a logarithmic singularity at r = b, so it is compared in the 2 pi r weighted L2 norm and by the
 loads of rings with an edge at r = b, never by its maximum.
 """
@@ -50,7 +50,7 @@ def on_half_space(flat: float) -> CaseScene:
 
 
 def path(label: str, ratio: float) -> CaseScene:
-    """Return the path over contact radii from 0.75 a to a, away from the kink at 0.5 a."""
+    """Return a scene with 16 contact radii from 0.75 a to a, a/h = ``ratio``, away from the kink at 0.5 a."""
     base, radii = on_layer(label, ratio), ratio * c.THICKNESS * c.chebyshev_radii(0.75, 1.0, 16)
     methods = (c.MDR, c.EQUATION) if ratio == 1.0 else (c.MDR,)
     on_path = base.scene.replace(loading=ContactRadii(values=radii))
@@ -78,7 +78,7 @@ def closed_form(scene: c.AnyScene) -> dict[str, float]:
     return {"indentation_depth": depth * angle, "normal_force": force * (angle + flat * float(np.sqrt(1 - flat**2)))}
 
 
-REFERENCE = c.known("truncated_cone", LAYERED, unit)
+REFERENCE = c.reference_numbers("truncated_cone", LAYERED, unit)
 CLOSED: c.Words = {"tolerance": 1e-10, "fem": 3e-6, "bem": 3e-3}
 LAYER: c.Words = {"tolerance": 1e-9, "fem": 3e-6, "bem": 2e-3, "mdr_table": 1e-2}
 COARSE_TABLE = "a requirement: depth 3e-2, force 1e-1, stiffness 1.5e-2 where a cell is a third of the thickness"
@@ -100,7 +100,7 @@ CLAIMS = (
     *c.agreements(RESOLVED, c.required("mdr_table")),
     *c.agreements(THIN, c.VERY_COARSE, derived_from=COARSE_TABLE, suffix=", thin layers"),
     *c.pressure_agreements(LAYERED, NORMS, SINGULAR),
-    # A claim each: the suite ci has MDR on all these scenes, finite elements on some.
+    # One claim per method: the suite ci has MDR on all these scenes, finite elements on some.
     c.carried_force("the pressure carries the force", LAYERED, "mdr"),
     c.carried_force("the pressure of finite elements carries the force", LAYERED, "fem"),
     c.zero(*SPRINGS, PATHS, WHY["spring stiffness"], tolerance=1e-9, derive=c.incremental_stiffness),

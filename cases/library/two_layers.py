@@ -10,7 +10,7 @@ one for each; they share the kernel, so the contact's pressure is also applied t
 separately: inside the contact it must press the shape of the indenter into the surface. Two equal layers are one. Two
 thin incompressible ones flow between base and punch: a force of delta pi a^4/(8 C), with C the integral of s^2/G over
 the depth s. Where a stiff layer lies on a soft one, flat ends would pull and are refused; no such scene stands here.
-The figure shows what bodies made simpler err by, also one on an elastic base and a graded one.
+The figure shows the errors of simplified layers, also of one on an elastic base and a graded one.
 """
 
 import math
@@ -65,7 +65,7 @@ ON_THEM = tuple(scene for scene in SCENES if scene.name in PUBLISHED)
 
 def published(scene: c.AnyScene) -> dict[str, float]:
     """Return the published numbers in SI."""
-    (name,) = (one.name for one in ON_THEM if one.scene == scene)
+    (name,) = (with_numbers.name for with_numbers in ON_THEM if with_numbers.scene == scene)
     (stiffness, depth, force), modulus, h = PUBLISHED[name], c.contact_modulus(scene.layer.surface), c.THICKNESS
     depths = {"contact_stiffness": 2 * modulus * h * stiffness, "indentation_depth": 0.1 * h * depth}
     return depths | {"normal_force": 0.1 * modulus * h**2 * force}
@@ -74,15 +74,16 @@ def published(scene: c.AnyScene) -> dict[str, float]:
 def merged(scene: c.AnyScene) -> c.AnyScene:
     """Return the scene on one layer of the upper material."""
     top = scene.layer.surface
-    one = Layer(thickness=c.THICKNESS, youngs_modulus=top.youngs_modulus, poissons_ratio=top.poissons_ratio)
-    return scene.replace(layer=one)
+    layer = Layer(thickness=c.THICKNESS, youngs_modulus=top.youngs_modulus, poissons_ratio=top.poissons_ratio)
+    return scene.replace(layer=layer)
 
 
 def flowing(scene: c.AnyScene) -> float:
     """k_N = pi a^4/(8 C) of thin incompressible layers, C = int s^2/G ds: the gradient of pressure drives the flow."""
     start, compliance = 0.0, 0.0
-    for one in scene.layer.sublayers:
-        shear_modulus, end = one.youngs_modulus / (2 * (1 + one.poissons_ratio)), start + one.thickness
+    for sublayer in scene.layer.sublayers:
+        shear_modulus = sublayer.youngs_modulus / (2 * (1 + sublayer.poissons_ratio))
+        end = start + sublayer.thickness
         compliance += (end**3 - start**3) / (3 * shear_modulus)
         start = end
     return math.pi * c.radius(scene) ** 4 / (8 * compliance)

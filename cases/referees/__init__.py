@@ -1,5 +1,5 @@
 """Outside solvers, by other authors: optional methods on the same cases.
 
-Each runs as a process of its own (`process.ask`, or its own program), so that its crashes, its pins and its licence
-stay there.  One that is not installed skips with its reason.  Read `contact_mechanics` first.
+Each runs in a process of its own (`process.run_worker`, or its own program), to which crashes, pinned versions and
+licences are confined. A solver that is not installed refuses every scene with this reason. Read `grids` first.
 """

@@ -42,8 +42,8 @@ from contact.records.validation import FloatArray
 from contact.scene.extent import radius_of_depth
 
 NEEDS = f"CalculiX (the program ccx) {NOT_INSTALLED}: apt-get install calculix-ccx"
-# Sizes of cells grow from the contact's edge by exp(GRADING) in all, to 1.3e-6 of the contact radius on 64 cells. With
-# 8 and with 19 extrapolated stiffnesses converge more slowly than with 12, which leaves 6e-6.
+# Cells grow exponentially from the edge of the contact, by exp(GRADING) in all; the smallest of 64 is 1.3e-6 of the
+# contact radius. With 8 and with 19 extrapolated stiffnesses converge more slowly; with 12 their error is 6e-6.
 GRADING = 12.0
 # The mesh ends so many thicknesses beyond the contact. On bonded layers everything decays exponentially: 6 and 8 give
 # the same seven digits at nu = 0.3. An unbonded layer slides on its base like a sheet, whose displacement falls like
@@ -83,7 +83,7 @@ class State(NamedTuple):
 
 
 class Exponents(NamedTuple):
-    """Exponents of the contact radius with which depth and stiffness grow; infinite of a depth that is free."""
+    """Exponents n of depth and stiffness ~ a^n; infinite if the depth does not depend on the contact radius."""
 
     depth: float
     stiffness: float
@@ -226,10 +226,11 @@ def _at_load(state: State, scene: Scene, value: float, exponents: Exponents) -> 
 
 # -- errors from three meshes -----------------------------------------------------------------------------------------
 def _converged(meshes: list[State], scene: Scene, exponents: Exponents) -> tuple[State, State, float]:
-    """State, its errors and the observed order of the stiffness.
+    """State from three meshes, its errors in the same units, and the observed order of the stiffness.
 
-    The radius or depth at which the outermost node carries nothing has no known order. A depth error changes the force
-    by k_N times itself, a radius error the stiffness by its exponent times itself.
+    Force and stiffness are extrapolated. The radius or depth at which the outermost node carries nothing has no known
+    order. A depth error changes the force by k_N times itself, a radius error the stiffness by its exponent times
+    itself.
     """
     punch, loading = isinstance(scene.indenter, FlatPunch), scene.loading
     middle, fine = meshes[1:]
@@ -252,18 +253,18 @@ def extrapolated(coarse: float, middle: float, fine: float) -> tuple[float, floa
 
     Where the changes do not shrink by at least two, an order below one, nothing is extrapolated.
     """
-    change, before = fine - middle, middle - coarse
-    digits = PRINTED * abs(fine)
-    if change and before / change >= 2.0:
-        correction = change / (before / change - 1.0)
-        return fine + correction, abs(correction) + digits
-    return fine, SAFETY * abs(change) + digits
+    change, coarse_change = fine - middle, middle - coarse
+    print_error = PRINTED * abs(fine)
+    if change and coarse_change / change >= 2.0:
+        correction = change / (coarse_change / change - 1.0)
+        return fine + correction, abs(correction) + print_error
+    return fine, SAFETY * abs(change) + print_error
 
 
 def observed_order(coarse: float, middle: float, fine: float) -> float:
     """Observed order of a value on meshes whose cells are halved each time; zero where changes do not decrease."""
-    change, before = fine - middle, middle - coarse
-    return math.log2(before / change) if change and before / change > 1.0 else 0.0
+    change, coarse_change = fine - middle, middle - coarse
+    return math.log2(coarse_change / change) if change and coarse_change / change > 1.0 else 0.0
 
 
 def at_zero(places: FloatArray, values: FloatArray, errors: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -322,12 +323,12 @@ def mesh(thickness: float, cells: int, kinks: tuple[float, ...] = (), support: s
 
 
 def _graded(length: float, cells: int, grading: float = GRADING) -> FloatArray:
-    """From zero to the length; cells grow like an exponential, and half of the nodes of twice as many are these."""
+    """Ends of cells from zero to the length, growing exponentially; doubling the cells keeps all ends."""
     return np.asarray(length * np.expm1(grading * np.linspace(0.0, 1.0, cells + 1)) / np.expm1(grading))
 
 
 def _inside(graded_at: tuple[float, ...], cells: int) -> FloatArray:
-    """From the axis to the last of the radii, small cells on either side of each."""
+    """Ends of cells from the axis to the last of the radii, with small cells on either side of each."""
     parts = [graded_at[0] - _graded(graded_at[0], cells)[::-1]]
     for start, end in pairwise(graded_at):
         half = _graded((end - start) / 2, cells)
@@ -407,7 +408,7 @@ def version() -> str:
 
 
 def reactions(text: str) -> tuple[FloatArray, FloatArray]:
-    """Return the vertical forces on contact and contact edge of the whole layer, of unit displacement and profile.
+    """Return the vertical forces on the contact and on its outermost node, by a unit displacement and by the profile.
 
     Args:
         text: Input file.
@@ -431,7 +432,7 @@ def reactions(text: str) -> tuple[FloatArray, FloatArray]:
 
 
 def read_reactions(printed: str) -> tuple[FloatArray, FloatArray]:
-    """Return what `reactions` does, from the printed totals of contact, base and edge in each of two steps."""
+    """Return the forces of `reactions` from the printed total forces on contact, base and edge in both steps."""
     lines = [line.split() for line in printed.splitlines()]
     totals = [
         [*map(float, line)] for line in lines if len(line) == 3 and all(word[-4:-2] in ("E+", "E-") for word in line)

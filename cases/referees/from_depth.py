@@ -1,4 +1,4 @@
-"""Answers of any solver that gives the force at depths, which is inverted, and differentiated for the stiffness."""
+"""Answers from any solver that computes the force at given depths, by inversion and difference quotients."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -20,8 +20,8 @@ from contact import (
 from contact.answer.solution import Setting
 from contact.records.validation import FloatArray
 
-# Depths of the difference quotient of the stiffness, relative. Differences of fourth order leave step^4/30 of a power
-# law: 3e-10 of Hertz's.
+# Relative step of depth in the difference quotient of the stiffness. Its error of fourth order is step^4/30 for a power
+# law, 3e-10 for Hertz's.
 STEP = 1e-2
 # Weights of differences of fourth and of sixth order of forces at three steps on either side (Fornberg 1988).
 FOURTH = np.array([0.0, 1.0, -8.0, 0.0, 8.0, -1.0, 0.0]) / 12.0
@@ -30,7 +30,7 @@ SIXTH = np.array([-1.0, 9.0, -45.0, 0.0, 45.0, -9.0, 1.0]) / 60.0
 NOISE = np.array([1.0, -6.0, 15.0, -20.0, 15.0, -6.0, 1.0])
 # Quantities whose stated error is that of this module alone; the solver's own error comes from its refinement.
 BY_DIFFERENCES = frozenset({"contact_stiffness"})
-# Prescribed forces and radii are met within this, relative; secant steps double their digits, so few are needed.
+# Relative error of inverted forces and radii at which the search ends, and its most secant steps; few are needed.
 TOLERANCE, MOST_STEPS = 1e-10, 40
 
 
@@ -67,8 +67,8 @@ def answer_from_depths(
     A stiffness by difference quotients states their error, besides what ``error_estimate`` states of it.
 
     Args:
-        scene: Prescribes depths, forces, or (where the solver knows radii) contact radii.
-        respond: The solver: returns its response at depths [m], shape (n,).
+        scene: Scene with prescribed depths, forces, or (if the solver computes radii) contact radii.
+        respond: Function that returns the solver's response at depths [m], shape (n,).
         log: Log of the solver's stages.
         method: Name of the solver.
         settings: Settings of the solver.
@@ -76,8 +76,8 @@ def answer_from_depths(
         further: Fields of the answer, such as ``error_estimate`` and ``notes``.
 
     Raises:
-        UnsupportedSceneError: If radii are prescribed and the solver knows none, or for any other loading.
-        NotConvergedError: If no depth gives what is prescribed.
+        UnsupportedSceneError: If radii are prescribed and the solver computes none, or for any other loading.
+        NotConvergedError: If no depth gives the prescribed force or radius.
     """
     depths = _depths(scene, respond)
     response = respond(depths)
@@ -109,21 +109,22 @@ def inverted(function: Callable[[FloatArray], FloatArray], wanted: FloatArray, f
     Args:
         function: Function of arrays, shape (n,), entry by entry.
         wanted: Positive, shape (n,).
-        first: a first guess, shape (n,); any positive one.
+        first: First guess, shape (n,); any positive one.
 
     Raises:
-        NotConvergedError: If no argument gives what is wanted.
+        NotConvergedError: If no argument gives a wanted value.
     """
-    old, new = np.log(first), np.log(first) + np.log(2.0)
-    target, before, now = np.log(wanted), np.log(function(np.exp(old))), np.log(function(np.exp(new)))
+    # Logarithms of arguments and values, of the last step and (0) of the one before.
+    x0, x = np.log(first), np.log(first) + np.log(2.0)
+    target, y0, y = np.log(wanted), np.log(function(np.exp(x0))), np.log(function(np.exp(x)))
     for _ in range(MOST_STEPS):
-        if np.max(np.abs(now - target)) <= TOLERANCE:
-            return np.asarray(np.exp(new))
-        rise = np.where(now == before, 1.0, (now - before) / np.where(new == old, 1.0, new - old))
-        old, new, before = new, new + np.clip((target - now) / np.where(rise > 0, rise, 1.0), -2.0, 2.0), now
-        now = np.log(function(np.exp(new)))
-    worst = float(wanted[np.argmax(np.abs(now - target))])
-    raise NotConvergedError(f"no argument gives {worst:g}; the nearest misses it by {np.max(np.abs(now - target)):.0e}")
+        if np.max(np.abs(y - target)) <= TOLERANCE:
+            return np.asarray(np.exp(x))
+        slope = np.where(y == y0, 1.0, (y - y0) / np.where(x == x0, 1.0, x - x0))
+        x0, x, y0 = x, x + np.clip((target - y) / np.where(slope > 0, slope, 1.0), -2.0, 2.0), y
+        y = np.log(function(np.exp(x)))
+    worst = float(wanted[np.argmax(np.abs(y - target))])
+    raise NotConvergedError(f"no argument gives {worst:g}; the nearest misses it by {np.max(np.abs(y - target)):.0e}")
 
 
 def _depths(scene: Scene, respond: Respond) -> FloatArray:
@@ -150,7 +151,7 @@ def _radius(response: Response) -> FloatArray:
 def _slope(respond: Respond, depths: FloatArray, at_depths: FloatArray) -> tuple[FloatArray, FloatArray]:
     """dF/d(delta) by differences of fourth order, and its error, relative.
 
-    The error is the distance to differences of sixth order, the noise of the forces, and what rounding does.
+    The error is the distance to differences of sixth order, plus noise and rounding of the forces.
     """
     shifts = np.array([-3.0, -2.0, -1.0, 1.0, 2.0, 3.0]) * STEP
     around = respond((depths[:, None] * (1.0 + shifts)).ravel()).normal_force.reshape(depths.size, -1)

@@ -1,4 +1,4 @@
-"""Grid codes of others as methods: ContactMechanics and Tamaas, which use fast transforms.
+"""Grid codes by other authors as methods: ContactMechanics and Tamaas, which use fast transforms.
 
 ContactMechanics is driven by depths and Tamaas by forces. A scene that prescribes the other quantity is solved by a
 search. Neither states errors.
@@ -10,7 +10,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 
 from cases.referees.from_depth import inverted
-from cases.referees.process import ask, insist, lacks, support, version
+from cases.referees.process import insist, lacks, run_worker, support, version
 from contact import (
     ContactPath,
     FlatPunch,
@@ -29,19 +29,19 @@ from contact.scene.extent import radius_of_load
 
 # Quantities by the loading that prescribes them.
 PRESCRIBED = {IndentationDepths: "indentation_depth", NormalForces: "normal_force"}
-# A repeated layer reaches so many thicknesses beyond the contact on each side: what neighbours feel of one another
-# falls like exp(-2.1 r/h) on unbonded and faster on bonded layers (first root of their kernels), to 5e-8 over eight.
-BESIDE = 4.0
-# Side of a half-space's grid, which is not repeated, over the diameter of the largest contact: of n points n/22 stay
+# Margin of a periodic layer beyond the contact, in thicknesses. Between neighbours, twice as far, displacements fall
+# like exp(-2.1 r/h) on unbonded and faster on bonded layers (first root of their kernels), to 5e-8.
+LAYER_MARGIN = 4.0
+# Side of a half-space's grid, which is not periodic, over the diameter of the largest contact: of n points n/22 stay
 # free on each side of a flat punch, three of 64, and more around curved indenters, whose contact is smaller than that.
-RIM = 1.1
-# Height in sides of the grid above which points never touch: those beyond the edge of the indenter.
-FAR = 1e3
+SIDE_OVER_CONTACT = 1.1
+# Largest height in sides of the grid: points beyond the edge of the indenter, which never touch.
+LARGEST_HEIGHT = 1e3
 
 
 @dataclass(frozen=True, kw_only=True)
 class GridCode:
-    """A square grid in a process of its own.
+    """An outside solver on a square grid, run in a process of its own.
 
     Attributes:
         points: Number of points of the grid, each way.
@@ -50,7 +50,7 @@ class GridCode:
 
     name: ClassVar[str]
     package: ClassVar[str]
-    # Quantity that the solver takes.
+    # Quantity that the solver prescribes.
     driven_by: ClassVar[str]
     shared_inputs: ClassVar[tuple[str, ...]] = ()
 
@@ -73,15 +73,18 @@ class GridCode:
         return "" if scene.layer.is_half_space else "it models half-spaces"
 
     def solve(self, scene: Scene) -> ContactPath:
-        """The equilibria; it states no errors."""
+        """The equilibria, without stated errors."""
         insist(self, scene)
         log, prescribed = StageLog(), PRESCRIBED[type(scene.loading)]
         values: FloatArray = scene.loading.values  # type: ignore[attr-defined]  # depths or forces
         with log.stage("grid"):
+            # Depths or forces, as the solver prescribes them.
             loads = values
             if prescribed != self.driven_by:
-                loads = inverted(lambda loads: self._ask(scene, loads)[prescribed], values, _first_loads(scene, values))
-            answer: dict[str, Any] = self._ask(scene, loads, with_stiffness=True) | {self.driven_by: loads}
+                loads = inverted(
+                    lambda loads: self._quantities(scene, loads)[prescribed], values, _first_loads(scene, values)
+                )
+            answer: dict[str, Any] = self._quantities(scene, loads, with_stiffness=True) | {self.driven_by: loads}
         return ContactPath(
             scene=scene,
             method=self.name,
@@ -100,13 +103,13 @@ class GridCode:
         """A copy with half the distance of points."""
         return replace(self, points=2 * self.points)
 
-    def _ask(self, scene: Scene, loads: FloatArray, *, with_stiffness: bool = False) -> dict[str, FloatArray]:
+    def _quantities(self, scene: Scene, loads: FloatArray, *, with_stiffness: bool = False) -> dict[str, FloatArray]:
         """Quantities by name at each depth or force, shape (n,); the stiffness takes further solutions."""
         layer = scene.layer
         depths = scene.loading.values if isinstance(scene.loading, IndentationDepths) else loads
-        known = self.driven_by == "indentation_depth" or depths is not loads
-        size = box(scene, float(depths.max()) if known else _depth_of_force(scene, float(loads.max())))
-        question = {
+        is_depth = self.driven_by == "indentation_depth" or depths is not loads
+        size = box(scene, float(depths.max()) if is_depth else _depth_of_force(scene, float(loads.max())))
+        inputs = {
             "heights": heights(scene, self.points, size).tolist(),
             "size": size,
             "young": layer.youngs_modulus,
@@ -116,11 +119,11 @@ class GridCode:
             "loads": loads.tolist(),
             "with_stiffness": with_stiffness,
         }
-        return ask(f"{self.name}_grid", question)
+        return run_worker(f"{self.name}_grid", inputs)
 
 
 class ContactMechanics(GridCode):
-    """Constrained conjugate gradients: half-spaces, and bonded layers of nu < 1/2, which it repeats."""
+    """Constrained conjugate gradients: half-spaces, and bonded layers of nu < 1/2 on a periodic grid."""
 
     name = "contact_mechanics"
     package = "ContactMechanics"
@@ -134,7 +137,7 @@ class ContactMechanics(GridCode):
 
 
 class Tamaas(GridCode):
-    """The algorithm of Polonsky and Keer on half-spaces, by its operator of a grid that is not repeated."""
+    """The algorithm of Polonsky and Keer on half-spaces, with the operator of a grid that is not periodic."""
 
     name = "tamaas"
     package = "tamaas"
@@ -151,7 +154,7 @@ def _first_loads(scene: Scene, values: FloatArray) -> FloatArray:
 
 
 def _depth_of_force(scene: Scene, force: float) -> float:
-    """A depth [m] that a force [N] on a half-space does not exceed."""
+    """Upper bound of the depth [m] under a force [N] on a half-space."""
     load, indenter = force / scene.layer.contact_modulus, scene.indenter
     return load / (indenter.radius if isinstance(indenter, FlatPunch) else radius_of_load(indenter, load / 2.0))
 
@@ -159,13 +162,13 @@ def _depth_of_force(scene: Scene, force: float) -> float:
 def box(scene: Scene, depth: float) -> float:
     """Length of the grid's sides [m] for depths up to ``depth``.
 
-    No half-space is touched where the profile stands higher than the depth, no layer where it stands twice as high
-    (thin incompressible layers pile up to that).
+    A half-space is not touched where the profile is higher than the depth, a layer where it is higher than twice the
+    depth, since the surface of thin incompressible layers rises outside the contact.
     """
     layer, indenter = scene.layer, scene.indenter
     height = depth if layer.is_half_space else 2.0 * depth
     reach = indenter.radius if isinstance(indenter, FlatPunch) else _radius_of_height(scene, height)
-    return 2.0 * (RIM * reach if layer.is_half_space else reach + BESIDE * layer.thickness)
+    return 2.0 * (SIDE_OVER_CONTACT * reach if layer.is_half_space else reach + LAYER_MARGIN * layer.thickness)
 
 
 def _radius_of_height(scene: Scene, height: float) -> float:
@@ -182,4 +185,4 @@ def _radius_of_height(scene: Scene, height: float) -> float:
 def heights(scene: Scene, points: int, size: float) -> FloatArray:
     """Heights of the indenter [m] at the points of a square grid, downwards from its apex in the middle."""
     x = (np.arange(points) - points / 2 + 0.5) * size / points
-    return np.asarray(-np.minimum(scene.indenter.height(np.hypot(x[:, None], x[None, :])), FAR * size))
+    return np.asarray(-np.minimum(scene.indenter.height(np.hypot(x[:, None], x[None, :])), LARGEST_HEIGHT * size))

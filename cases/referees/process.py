@@ -1,7 +1,7 @@
-"""Asks a solver of others in a process of its own: a scene in as JSON, arrays out.
+"""Runs an outside solver in a process of its own: inputs and arrays are passed as JSON.
 
-A crash, a pinned package and a licence stay in that process.  It runs in this interpreter, or in the one that the
-environment variable CONTACT_REFEREES_PYTHON names: another environment may hold what would not fit into this one.
+Crashes, pinned versions and licences are confined to that process. It runs this interpreter, or the one that the
+environment variable CONTACT_REFEREES_PYTHON names, for packages that do not fit into this environment.
 """
 
 import json
@@ -23,19 +23,19 @@ WORKERS = Path(__file__).with_name("workers")
 INTERPRETER = "CONTACT_REFEREES_PYTHON"
 
 
-def ask(worker: str, question: Mapping[str, Any]) -> dict[str, FloatArray]:
-    """Return the arrays that a script of `workers` answers by name.
+def run_worker(worker: str, inputs: Mapping[str, Any]) -> dict[str, FloatArray]:
+    """Return the arrays that a script of `workers` prints, by name.
 
     Args:
         worker: Name of the script, without the ending.
-        question: Numbers, words and lists.
+        inputs: Numbers, words and lists.
 
     Raises:
-        NotConvergedError: If the process fails or answers no arrays; with its last words.
+        NotConvergedError: If the process fails or prints no arrays, with the end of its output.
     """
     done = subprocess.run(
         [interpreter(), str(WORKERS / f"{worker}.py")],
-        input=json.dumps(dict(question)),
+        input=json.dumps(dict(inputs)),
         capture_output=True,
         text=True,
         check=False,
@@ -58,7 +58,7 @@ def version(package: str) -> str:
 
 
 def lacks(package: str) -> str:
-    """Why a package cannot be asked, empty where it can."""
+    """Reason why a package cannot be used, empty if it is installed."""
     if version(package):
         return ""
     return f"{package} {NOT_INSTALLED}: pip install 'contact-verification[referees]'"
@@ -86,5 +86,5 @@ def insist(method: Method, scene: Scene) -> None:
 
 
 def interpreter() -> str:
-    """The Python in which packages of others are installed."""
+    """The Python in which the packages of outside solvers are installed."""
     return os.environ.get(INTERPRETER) or sys.executable

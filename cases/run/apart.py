@@ -16,7 +16,7 @@ from queue import Empty, SimpleQueue
 from threading import Thread
 from typing import Any, BinaryIO
 
-# Seconds that a process may take to start: ten times what imports take on a busy machine.
+# Longest start of the process [s]: ten times the imports on a busy machine.
 STARTS = 60.0
 
 
@@ -58,7 +58,7 @@ _running: list[_Computer] = []
 
 
 def apart(function: Callable[..., Any], *arguments: Any, seconds: float) -> Any:
-    """Return ``function(*arguments)``, computed elsewhere; it raises nothing itself and returns no None.
+    """Return ``function(*arguments)``, computed in the separate process; it may neither raise nor return None.
 
     Raises:
         TimeLimitReached: After so many seconds.
@@ -96,7 +96,7 @@ def _end() -> int:
 
 
 def _read(stream: BinaryIO, put: Callable[[Any], None]) -> None:
-    """Hand over every pickled object of a stream, and None at its end."""
+    """Pass every pickled object of a stream to ``put``, and None at its end."""
     try:
         while True:
             put(pickle.load(stream))

@@ -66,7 +66,7 @@ def fresh_processes(jobs: int) -> Executor:
 
 
 class ClusterLost(Exception):
-    """The scheduler of a cluster does not answer any more: what it had not finished is unsolved."""
+    """The scheduler of a cluster does not answer any more; unfinished calls are unsolved."""
 
 
 # Seconds that a scheduler may take to answer.
@@ -123,9 +123,9 @@ class DaskExecutor(Executor):
 
 
 def ahead(executor: Executor, jobs: int) -> int:
-    """How many calls may be under way: two for each job, so that none stands idle and little is lost with one.
+    """Number of calls that may be under way: two per job, so that no job is idle and few calls are lost with one.
 
-    What runs in this process has ended when it is handed over; a cluster has a queue of its own.
+    In this process a call has ended when it is submitted: one. A cluster has its own queue: no limit.
     """
     return {SerialExecutor: 1, DaskExecutor: sys.maxsize}.get(type(executor), 2 * jobs)
 
@@ -172,7 +172,7 @@ def _end_with_parent() -> None:
 
 
 def completed(submit: Callable[[A], Future[T]], arguments: Iterable[A], ahead: int) -> Iterator[tuple[A, Future[T]]]:
-    """Submit arguments one by one and yield each with its finished future; nothing of it is kept.
+    """Submit arguments one by one and yield each with its finished future, which is not stored.
 
     After a process died no more arguments are submitted.
 
@@ -207,5 +207,5 @@ def _submitted(submit: Callable[[A], Future[T]], argument: A) -> Future[T]:
 
 
 def died(future: Future[Any]) -> bool:
-    """Whether the process of a finished call died, or one beside it."""
+    """Whether the process of a finished call, or another process of its pool, died."""
     return isinstance(future.exception(), BrokenExecutor)

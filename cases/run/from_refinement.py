@@ -18,7 +18,7 @@ FLOOR = 32.0 * float(np.finfo(float).eps)
 
 
 def with_estimated_errors(method: Method, scene: Scene, answer: Solution) -> Solution:
-    """Return ``answer`` with an error of each quantity that ``method`` states none of, and a note that says so.
+    """Return ``answer`` with an estimated error of each quantity without a stated one, and a note about it.
 
     The error is twice the difference from the answer of the method refined twice, which covers methods of order one
     half and more. The error of a stiffness by difference quotients, which no refinement shows, is added.

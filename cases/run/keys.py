@@ -21,9 +21,9 @@ FOREIGN_PACKAGES = ("numpy", "scipy", "scikit-fem", "gmsh", "pyfftw")
 
 
 def question(task: Task) -> str:
-    """Return the hash of a task's scene and of the settings asked for: 16 hexadecimal digits.
+    """Return the hash of a task's scene and of the requested settings: 16 hexadecimal digits.
 
-    What an answer reports of itself, such as the mesh that it used, is no part of the question. Numbers count with nine
+    Reports of the answer, such as the mesh that was used, are no part of the question. Numbers count with nine
     digits: a computed radius may end in another bit on another machine. With twelve digits one number in ten thousand
     would change its last one, with seven a change of 1e-7 would be no change.
     """
@@ -46,7 +46,7 @@ def _text(value: Any) -> str:
 
 
 def _plain(value: Any) -> Any:
-    """A value that JSON does not know, as one that it knows."""
+    """A record, mapping, array or any other object as a value that JSON can represent."""
     if dataclasses.is_dataclass(value) and not isinstance(value, type):
         fields = (field.name for field in dataclasses.fields(value) if not field.name.startswith("_"))
         return {"record": type(value).__qualname__, **{name: getattr(value, name) for name in fields}}

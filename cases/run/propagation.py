@@ -1,8 +1,8 @@
-"""Uncertain inputs carried through a method to every quantity of its answer.
+"""Propagation of uncertain inputs through a method to every quantity of its answer.
 
 By differences: with D the change of a quantity per standard deviation of each input and R the correlation of the
-inputs, u^2 = D R D^T (the law of propagation, GUM 5.2). Each input is moved by one deviation to either side; where
-the two sides differ much the quantity bends, and samples are the better answer: they take its whole distribution.
+inputs, u^2 = D R D^T (the law of propagation, GUM 5.2). Each input is changed by one deviation up and down. Where both
+changes differ much the quantity is nonlinear, and samples, which use the whole distribution, are more accurate.
 """
 
 import math
@@ -21,8 +21,8 @@ from mdr import Mdr
 
 # The seed of the samples: an answer repeats digit by digit.
 SEED = 20261122
-# Share of the change beyond which a difference of the two sides is noted; samples are then more accurate.
-BENT = 0.1
+# Curvature over the uncertainty beyond which a quantity counts as nonlinear; samples are then more accurate.
+NONLINEAR = 0.1
 # Fewer samples give standard deviations with errors of more than 20 %.
 FEWEST_SAMPLES = 16
 
@@ -38,7 +38,7 @@ class PropagatedQuantity:
         numerical: Error that the method states, absolute, shape (n,); None where it states none.
         inputs: Standard uncertainty by the inputs, absolute, shape (n,).
         by_input: Change per standard deviation of each input, absolute, by its name; empty for samples.
-        bends: Whether an input changed up and down changes it by different amounts; never for samples.
+        is_nonlinear: Whether changes of an input up and down cause different changes; always False for samples.
     """
 
     name: str
@@ -47,7 +47,7 @@ class PropagatedQuantity:
     numerical: FloatArray | None
     inputs: FloatArray
     by_input: dict[str, FloatArray] = field(default_factory=dict)
-    bends: bool = False
+    is_nonlinear: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -58,7 +58,7 @@ class Propagated:
         scene: Scene with the inputs at their middle.
         answer: Answer to this scene.
         quantities: Quantities with their uncertainties.
-        correlation: Correlation of the last steps of the quantities, in their order; zero where one does not vary.
+        correlation: Correlation of the last steps of the quantities, in their order; zero if one does not vary.
         solved: Number of scenes solved.
     """
 
@@ -157,9 +157,9 @@ def _differences(name: str, middle: Values, changed: FloatArray, inputs: Uncerta
     changes, curvature = (above - below) / 2, (above + below) / 2 - np.array(middle.values)
     factors = _root(inputs.correlation).T @ changes
     quantity = _quantity(name, middle, factors)
-    bends = np.any(np.abs(curvature).max(axis=0) > BENT * quantity.inputs + 5e-10 * middle.scale)
+    nonlinear = np.any(np.abs(curvature).max(axis=0) > NONLINEAR * quantity.inputs + 5e-10 * middle.scale)
     by_input = dict(zip((entry.name for entry in inputs.inputs), changes, strict=True))
-    return replace(quantity, by_input=by_input, bends=bool(bends)), factors
+    return replace(quantity, by_input=by_input, is_nonlinear=bool(nonlinear)), factors
 
 
 def _sampled(name: str, middle: Values, changed: FloatArray) -> Contributions:
@@ -171,6 +171,7 @@ def _sampled(name: str, middle: Values, changed: FloatArray) -> Contributions:
 
 
 def _quantity(name: str, middle: Values, factors: FloatArray) -> PropagatedQuantity:
+    """The quantity with its values at the middle, and the uncertainty by the factors of its variance."""
     return PropagatedQuantity(
         name=name,
         unit=middle.unit,

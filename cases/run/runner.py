@@ -44,11 +44,11 @@ class ProgressEvent:
     Attributes:
         kind: "planned" once, then "finished" or "reused" for each task, "judged" for each case; "stopped" when the
             cluster that solves is lost.
-        label: The task or case in words.
-        done: Tasks behind.
-        total: Tasks in all.
-        status: End of the task or case; None for "planned" and "stopped".
-        reason: Reason of a status other than PASS, or of the end of a run that stopped.
+        label: Task or case in words.
+        done: Number of finished tasks.
+        total: Number of all tasks.
+        status: Result of the task or case; None for "planned" and "stopped".
+        reason: Reason of a status other than PASS, or why the run stopped.
     """
 
     kind: Literal["planned", "finished", "reused", "judged", "stopped"]
@@ -110,7 +110,7 @@ class _Run:
     answers: dict[Identity, Answer] = field(default_factory=dict)
 
     def finish(self, job: Job, answer: Answer) -> None:
-        """Keep the answer of a task."""
+        """Store the answer of a task."""
         self.answers[answer.identity] = answer
         try:
             self.stream.write(answer.line())
@@ -118,9 +118,9 @@ class _Run:
         except OSError as error:
             place = self.options.out / NAME
             raise InvalidInput(f"{place}: cannot be written ({error.strerror}); make room and resume") from None
-        self.tell("finished", job.task.label, answer.status, answer.reason)
+        self.report("finished", job.task.label, answer.status, answer.reason)
 
-    def tell(
+    def report(
         self,
         kind: Literal["planned", "finished", "reused", "judged", "stopped"],
         label: str,
@@ -145,28 +145,29 @@ def run_cases(cases: Sequence[Case], options: RunOptions) -> Run:
 
 
 def _run(cases: Sequence[Case], options: RunOptions) -> Run:
+    """Plan, solve and judge the cases, and write the run; the folder is locked."""
     started, clock = datetime.now(UTC), time.perf_counter()
     jobs = [job_of(task) for task in plan(cases, timing=options.timing, only_costs=options.only_costs)]
     reused = _reused(options, jobs)
     complete = True
     with (options.out / NAME).open("a", encoding="utf-8") as stream:
         run = _Run(options, stream, total=len(jobs))
-        run.tell("planned", f"{len(cases)} case{'s' * (len(cases) != 1)}")
+        run.report("planned", f"{len(cases)} case{'s' * (len(cases) != 1)}")
         for job, answer in reused:
             run.answers[answer.identity] = answer
-            run.tell("reused", job.task.label, answer.status, answer.reason)
+            run.report("reused", job.task.label, answer.status, answer.reason)
         try:
             _carry_out(run, [job for job in jobs if job.task.identity not in run.answers])
         except KeyboardInterrupt:
             complete = False
         except ClusterLost as error:
             complete = False
-            run.tell("stopped", "run", reason=f"{error}; finished solutions are kept, go on with --resume")
+            run.report("stopped", "run", reason=f"{error}; finished solutions are kept, go on with --resume")
     table = Table(run.answers.values())
     made = stamp(started, time.perf_counter() - clock)
     judged = judge(cases, table, made)
     judged = replace(judged, suite=options.suite, methods=options.methods, complete=complete)
-    _tell_judged(run, judged, table)
+    _report_judged(run, judged, table)
     write_run(judged, options.out)
     return Run(judged=judged, answers=table)
 
@@ -218,7 +219,7 @@ def words_of(case: Case) -> CaseText:
 def _reused(options: RunOptions, jobs: list[Job]) -> list[tuple[Job, Answer]]:
     """Answers of an earlier run that are used again; the file is written anew with them alone.
 
-    They are those to the same question by the same code, but for time limits and breakdowns.
+    Their hashes of question and code are those of the jobs; timeouts and breakdowns are solved again.
     """
     file = options.out / NAME
     earlier = Table(read_answers(file)) if options.resume and file.is_file() else Table()
@@ -233,16 +234,18 @@ def _reused(options: RunOptions, jobs: list[Job]) -> list[tuple[Job, Answer]]:
     return reused
 
 
-def _tell_judged(run: _Run, judged: Judged, table: Table) -> None:
+def _report_judged(run: _Run, judged: Judged, table: Table) -> None:
+    """Report the worst status of each case, or SKIP where a chosen method was not judged."""
     whole = Run(judged=judged, answers=table)
     for case in judged.cases:
         statuses = [verdict.status for verdict in judged.verdicts if verdict.case == case.name]
         status = worst([*statuses, *(answer.status for answer in table.of_case(case.name) if answer.status.is_failure)])
         skipped = not status.is_failure and bool(whole.unjudged_in(case.name))
-        run.tell("judged", case.name, Status.SKIP if skipped else status)
+        run.report("judged", case.name, Status.SKIP if skipped else status)
 
 
 def _carry_out(run: _Run, jobs: list[Job]) -> None:
+    """Solve the jobs in the executor of the run, then the timed ones, one by one."""
     _solve_in(run, run.options.executor, run.options.jobs, [job for job in jobs if not job.task.timed])
     alone = serial if run.options.executor is serial else fresh_processes
     _solve_in(run, alone, 1, [job for job in jobs if job.task.timed])

@@ -14,7 +14,7 @@ from cases.recording import fields_at, recorded
 from cases.run.apart import ProcessDied, TimeLimitReached, apart
 from cases.run.from_refinement import with_estimated_errors
 from cases.run.keys import code, question
-from cases.run.timing import forget, timed_warm
+from cases.run.timing import clear_caches, timed_warm
 from cases.verdicts import Status
 from contact import ContactPath, Method, NotConvergedError, Solution, UnsupportedSceneError
 from contact.records.errors import printable
@@ -22,14 +22,14 @@ from contact.records.errors import printable
 
 @dataclass(frozen=True)
 class Job:
-    """A task with all that answers it: built where the run was started, solved anywhere.
+    """A task with its method and hashes, built where the run is started and solved in any process.
 
     Attributes:
         task: Task to solve.
         method: Method with its settings.
-        question: Hash of the scene and of the settings asked for.
+        question: Hash of the scene and of the requested settings.
         code: Hash of all else that the answer depends on.
-        estimated: Whether a method that states no errors is refined for them, which takes many times its own time.
+        estimated: Whether a method that states no errors is refined to estimate them, which takes many times as long.
     """
 
     task: Task
@@ -39,7 +39,7 @@ class Job:
     estimated: bool = False
 
     def answer(self, status: Status = Status.PASS, reason: str = "") -> Answer:
-        """Return an answer without numbers, and why there are none."""
+        """Return an answer without quantities, with its status and reason."""
         task = self.task
         return Answer(
             case=task.case,
@@ -106,11 +106,12 @@ def answered(job: Job) -> Answer:
 
 
 def _solved(job: Job) -> Answer:
+    """Answer of a job with quantities and costs; a timed task is solved repeatedly."""
     task, method = job.task, job.method
     if task.timed or task.first:
         # This loads what the method imports on demand.
         method.solve(task.problem)
-        forget()
+        clear_caches()
     start = time.perf_counter()
     solutions = deque([_solution(task, method)], maxlen=1)
     cold = time.perf_counter() - start
@@ -136,7 +137,7 @@ def _solved(job: Job) -> Answer:
 
 
 def _solution(task: Task, method: Method) -> Solution:
-    """The solution; where its time counts, the fields inside that are kept of it count too."""
+    """The solution; that of a timed task with the recorded fields inside, whose time counts."""
     solution = method.solve(task.problem)
     if task.timed and task.sampling.inside and isinstance(solution, ContactPath):
         fields_at(solution, task.sampling)

@@ -50,6 +50,7 @@ def is_dirty() -> bool:
 
 
 def _git(directory: Path, *arguments: str) -> str:
+    """Output of a git command, empty if it fails."""
     try:
         done = subprocess.run(
             ["git", *arguments], cwd=directory, capture_output=True, text=True, check=True, timeout=20
@@ -67,6 +68,7 @@ def _version(name: str) -> str:
 
 
 def _processor() -> str:
+    """Model name of the processor."""
     try:
         lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
     except OSError:

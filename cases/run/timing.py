@@ -47,6 +47,7 @@ def timed_warm(call: Callable[[], object], *, samples: int = SAMPLES, shortest: 
 
 
 def _seconds(call: Callable[[], object], loops: int) -> float:
+    """Mean time of a call over ``loops`` repetitions [s], without garbage collection."""
     collecting = gc.isenabled()
     gc.disable()
     try:
@@ -62,8 +63,8 @@ def _seconds(call: Callable[[], object], loops: int) -> float:
 PACKAGES = ("bem", "mdr", "fem_reference")
 
 
-def forget() -> None:
-    """Empty every cache that a module of a method keeps: flat-punch data, tables, meshes, quadrature."""
+def clear_caches() -> None:
+    """Empty every cache in the modules of methods: flat-punch data, tables, meshes, quadrature."""
     for name, module in tuple(sys.modules.items()):
         if name.partition(".")[0] in PACKAGES:
             for value in tuple(vars(module).values()):

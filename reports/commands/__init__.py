@@ -1,1 +1,1 @@
-"""What each command does; `reports.command_line` declares them and imports these modules only when they are called."""
+"""The commands, which `reports.command_line` declares and imports when they are called."""

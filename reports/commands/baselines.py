@@ -35,7 +35,7 @@ from reports.terminal import STYLES, console, progress_bar, show_table
 def run_gate(directory: Path, baselines: Path, *, methods: Collection[str], strict: bool, quiet: bool) -> int:
     """Gate the run in `directory`, write its verdicts and summaries again and return the exit code.
 
-    Pages with figures are drawn by `contact-verify report`: a gate is asked often, and a figure takes half a second.
+    Pages with figures are drawn by `contact-verify report`: a gate runs often, and a figure takes half a second.
 
     Args:
         directory: Folder of the run.
@@ -58,6 +58,7 @@ def run_gate(directory: Path, baselines: Path, *, methods: Collection[str], stri
 
 
 def _gated(run: Run, baselines: Path, methods: Collection[str]) -> Run:
+    """The run with verdicts against the baselines, without answers that the suite of the run need not solve."""
     accepted = read_baselines(baselines)
     if not accepted:
         raise InvalidInput(f"no baselines in {baselines}; name their folder, or accept a case first")
@@ -71,14 +72,14 @@ def _gated(run: Run, baselines: Path, methods: Collection[str]) -> Run:
     return gate(run, accepted, methods=methods, watched=watched)
 
 
-def accept_cases(*, names: list[str], directory: Path, baselines: Path, **asked: Any) -> None:
-    """Show for each case (all of the run if none is named) what would change; write it when told to.
+def accept_cases(*, names: list[str], directory: Path, baselines: Path, **options: Any) -> None:
+    """Print the changes of the accepted numbers of each case (all of the run if none is named), and write them.
 
     Args:
         names: Names of cases.
         directory: Folder of the run that the numbers come from.
         baselines: Folder that they are written to.
-        asked: Arguments reason, loosen, write and jobs, as `_accept` takes them.
+        options: Arguments reason, loosen, write and jobs of `_accept`; nothing is written without write.
 
     Raises:
         InvalidInput: With every case that may not be accepted and why; the others are written all the same.
@@ -95,7 +96,7 @@ def accept_cases(*, names: list[str], directory: Path, baselines: Path, **asked:
         if name not in ran:
             raise InvalidInput(f"the run in {directory} does not have {name}; run it first")
         try:
-            _accept(select(library, names=[name])[0], run, baselines, **asked)
+            _accept(select(library, names=[name])[0], run, baselines, **options)
         except InvalidInput as error:
             refused.append(str(error))
     if refused:
@@ -148,7 +149,7 @@ def _watched(case: Case, run: Run) -> Run:
 
 
 def change_table(proposal: Proposal) -> words.Table:
-    """Old, new, the change in units of the tolerance and of U; new records are only counted."""
+    """Old and new values, and their change in units of the tolerance and of U; new records are only counted."""
     changed = [change for change in proposal.changes if change.old is not None]
     new = len(proposal.changes) - len(changed)
     return words.Table(

@@ -134,7 +134,7 @@ def _relaxes(scene: Scene) -> bool:
 
 
 def _figures() -> Any:
-    # Matplotlib only where it is asked for.
+    # Matplotlib is loaded only for pictures.
     from reports import fit_figures  # noqa: PLC0415
 
     return fit_figures

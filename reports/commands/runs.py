@@ -31,8 +31,8 @@ from reports.tables import matrix_table, shortest_times, stress_tests
 from reports.terminal import STYLES, console, progress_bar, show_table
 from reports.words import Table, display_name
 
-# What methods of installed packages are compared with when no other method is named.
-REFEREE = "mdr"
+# Method with which methods of installed packages are compared when no other one is named.
+REFERENCE = "mdr"
 # The terminal shows so many failed checks; the page shows all.
 WORST_SHOWN = 12
 
@@ -99,7 +99,7 @@ def _cases(names: list[str], methods: list[str], others: list[str], suite: str) 
         return against([library[case.name] for case in select(library, names=names, suite=suite)], methods, others)
     cases = select({name: with_registered(case, methods) for name, case in library.items()}, names=names, suite=suite)
     if methods and set(methods) <= set(registered()):
-        return [beside(case, methods, REFEREE) for case in cases]
+        return [beside(case, methods, REFERENCE) for case in cases]
     # Of a suite those cases run that have one of the methods.
     solved = [case for case in cases if not methods or any(use.label in methods for use in case.methods)]
     chosen = [case.only_methods(methods) for case in ((not names and solved) or cases)]
@@ -107,7 +107,7 @@ def _cases(names: list[str], methods: list[str], others: list[str], suite: str) 
 
 
 def show_verdict(run: Run, page: Path, *, quiet: bool) -> None:
-    """The matrix (unless quiet), the worst findings, their cause, the verdict, the page, and annotations on GitHub."""
+    """Print the matrix (unless quiet), the worst findings, causes, the verdict, the page, and annotations on GitHub."""
     terminal = console()
     if not quiet:
         show_table(matrix_table(run), on=terminal)
@@ -167,9 +167,9 @@ def _show_case(case: Case) -> None:
 
 
 def cost(names: list[str], options: RunOptions, *, methods: list[str], settings: list[str], quiet: bool) -> int:
-    """Time the work studies of cases (only these methods, if any) alone on the machine; 1 if a reference broke down.
+    """Carry out the studies of cost of cases, of these methods if any are named; return 1 if a reference broke down.
 
-    A setting that is a list is a ladder of an installed package's method.
+    A setting of an installed package's method that is a list has one value per timed setting.
 
     Raises:
         InvalidInput: If no study times such a method.
@@ -177,8 +177,8 @@ def cost(names: list[str], options: RunOptions, *, methods: list[str], settings:
     for method in methods:
         check_known(method)
     chosen = select(load_cases(), names=names, suite=options.suite)
-    asked = read_settings(settings, methods)
-    timed = [case for case in (_of_methods(case, methods, asked) for case in chosen) if case.costs]
+    values = read_settings(settings, methods)
+    timed = [case for case in (_of_methods(case, methods, values) for case in chosen) if case.costs]
     if methods and not timed:
         raise InvalidInput(f"{', '.join(case.name for case in chosen)}: nothing times {' or '.join(methods)} there")
     result = _solved(timed, dataclasses.replace(options, only_costs=True), quiet=quiet)
@@ -191,11 +191,11 @@ def cost(names: list[str], options: RunOptions, *, methods: list[str], settings:
 
 
 def _of_methods(case: Case, methods: list[str], settings: Settings) -> Case:
-    """The case with the studies that time these methods, those of installed packages with the settings asked for."""
+    """The case with the studies that time these methods, those of installed packages with these settings."""
     if not methods:
         return case
-    rungs = [rung for name in registered() if name in methods for rung in ladder(name, settings.get(name, {}))]
-    studies = (study.of_methods(methods, rungs) for study in case.costs)
+    uses = [use for name in registered() if name in methods for use in ladder(name, settings.get(name, {}))]
+    studies = (study.of_methods(methods, uses) for study in case.costs)
     return dataclasses.replace(case, claims=tuple(study for study in studies if study.ladder), restricted=True)
 
 

@@ -39,10 +39,10 @@ from reports.words import small, with_prefix
 
 MESHES = {".vtu": "VTU for ParaView", ".xdmf": "XDMF for ParaView"}
 ENDINGS = {".csv": "CSV", ".h5": "HDF5", **PICTURES, **MESHES}
-# A picture of that name shows the layer inside, by these two methods where both model the scene.
+# A picture of this name shows the layer inside, by MDR and finite elements where both model the scene.
 INSIDE = "inside"
 OTHER_METHOD = {"fem": "mdr"}
-# Advice without an accuracy: effects below one per cent are called small.
+# Accuracy of advice where none is given.
 ADVISED_AT = 1e-2
 
 
@@ -73,7 +73,7 @@ class Request:
     outputs: Sequence[Path] = ()
 
     def check(self) -> None:
-        """Refuse what cannot be asked, before anything is solved.
+        """Refuse wrong values and combinations of options, before anything is solved.
 
         Raises:
             InvalidInput: For a wrong accuracy, file or combination.
@@ -98,18 +98,19 @@ class Request:
     def solver(self) -> Method:
         """The method, with the accuracies as settings where it has such settings."""
         name = self.method or "mdr"
-        asked = {"accuracy": self.accuracy, "pressure_accuracy": self.pressure_accuracy}
-        known = inspect.signature(load(name)).parameters
-        return build_guarded(name, {key: value for key, value in asked.items() if key in known and value is not None})
+        accuracies = {"accuracy": self.accuracy, "pressure_accuracy": self.pressure_accuracy}
+        settable = inspect.signature(load(name)).parameters
+        settings = {key: value for key, value in accuracies.items() if key in settable and value is not None}
+        return build_guarded(name, settings)
 
 
-def solve(scene_file: Path, **asked: Any) -> None:
-    """Solve the scene of a TOML file, print what was asked for (see `Request`), and write the files.
+def solve(scene_file: Path, **options: Any) -> None:
+    """Solve the scene of a TOML file, print the answer, and write the files, as the options of `Request` say.
 
     Raises:
         InvalidInput: For a wrong scene, method or ending; before anything is solved.
     """
-    request = Request(**asked)
+    request = Request(**options)
     request.check()
     scene = load_scene(scene_file)
     if request.advise:
@@ -135,14 +136,14 @@ def _answer(scene: Scene, request: Request) -> Solution:
 
 
 def _solved(scene: Scene, request: Request) -> tuple[Solution, list[tuple[str, str]]]:
-    """The answer; by methods from cheap to fine, with what they achieved, where an accuracy is asked for alone."""
+    """The answer and facts about it; with an accuracy and no method, methods are tried from cheap to fine."""
     if request.accuracy is None:
         return request.solver().solve(scene), []
     if request.method:
         solution = request.solver().solve(scene)
-        _refuse_less(solution, request.accuracy, request.pressure_accuracy)
+        _require_accuracy(solution, request.accuracy, request.pressure_accuracy)
         return with_accuracy_note(solution, request.accuracy, request.pressure_accuracy), []
-    from cases.accuracy import solve as solve_to_accuracy  # noqa: PLC0415 - where it is asked for
+    from cases.accuracy import solve as solve_to_accuracy  # noqa: PLC0415 - loaded only for an accuracy
 
     reached = solve_to_accuracy(scene, accuracy=request.accuracy, pressure_accuracy=request.pressure_accuracy)
     stated = f"stated error {small(reached.stated_error)}, asked for {small(request.accuracy)}, by {reached.method}"
@@ -157,7 +158,7 @@ def _show_answer(solution: Solution) -> None:
 
 def _notes(solution: Solution) -> list[tuple[str, str]]:
     """Notes on the effect of a smoothed tip, and on the validity of the theory."""
-    from cases.validity import validity_lines  # noqa: PLC0415 - MDR only where it is asked for
+    from cases.validity import validity_lines  # noqa: PLC0415 - MDR is loaded only for notes
 
     notes: list[tuple[str, str]] = []
     indenter = solution.scene.indenter
@@ -168,27 +169,27 @@ def _notes(solution: Solution) -> list[tuple[str, str]]:
     return notes + [("validity", line) for line in validity_lines(solution.scene, solution)]
 
 
-def _refuse_less(solution: Solution, accuracy: float, pressure_accuracy: float | None) -> None:
-    """Refuse an answer that states a larger error than was asked for, or none at all."""
-    less = shortfalls(solution, accuracy, pressure_accuracy)
-    if less:
-        worst = max(less, key=lambda name: less[name])
+def _require_accuracy(solution: Solution, accuracy: float, pressure_accuracy: float | None) -> None:
+    """Refuse an answer that states a larger error than the accuracy, or none at all."""
+    too_large = shortfalls(solution, accuracy, pressure_accuracy)
+    if too_large:
+        worst = max(too_large, key=lambda name: too_large[name])
         wanted = pressure_accuracy if worst == "pressure" else accuracy
         raise NotConvergedError(
-            f"{solution.method} estimates the relative error of {worst.replace('_', ' ')} at {less[worst]:.1e}, asked "
-            f"for {wanted:.1e}; name another method with --method, or ask for less"
+            f"{solution.method} estimates the relative error of {worst.replace('_', ' ')} at {too_large[worst]:.1e}, "
+            f"asked for {wanted:.1e}; name another method with --method, or ask for less"
         )
 
 
 def _uncertain(scene: Scene, scene_file: Path, request: Request) -> Solution:
     """Print the effect of uncertain inputs on the answer, and return the answer at their middle."""
-    from cases.run.propagation import propagate  # noqa: PLC0415 - only where it is asked for
+    from cases.run.propagation import propagate  # noqa: PLC0415 - loaded only for this option
 
     inputs = read_inputs(request.uncertain, scene, with_units=uses_units(scene_file))
     with progress_bar("solving"):
         propagated = propagate(scene, inputs, method=request.solver(), samples=request.samples)
     if request.accuracy is not None:
-        _refuse_less(propagated.answer, request.accuracy, request.pressure_accuracy)
+        _require_accuracy(propagated.answer, request.accuracy, request.pressure_accuracy)
     _show_answer(propagated.answer)
     show_table(propagated_table(propagated), on=console())
     return propagated.answer
@@ -196,7 +197,7 @@ def _uncertain(scene: Scene, scene_file: Path, request: Request) -> Solution:
 
 def _advise(scene: Scene, request: Request) -> None:
     """Print which effects, and whether the finite thickness, change the answer by more than the accuracy."""
-    from cases.advice import advise  # noqa: PLC0415 - only where it is asked for
+    from cases.advice import advise  # noqa: PLC0415 - loaded only for this option
 
     with progress_bar("solving without each effect"):
         lines = advise(build_guarded(request.method or "mdr", {}), scene, request.accuracy or ADVISED_AT).lines
@@ -210,7 +211,7 @@ def _sweep(scene: Scene, scene_file: Path, request: Request) -> None:
     Raises:
         InvalidInput: If every value is refused.
     """
-    from cases.sweep import read_range, sweep  # noqa: PLC0415 - only where it is asked for
+    from cases.sweep import read_range, sweep  # noqa: PLC0415 - loaded only for this option
 
     swept = read_range(request.over, scene, with_units=uses_units(scene_file))
     with progress_bar("solving") as progress:
@@ -227,7 +228,7 @@ def _sweep(scene: Scene, scene_file: Path, request: Request) -> None:
 
 
 def _pictures() -> Any:
-    from reports import pictures  # noqa: PLC0415 - Matplotlib only where it is asked for
+    from reports import pictures  # noqa: PLC0415 - Matplotlib is loaded only for pictures
 
     return pictures
 

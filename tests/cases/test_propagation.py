@@ -34,7 +34,7 @@ def test_hertz_force_is_known_as_well_as_the_modulus():
     np.testing.assert_allclose(relative(found, "normal_force"), 0.02, rtol=1e-9)
     np.testing.assert_allclose(found.quantity("indentation_depth").inputs, 0.0, atol=1e-15)
     assert found.solved == 3
-    assert not any(one.bends for one in found.quantities)
+    assert not any(quantity.is_nonlinear for quantity in found.quantities)
 
 
 def test_the_numerical_error_stands_beside_it():
@@ -92,10 +92,10 @@ def test_a_range_up_to_the_incompressible_layer_and_a_thickness():
     assert shares["thickness"][-1] < 0 < shares["poissons_ratio"][-1]
 
 
-def test_what_bends_is_said():
+def test_nonlinear_quantities_are_marked():
     found = propagate(HERTZ.replace(indenter=Cone(slope=0.1)), "slope=60%")
-    assert not found.quantity("normal_force").bends
-    assert propagate(AT_DEPTH, "values=60%").quantity("normal_force").bends
+    assert not found.quantity("normal_force").is_nonlinear
+    assert propagate(AT_DEPTH, "values=60%").quantity("normal_force").is_nonlinear
 
 
 def test_effects_and_detachments():

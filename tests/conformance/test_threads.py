@@ -15,7 +15,7 @@ from threadpoolctl import threadpool_info, threadpool_limits
 from bem.direct_method import IntegralEquationMethod
 from bem.flat_punch import IntegralEquation
 from bem.method import Bem
-from cases.run.timing import forget
+from cases.run.timing import clear_caches
 from contact import ContactRadii, IndentationDepths, Layer, Paraboloid, Scene, TruncatedCone
 from contact.answer.one_thread import one_thread
 from fem_reference import Fem
@@ -42,7 +42,7 @@ def digits(compute):
     """All bytes of what is computed from empty caches, on one thread and on four."""
     found = []
     for threads in (1, 4):
-        forget()
+        clear_caches()
         with threadpool_limits(threads):
             found.append([np.asarray(array).tobytes() for array in compute()])
             assert set(blas_threads()) == {threads}

@@ -1,4 +1,4 @@
-"""Plants what methods share wrong by one per cent and lists the checks that notice: `docs/shared.md`.
+"""Changes code that methods share by one per cent and lists the checks that then fail: `docs/shared.md`.
 
 python -m tests.planted.sharing_table > docs/shared.md
 """
@@ -17,7 +17,7 @@ from tests.planted.planting import forget_computed
 from tests.planted.sharing import FAULTS, OWN, PROBES, cases_under
 
 BOTH = ("mdr", "fem")
-USERS = {one.name: one.methods for one in SHARED} | {OWN.shared: ("fem",)}
+USERS = {entry.name: entry.methods for entry in SHARED} | {OWN.shared: ("fem",)}
 
 # Answers without any fault, by probe and task.
 RIGHT = {}
@@ -25,12 +25,12 @@ RIGHT = {}
 
 @dataclass(frozen=True)
 class Noticed:
-    """The checks that one fault was put to, before and with it."""
+    """Verdicts of the checks of a fault, in pairs without and with the fault."""
 
     checks: tuple
 
     def of(self, *, kinds=tuple(Kind), methods=None):
-        """Checks that passed before, of some kinds and (if given) of exactly these methods."""
+        """Verdicts with the fault, of checks of some kinds and methods that pass without it."""
         return [
             after
             for before, after in self.checks
@@ -38,7 +38,7 @@ class Noticed:
         ]
 
     def failing(self, **which):
-        """Those of them that fail with the fault."""
+        """Verdicts with the fault that fail; arguments as of `of`."""
         return [claim for claim in self.of(**which) if claim.status is not Status.PASS]
 
 
@@ -55,8 +55,8 @@ def answers(case, probe, affected, stored):
 
 
 def noticed(fault, patch, *, methods=EVERY, probes=None, kinds=tuple(Kind)):
-    """Put a fault to its probes, or to some of their methods and claims."""
-    found = []
+    """Return the checks of a fault by its probes, or by some of their methods and claims."""
+    pairs = []
     for name in probes or fault.probes:
         probe = PROBES[name]
         before = probe.narrowed(load_cases()[probe.case], methods, kinds)
@@ -68,12 +68,12 @@ def noticed(fault, patch, *, methods=EVERY, probes=None, kinds=tuple(Kind)):
             wrong = case.verdicts(answers(case, name, USERS[fault.shared], stored=False))
         forget_computed()
         cases_under(fault)
-        found += zip(right, wrong, strict=True)
-    return Noticed(tuple(found))
+        pairs += zip(right, wrong, strict=True)
+    return Noticed(tuple(pairs))
 
 
 def row(fault, seen):
-    """A line of the table."""
+    """Cells of the row of a fault."""
     pairs = seen.of(kinds=(Kind.AGREEMENT,), methods=BOTH)
     apart = seen.failing(kinds=(Kind.AGREEMENT,), methods=BOTH)
     others = seen.failing(kinds=(Kind.EXACT, Kind.INVARIANT, Kind.ORDER))
@@ -94,27 +94,34 @@ def row(fault, seen):
 
 HEAD = """# What two methods share
 
-Written by `python -m tests.planted.sharing_table`. The list is `cases/declare/shared.toml`, the faults are
-`tests/planted/sharing.py`. An agreement of two methods says nothing about what both use. "Independent method" is said
-only of a comparison that rests on no shared code; every other agreement names what is shared.
+Two methods that agree can both be wrong in the code that they share. This page lists that code and data, and the checks
+that fail if it is wrong by one per cent. Reports call a method independent only where the compared methods share no
+code; for every other agreement they name the shared code.
+
+`python -m tests.planted.sharing_table` writes this page from `cases/declare/shared.toml` and from the faults in
+`tests/planted/sharing.py`.
 
 ## The list
-| what | kind | where | used by | enters | what notices a mistake in it |
+| what | kind | module | used by | enters | checks that detect a mistake |
 |---|---|---|---|---|---|
 """
 MIDDLE = """
-Finite elements derive moduli, heights and slopes of profiles, the cubics between tabulated points, moduli over depth
-and relaxation functions from what the user gave, in lines of their own. Friction and stick share no code: the integral
-equations of `mdr.friction` serve MDR alone. Not listed: numpy, scipy and LAPACK, which all methods call;
-the check that a contact is one circle (`contact.answer.one_circle`), which refuses scenes and computes no number; first
-guesses of how far a contact reaches (`contact.scene.extent`), on which no answer rests; E* at the surface of a graded
-layer, which finite elements take as a unit only.
+Finite elements compute moduli, heights and slopes of profiles, the cubics between tabulated points, moduli over depth
+and relaxation functions from the scene by separate code. Friction and stick share no code: only MDR uses the integral
+equations of `mdr.friction`. Not listed are
 
-## Each shared thing wrong by one per cent
-A few scenes of the library, with the library's own tolerances. A thing that all methods share cannot part them; then
-checks against closed forms and tabulated values must notice, and do.
+- numpy, scipy and LAPACK, which all methods call,
+- the check that a contact is one circle (`contact.answer.one_circle`), which refuses scenes and computes no number,
+- first guesses of the contact radius (`contact.scene.extent`), on which no answer depends,
+- E* at the surface of a graded layer, which finite elements use as a unit only.
 
-| shared thing | wrong by 1 % | shared by | "MDR and fem" fail | forms, values, laws fail | others fail | which |
+## Each entry wrong by one per cent
+The checks are those of some scenes of the library, with their tolerances. Code that all methods share changes all
+answers alike. Its mistakes are detected by closed forms, tabulated values and laws of mechanics. Columns four to six
+have the numbers of failing checks: agreements of MDR and finite elements, then closed forms, tabulated values and laws,
+then other agreements.
+
+| entry | wrong by 1 % | shared by | MDR and fem | forms, values, laws | other agreements | failing checks |
 |---|---|---|---|---|---|---|
 """
 
@@ -124,18 +131,18 @@ def line(cells):
     return "| " + " | ".join(cells) + " |\n"
 
 
-def listed(one):
-    """A row of the list."""
-    where = ", ".join(one.quantities + one.cases).replace("_", " ") or "everything"
-    users = "all" if one.methods == EVERY else ", ".join(one.methods)
-    return one.name, str(one.kind), f"`{one.place}`", users, where, one.guard
+def listed(entry):
+    """Cells of the row of an entry in the list."""
+    where = ", ".join(entry.quantities + entry.cases).replace("_", " ") or "everything"
+    users = "all" if entry.methods == EVERY else ", ".join(entry.methods)
+    return entry.name, str(entry.kind), f"`{entry.place}`", users, where, entry.guard
 
 
 def page(rows):
     """The whole page."""
     kinds = list(Sharing)
-    ordered = sorted(SHARED, key=lambda one: kinds.index(one.kind))
-    return HEAD + "".join(line(listed(one)) for one in ordered) + MIDDLE + "".join(map(line, rows))
+    ordered = sorted(SHARED, key=lambda entry: kinds.index(entry.kind))
+    return HEAD + "".join(line(listed(entry)) for entry in ordered) + MIDDLE + "".join(map(line, rows))
 
 
 def main():

@@ -8,7 +8,7 @@ import pytest
 from cases.declare.guarded_method import build_guarded
 from cases.declare.methods import REFEREES, build
 from cases.referees import process
-from cases.referees.grids import FAR, box, heights
+from cases.referees.grids import LARGEST_HEIGHT, box, heights
 from contact import (
     Cone,
     ContactRadii,
@@ -50,7 +50,7 @@ def test_arrays_come_back_to_the_last_digit(worker):
         "import json, sys\nx = json.load(sys.stdin)['x']\nprint('talk')\n"
         "print(json.dumps({'twice': [2 * v for v in x]}))"
     )
-    assert process.ask("some", {"x": [0.1, 1 / 3]})["twice"].tolist() == [0.2, 2 / 3]
+    assert process.run_worker("some", {"x": [0.1, 1 / 3]})["twice"].tolist() == [0.2, 2 / 3]
 
 
 @pytest.mark.parametrize(
@@ -66,7 +66,7 @@ def test_arrays_come_back_to_the_last_digit(worker):
 def test_a_worker_that_fails_is_told_by_name(worker, text, words):
     worker(text)
     with pytest.raises(NotConvergedError, match=f"some .*{words}"):
-        process.ask("some", {})
+        process.run_worker("some", {})
 
 
 def test_an_absent_package_is_one_reason(monkeypatch):
@@ -102,4 +102,4 @@ def test_heights_on_the_grid_are_those_of_the_indenter_and_nothing_beyond_a_rim_
     assert cone[0, 0] == pytest.approx(-0.1 * np.hypot(1.5, 1.5), rel=1e-14, abs=0.0)
     assert np.all(cone == cone[::-1, ::-1])
     punch = np.array(heights(pressed(indenter=FlatPunch(radius=1.0)), 4, 4.0))
-    assert sorted(set(punch.ravel())) == [-FAR * 4.0, 0.0]
+    assert sorted(set(punch.ravel())) == [-LARGEST_HEIGHT * 4.0, 0.0]

@@ -1,10 +1,10 @@
-"""A statement of the paper: where it stands, what it says, what is computed to check it, and when it holds."""
+"""A statement of the paper, the number that is computed to check it, and the condition for it to be correct."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import StrEnum
 
-# "Good approximation" is taken as within 5 %, "agrees almost exactly" and "the same" as within half a per cent.
+# Tolerances of "good approximation", and of "agrees almost exactly" and "the same".
 GOOD = 0.05
 SAME = 0.005
 
@@ -13,11 +13,11 @@ FORMULA = "written formula"
 
 
 class StatementVerdict(StrEnum):
-    """How a statement ends."""
+    """Verdict on a statement of the paper, as `docs/paper.md` prints it."""
 
-    HOLDS = "holds"
-    LOOSER = "looser than the numbers"
-    SLIP = "slip of the print"
+    HOLDS = "correct"
+    LOOSER = "outside the tolerance"
+    SLIP = "misprint"
 
 
 @dataclass(frozen=True)
@@ -54,9 +54,9 @@ class Statement:
     otherwise: StatementVerdict = StatementVerdict.LOOSER
 
     def judged(self) -> tuple[Measured, StatementVerdict]:
-        """Compute the number and say whether the statement holds."""
-        found = self.measure()
-        return found, StatementVerdict.HOLDS if self.holds(found.value) else self.otherwise
+        """Return the computed number and the verdict on the statement."""
+        measured = self.measure()
+        return measured, StatementVerdict.HOLDS if self.holds(measured.value) else self.otherwise
 
 
 def deviation(value: float, reference: float, relative_error: float = 0.0) -> Measured:
