@@ -84,7 +84,7 @@ def test_the_surface_below_neither_sinks_unevenly_nor_slides(nu, support, ratio,
     punch = Adhered(StackKernel.single(support, nu), ratio, far=1.01)
     places = 1.0 + np.array([1e-3, 3e-3, 4.9e-3]) / max(1.0, ratio**2 / 25.0)
     beside = punch.beside(places)
-    monkeypatch.setattr(adhered_punch, "_BESIDE", 1.1)
+    monkeypatch.setattr(adhered_punch, "_POLYNOMIAL_END", 1.1)
     rounding = 1e-12 + 40.0 * np.finfo(float).eps * punch.condition
     assert beside == pytest.approx(punch.beside(places), rel=0, abs=rounding * np.abs(beside).max())
 
