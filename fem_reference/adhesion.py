@@ -444,6 +444,11 @@ def detachment_path(
     # Two meshes may agree in one number by accident, but to rounding only where the radius lies at a kink.
     least_error = LEAST_SHARE * np.max(list(number_errors.values()))
     number_errors = {n: np.where(e > 2 * FLOOR, np.maximum(e, least_error), e) for n, e in number_errors.items()}
+    # Where the displacement is stationary the force is not: it changes with the radius at which contact is lost.
+    lost_at, shift = numbers["pull_off_contact_radius"], number_errors["pull_off_contact_radius"]
+    shifted = np.clip(lost_at * (1 + shift * np.array([-1.0, 0.0, 1.0])), branch.pieces[0].low, branch.pieces[-1].high)
+    force_change = np.ptp(branch.load("force", shifted)) / abs(numbers["force_at_loss"])
+    number_errors["force_at_loss"] = np.maximum(number_errors["force_at_loss"], force_change)
     return DetachmentPath(
         scene=scene,
         method="fem",
