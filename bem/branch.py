@@ -99,7 +99,7 @@ class Branch:
         return (DEPTH, FORCE, MACHINE) if self.compliance else (DEPTH, FORCE)
 
     def radius(self, y: FloatArray, flat_radius: float = 0.0) -> FloatArray:
-        """a [m] at y, or a - flat_radius [m] without cancellation, shape (n,)."""
+        """Contact radius a [m] at y, or a - flat_radius [m] without cancellation, shape (n,)."""
         section = np.clip(self.section_ends.searchsorted(y, side="right") - 1, 0, self.radii.size - 2)
         excess = (self.radii[section] - flat_radius) + (y - self.section_ends[section]) ** 2
         return np.asarray(np.minimum(excess, self.radii[-1] - flat_radius))

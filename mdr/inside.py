@@ -104,7 +104,7 @@ class Body:
         return np.array([*rows, -i10 + z * i20, -2 * nu * i10, share * i10, -share * i21, -share * i20])
 
     def _integrals(self, r: FloatArray, z: FloatArray) -> FloatArray:
-        """I_00, I_10, I_20, I_01/r, I_11/r, I_21, shape (6, n)."""
+        """Integrals I_mn of the density phi: I_00, I_10, I_20, I_01/r, I_11/r, I_21, shape (6, n)."""
         surface, a = self.surface, self.a
         # Series of graded layers converge slowly at the edge: phi(a) is that of the series, as in its transform.
         edge = surface.edge_of_series if self.kernel.tail else surface.edge

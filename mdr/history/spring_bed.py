@@ -285,7 +285,7 @@ class SpringBed:
         return event
 
     def _course(self, i: NDArray[np.intp], motion: Motion, span: float, start: FloatArray) -> Course:
-        """Forces of springs i in contact, or gaps of free ones, from their states at shares `start`."""
+        """Forces of springs i in contact, or gaps of free ones, over an interval, from states at its shares `start`."""
         g, law = self.g[i], self.law
         if self.touching[i[0]]:
             constant, rates, shared = -law.long_term * g, 1 / law.times, motion.force

@@ -121,12 +121,16 @@ def test_lower_layers_that_pull_where_they_push(monkeypatch):
 
 
 @pytest.mark.slow
-def test_a_coefficient_one_per_cent_wrong_in_the_finite_elements(monkeypatch):
-    """What F adds to first order in mu is one per cent too large: the case's claim on reciprocity fails."""
+@pytest.mark.parametrize(("factor", "status"), [(1.01, Status.INCONCLUSIVE), (1.1, Status.FAIL)])
+def test_a_wrong_coefficient_in_the_finite_elements(factor, status, monkeypatch):
+    """What F adds to first order in mu is too large: the case's claim on reciprocity fails.
+
+    One per cent of it is within the stated error of the force, so that the claim asks for a finer mesh.
+    """
     right = Fem.solve
 
     def wrong(method, scene):
-        effects = tuple(e.replace(coefficient=1.01 * e.coefficient) for e in scene.effects)
+        effects = tuple(e.replace(coefficient=factor * e.coefficient) for e in scene.effects)
         return dataclasses.replace(right(method, scene.replace(effects=effects)), scene=scene)
 
     case = load_cases()["friction_paraboloid"]
@@ -135,10 +139,10 @@ def test_a_coefficient_one_per_cent_wrong_in_the_finite_elements(monkeypatch):
     left = dataclasses.replace(left, claims=(claim,))
     tasks = {task.identity: task for task in left.tasks()}
 
-    def failing():
+    def statuses():
         answers = Table(solve(job_of(task)) for task in tasks.values())
-        return [found for found in left.verdicts(answers) if found.status is Status.FAIL]
+        return [verdict.status for verdict in left.verdicts(answers)]
 
-    assert failing() == []
+    assert statuses() == [Status.PASS]
     monkeypatch.setattr(Fem, "solve", wrong)
-    assert [found.claim for found in failing()] == ["the first order is that of reciprocity"]
+    assert statuses() == [status]
