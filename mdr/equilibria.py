@@ -219,7 +219,7 @@ def _elastic_errors(scene: Scene, springs: Springs, state: State, values: Spring
     zero = np.zeros(a.size)
     a_error = zero if by_radius or is_punch else depth * _sensitivity(scene, springs, states)
     # At a prescribed force the depth, and at a prescribed depth the force, is stationary in the radius.
-    of_depth, of_force = depth if by_radius else force, force + (depth if by_radius else 0.0)
+    of_depth, of_force = (depth + force, depth + force) if by_radius else (force, force)
     # Pressures between the flat radius b and the edge vary like a - b.
     pressure = whole + a_error / np.maximum(1 - flat / a, 1e-12)
     # On thin layers w outside is a small difference of terms of the size of phi, K/a times the depth. An error of the
