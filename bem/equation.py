@@ -47,6 +47,9 @@ _TURNING = 24 * np.pi
 # Largest r/a at which tables for displacements outside the contact are cached, and number of polynomials times largest
 # k a from which on they are not cached: at 2e5 (a/h = 100) a table takes 10 MB.
 FAR, _LARGEST_TABLE = 4.0, 2e5
+# Orders of polynomials whose integrals of the tail from 0 diverge, and double periods of the quadrature instead: half
+# as many leave eight times the error.
+_FEW, _PERIODS = 4, 2000
 # Radii cached per layer, since searches return to the same radii. Half as many make searches slower.
 _CACHED_RADII = 400
 
@@ -61,6 +64,7 @@ class Sizes(NamedTuple):
         reach: Largest wave number, in units of the kernel.
         radii: Contact radii per octave, between which punches and resolvents are interpolated.
         extra: Number of further nodes of every other quadrature.
+        graded: Number of further polynomials on graded layers, where B is singular like (a - t) ln(a - t) at the edge.
     """
 
     least: int = 12
@@ -69,15 +73,12 @@ class Sizes(NamedTuple):
     reach: float = 21.0
     radii: int = 18
     extra: int = 0
+    graded: int = 60
 
-    def polynomials(self, octave: int, *, is_graded: bool, kinked: bool) -> int:
-        """Number of polynomials for contacts of a/h up to 2^octave.
-
-        On graded layers B is singular like (a - t) ln(a - t) at the edge. There series of kinked profiles converge
-        slowly, and the error is 1e-7 of the depth.
-        """
+    def polynomials(self, octave: int, *, is_graded: bool) -> int:
+        """Number of polynomials for contacts of a/h up to 2^octave."""
         count = self.least + int(self.rate * np.sqrt(2.0**octave))
-        return count + int((300 if kinked else 60) * (1 + self.extra / 12)) if is_graded else count
+        return count + int(self.graded * (1 + self.extra / 12)) if is_graded else count
 
     def scaled(self, factor: float) -> Sizes:
         """Sizes with about `factor` times the resolution."""
@@ -91,12 +92,14 @@ class Sizes(NamedTuple):
             reach=self.reach * min(1.0, share) + 3.0 * max(0.0, share - 1.0),
             radii=max(5, round(self.radii * share)),
             extra=round(12 * (share - 1.0)),
+            graded=self.graded,
         )
 
     @property
     def finer(self) -> Sizes:
         """Finer sizes, for error estimates: 6 further polynomials and nodes, a larger reach, 3 further radii."""
-        return Sizes(self.least + 6, self.rate, self.nodes + 6, self.reach + 3.0, self.radii + 3, self.extra + 6)
+        more = self.least + 6, self.rate, self.nodes + 6, self.reach + 3.0, self.radii + 3, self.extra + 6
+        return Sizes(*more, self.graded)
 
 
 USUAL = Sizes()
@@ -147,15 +150,12 @@ class Radius:
         a: Contact radius in units of the kernel.
         sizes: Sizes of the discretisation.
         octave: Binary logarithm of the largest radius for which the sizes are chosen; by default that of a, rounded up.
-        kinked: Whether the profiles have kinks, for which graded layers need more polynomials.
     """
 
-    def __init__(
-        self, kernel: ContactKernel, a: float, sizes: Sizes = USUAL, octave: int | None = None, *, kinked: bool = False
-    ) -> None:
+    def __init__(self, kernel: ContactKernel, a: float, sizes: Sizes = USUAL, octave: int | None = None) -> None:
         self.kernel, self.a, self.sizes = kernel, a, sizes
         octave = max(int(np.ceil(np.log2(max(a, 1e-3)))), -3) if octave is None else octave
-        self.count = sizes.polynomials(octave, is_graded=bool(kernel.tail), kinked=kinked)
+        self.count = sizes.polynomials(octave, is_graded=bool(kernel.tail))
         self.degree = np.sqrt(4 * np.arange(self.count) + 1)  # b_n(1)
         least = 5 * self.count + _TURNING if self.is_rooted else 0.0
         self._waves = _Waves(self._lowest(octave), max(sizes.reach * 2.0**octave, least), self.count, sizes.nodes)
@@ -274,14 +274,13 @@ class FlatPunches:
     Args:
         kernel: Kernel 1 - chi of the layer.
         sizes: Sizes of the discretisation.
-        kinked: Whether the profiles have kinks, for which graded layers need more polynomials.
     """
 
-    def __init__(self, kernel: ContactKernel, sizes: Sizes = USUAL, *, kinked: bool = False) -> None:
-        self.kernel, self.sizes, self.kinked = kernel, sizes, kinked
+    def __init__(self, kernel: ContactKernel, sizes: Sizes = USUAL) -> None:
+        self.kernel, self.sizes = kernel, sizes
         self._cached_row = lru_cache(maxsize=_CACHED_RADII)(self._row)
         self._rows = Octaves(self._solve, self._lowest(), sizes.radii)
-        self._factored = lru_cache(maxsize=8)(lambda a, octave: Radius(kernel, a, sizes, octave, kinked=kinked))
+        self._factored = lru_cache(maxsize=8)(lambda a, octave: Radius(kernel, a, sizes, octave))
 
     def _lowest(self) -> int:
         """Lowest octave, which includes all smaller radii: |B_00| < 0.45 there, so that one interpolant suffices."""
@@ -311,7 +310,7 @@ class FlatPunches:
         if self.kernel.is_uniform:
             return 0
         octave = next(self._rows.groups(np.array([a])))[0]
-        return self.sizes.polynomials(octave, is_graded=bool(self.kernel.tail), kinked=self.kinked)
+        return self.sizes.polynomials(octave, is_graded=bool(self.kernel.tail))
 
     def radius(self, a: float) -> Radius:
         """The equation at one contact radius; the last 8 are cached."""
@@ -328,9 +327,9 @@ class FlatPunches:
 
 
 @lru_cache(maxsize=128)
-def flat_punches(kernel: ContactKernel, sizes: Sizes, *, kinked: bool = False) -> FlatPunches:
-    """Flat punches on a layer, cached; `kinked` profiles need more polynomials on graded layers."""
-    return FlatPunches(kernel, sizes, kinked=kinked and bool(kernel.tail))
+def flat_punches(kernel: ContactKernel, sizes: Sizes) -> FlatPunches:
+    """Flat punches on a layer, cached."""
+    return FlatPunches(kernel, sizes)
 
 
 def _critical(mu: NDArray[np.floating], nu: NDArray[np.floating] | float, power: int) -> FloatArray:
@@ -341,12 +340,19 @@ def _critical(mu: NDArray[np.floating], nu: NDArray[np.floating] | float, power:
     return np.asarray(np.exp(size) * np.nan_to_num(gammasgn(over[0]) * gammasgn(over[2])))
 
 
+@lru_cache(maxsize=16)
+def _far_transforms(end: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Wave numbers kappa over `_PERIODS` double periods from `end` on, weights, and the first `_FEW` c_n(kappa)."""
+    kappa, w = panels(end + 4 * np.pi * np.arange(_PERIODS + 1), 20)
+    return kappa, w, _scale(_FEW)[:, None] * even_bessel(kappa, _FEW)
+
+
 @lru_cache(maxsize=64)
 def _tails(waves: _Waves, power: int) -> tuple[FloatArray, FloatArray]:
     """Integrals of x^-power c_m c_n and of x^-power cos(x) c_n from the end of the table to infinity.
 
     They are the integrals from 0 less the part that the table integrates. For the lowest orders the integrals from 0
-    diverge, and a quadrature over 2000 periods replaces them.
+    diverge, and a quadrature over `_PERIODS` double periods replaces them.
     """
     kappa, w, table = _transforms(waves)
     n, scale = np.arange(waves.orders), _scale(waves.orders)
@@ -355,11 +361,10 @@ def _tails(waves: _Waves, power: int) -> tuple[FloatArray, FloatArray]:
         side = np.pi / 2 * _critical(2 * n + 0.5, -0.5, power) * scale
         thin = w / kappa**power
         matrix, column = whole - (table * thin) @ table.T, side - table @ (thin * np.cos(kappa))
-    few = min(waves.orders, 4)
-    end, periods = waves.ends[-1], 2000
-    far, v = panels(end + 4 * np.pi * np.arange(periods + 1), 20)
-    rows = scale[:few, None] * even_bessel(far, few)
-    last, m = end + 4 * np.pi * periods, n[:few]
+    few = min(waves.orders, _FEW)
+    far, v, rows = _far_transforms(waves.ends[-1])
+    rows, m = rows[:few], n[:few]
+    last = waves.ends[-1] + _PERIODS * 4 * np.pi
     rest = last ** (-power - 1.0) / (2 * (power + 1))  # mean of sin^2
     outer = (rows * v / far**power) @ rows.T + rest * np.sqrt((4 * m[:, None] + 1) * (4 * m + 1))
     matrix[:few, :few] = np.where(m[:, None] + m < 3, outer, matrix[:few, :few])

@@ -165,10 +165,13 @@ class Octaves:
         function: Maps positions, shape (n,), and the number of their octave to values, shape (n, m).
         lowest: Binary logarithm of the end of the first interval.
         count: Nodes per octave.
+        together: Number of neighbouring octaves that are sampled in one call, with the number of the first.
     """
 
-    def __init__(self, function: Callable[[FloatArray, int], FloatArray], lowest: int, count: int) -> None:
-        self.function, self.lowest = function, lowest
+    def __init__(
+        self, function: Callable[[FloatArray, int], FloatArray], lowest: int, count: int, together: int = 1
+    ) -> None:
+        self.function, self.lowest, self.together = function, lowest, together
         self.panels: dict[int, FloatArray] = {}
         self._nodes, _ = gauss(count)
         self._weights = barycentric(self._nodes)
@@ -181,9 +184,19 @@ class Octaves:
 
     def __call__(self, x: FloatArray, octave: int) -> FloatArray:
         """Values at positions within one octave, shape (n, m)."""
-        low = 0.0 if octave == self.lowest else 0.5
         if octave not in self.panels:
-            self.panels[octave] = self.function((low + (1 - low) * self._nodes) * 2.0**octave, octave)
+            self._sample(octave - (octave - self.lowest) % self.together)
+        low = self._low(octave)
         gap = ((x / 2.0**octave - low) / (1 - low))[:, None] - self._nodes
         weights = self._weights / np.where(gap == 0, 1e-200, gap)
         return np.asarray((weights @ self.panels[octave]) / weights.sum(axis=1)[:, None])
+
+    def _low(self, octave: int) -> float:
+        """Beginning of an octave over its end."""
+        return 0.0 if octave == self.lowest else 0.5
+
+    def _sample(self, first: int) -> None:
+        """Sample the function on `together` octaves from the first one on."""
+        octaves = range(first, first + self.together)
+        x = [(self._low(o) + (1 - self._low(o)) * self._nodes) * 2.0**o for o in octaves]
+        self.panels |= zip(octaves, np.split(self.function(np.concatenate(x), first), self.together), strict=True)

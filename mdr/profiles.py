@@ -19,7 +19,7 @@ import numpy as np
 from numpy.polynomial import Chebyshev
 from numpy.typing import NDArray
 
-from bem.numerics import EPS, abel_legendre, gauss, special
+from bem.numerics import EPS, abel_legendre, gauss, graded, special
 from contact.records.validation import FloatArray
 from contact.scene.profiles import (
     Cone,
@@ -137,6 +137,16 @@ class Tip:
             table[part] = (weight[:, None, :] @ abel_legendre(np.sin(angle), count))[:, 0]
         return table
 
+    def logarithmic_moment(self, x: FloatArray, extra: int = 0) -> FloatArray:
+        """int_0^1 g_hs(x s) ln(1 - s^2) ds = 2 x int_0^(pi/2) f'(x cos t) (ln(2 sin t) - 1) sin^2 t dt at x > 0 [m]."""
+        total, (v, weights) = np.empty_like(x), graded(10 + extra)
+        for part in self._parts(x, v.size):
+            angle, w = _on_panels(self._ends(x[part]), v, weights)
+            sine = np.maximum(np.sin(angle), 1e-300)
+            slope = self.slope(x[part, None] * np.cos(angle))
+            total[part] = 2 * x[part] * (w * slope * (np.log(2 * sine) - 1) * sine**2).sum(axis=1)
+        return total
+
     _crowds = True
 
     def _parts(self, x: FloatArray, count: int) -> list[NDArray[np.intp]]:
@@ -144,16 +154,25 @@ class Tip:
         each = max(1, _BLOCK // (count * (len(self.cuts) + 1) * (16 + count)))
         return [np.arange(i, min(i + each, x.size)) for i in range(0, x.size, each)]
 
-    def _angles(self, x: FloatArray, nodes: Callable[[float], int]) -> tuple[FloatArray, FloatArray]:
-        """Quadrature over r = x cos t, flat < r < x, cut at `cuts`: angles and weights, shape (x.size, n)."""
+    def _ends(self, x: FloatArray) -> FloatArray:
+        """Angles t from 0 to that of the flat end, r = x cos t, cut at `cuts`, shape (x.size, panels + 1)."""
         inner = np.array([r for r in self.cuts if r < x.max()][::-1] + ([] if self.flat else [0.0]))
         far = np.sqrt(np.maximum((x[:, None] - inner) * (x[:, None] + inner), 0))
-        ends = np.concatenate([np.zeros((x.size, 1)), np.arctan2(far, inner)], axis=1)
-        span = np.diff(ends)[..., None]
-        v, w = gauss(nodes(float(span.max(initial=0))))
+        return np.concatenate([np.zeros((x.size, 1)), np.arctan2(far, inner)], axis=1)
+
+    def _angles(self, x: FloatArray, nodes: Callable[[float], int]) -> tuple[FloatArray, FloatArray]:
+        """Quadrature over r = x cos t, flat < r < x: angles and weights, shape (x.size, n)."""
+        ends = self._ends(x)
+        v, w = gauss(nodes(float(np.diff(ends).max(initial=0))))
         if self._crowds:  # towards the inner end, where t is largest
             v, w = 1 - v**_CROWDING, w * _CROWDING * v ** (_CROWDING - 1)
-        return (ends[:, :-1, None] + span * v).reshape(x.size, -1), (span * w).reshape(x.size, -1)
+        return _on_panels(ends, v, w)
+
+
+def _on_panels(ends: FloatArray, v: FloatArray, w: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Nodes and weights of a rule on [0, 1] on all panels between ends of shape (m, panels + 1), shape (m, n) each."""
+    span = np.diff(ends)[..., None]
+    return (ends[:, :-1, None] + span * v).reshape(len(ends), -1), (span * w).reshape(len(ends), -1)
 
 
 class FlatTip(Tip):

@@ -113,7 +113,7 @@ class Springs:
     @cached_property
     def punches(self) -> FlatPunches:
         """Flat punches of all radii on this layer."""
-        return flat_punches(self.kernel, self.sizes, kinked=bool(self.tip.breaks))
+        return flat_punches(self.kernel, self.sizes)
 
     def radius(self, a: float) -> Radius:
         """The integral equation at a contact radius a [m]."""
@@ -128,10 +128,23 @@ class Springs:
             moments = self.tip.moments(a, punch.shape[1], self.sizes.extra)
             y1 = 1 + resolvent[:, 0]
             g_hs = self.tip.transform(a) if excess is None else self.tip.transform_beyond(excess[index])
-            transform = g_hs + (resolvent * moments).sum(axis=1)
+            transform = g_hs + (resolvent * moments).sum(axis=1) + self._beyond_series(a, moments)
             values.y1[index], values.g[index] = y1, transform / y1
             values.K[index], values.M[index] = a * punch[:, 0], a * (punch * moments).sum(axis=1)
         return values
+
+    def _beyond_series(self, a: FloatArray, moments: FloatArray) -> FloatArray | float:
+        """Part of g y_1 [m] at radii a [m] by the polynomials of higher degree, on graded layers.
+
+        There B(a, t) has the term -(c_1/pi) ln(a^2 - t^2), and so has the resolvent, with
+        int_0^1 b_n ln(1 - s^2) ds = -sqrt(4n + 1)/(n (2n + 1)), 2 ln 2 - 2 for n = 0.
+        """
+        if not self.kernel.tail:
+            return 0.0
+        n = np.arange(1, moments.shape[1])
+        series = moments @ np.append(2 * np.log(2) - 2, -np.sqrt(4 * n + 1) / (n * (2 * n + 1)))
+        whole = self.tip.logarithmic_moment(a, self.sizes.extra)
+        return np.asarray(self.kernel.tail[0] / np.pi * a / self.unit * (series - whole))
 
     def _rows(self, x: FloatArray) -> Iterator[Rows]:
         """Rows of flat punches at radii x [m], a block and an octave at a time."""

@@ -33,6 +33,8 @@ _R = TypeVar("_R", bound=Record)
 _DIGITS = 13
 # Units of length per thickness of a graded layer. With 4 wide contacts need more wave numbers, with 16 narrow ones.
 _GRADED_UNITS = 8.0
+# Octaves of wave numbers for which Riccati's equation is integrated together; one by one it takes three times as long.
+_TOGETHER = 16
 
 
 def surface_kernel(layer: ElasticLayer) -> SurfaceKernel:
@@ -183,7 +185,7 @@ class ContactKernel:
         surface = self.surface
         assert surface is not None
         lowest = -2 - int(np.ceil(np.log2(surface.longest)))
-        return Octaves(lambda k, _: (surface.chi(k) / k**self._power)[:, None], lowest, WAVES)
+        return Octaves(lambda k, _: (surface.chi(k) / k**self._power)[:, None], lowest, WAVES, _TOGETHER)
 
     def __getstate__(self) -> dict[str, Any]:
         """State without tables, which are computed again when needed."""
