@@ -5,7 +5,7 @@ import pytest
 
 from bem.equation import Sizes
 from cases.verdicts import Status
-from contact import ContactRadii, NotConvergedError
+from contact import ContactRadii, GradedLayer, LinearDepth, NotConvergedError
 from mdr.contact_surface import Surface
 from mdr.spring_bed import Springs
 from tests.bem import test_integral_equation_method
@@ -13,6 +13,8 @@ from tests.mdr import test_method
 from tests.planted.faults import LAYER, cone
 from tests.planted.guards import Claims
 from tests.planted.planting import forget_computed, override
+
+GRADED = GradedLayer(thickness=1e-3, youngs_modulus=LinearDepth(surface=2e6, base=8e6), poissons_ratio=0.3)
 
 
 @pytest.fixture(autouse=True)
@@ -67,15 +69,20 @@ def test_contact_stiffness_in_place_of_spring_stiffness_is_seen(monkeypatch):
 
 
 @pytest.mark.parametrize(
-    "coarser",
-    [{"least": 3, "rate": 1.0}, {"nodes": 7}, {"reach": 9.0}],
-    ids=["polynomials", "wave numbers", "reach"],
+    ("layer", "coarser"),
+    [
+        (test_method.LAYERS["bonded"], {"least": 3, "rate": 1.0}),
+        (test_method.LAYERS["bonded"], {"nodes": 7}),
+        (test_method.LAYERS["bonded"], {"reach": 9.0}),
+        (GRADED, {"least": 3, "rate": 1.0, "graded": 2}),
+    ],
+    ids=["polynomials", "wave numbers", "reach", "polynomials on a graded layer"],
 )
-def test_an_error_in_each_discretisation_is_stated(monkeypatch, coarser):
+def test_an_error_in_each_discretisation_is_stated(monkeypatch, layer, coarser):
     """Depth and force with one of the sizes too small err by no more than what is stated."""
-    exact = test_method.solve(test_method.LAYERS["bonded"], test_method.INDENTERS[0], ContactRadii([1e-3, 3e-3]))
+    exact = test_method.solve(layer, test_method.INDENTERS[0], ContactRadii([1e-3, 3e-3]))
     monkeypatch.setattr(Sizes, "scaled", lambda self, factor: self._replace(**coarser))
-    rough = test_method.solve(test_method.LAYERS["bonded"], test_method.INDENTERS[0], ContactRadii([1e-3, 3e-3]))
+    rough = test_method.solve(layer, test_method.INDENTERS[0], ContactRadii([1e-3, 3e-3]))
     for name in ("indentation_depth", "normal_force", "contact_stiffness"):
         true = np.abs(getattr(rough, name) / getattr(exact, name) - 1)
         assert true.max() > 1e-13
