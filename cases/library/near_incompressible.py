@@ -16,7 +16,7 @@ from typing import ClassVar
 
 from cases.answers import Answer
 from cases.case import Case, CaseScene, Task
-from cases.claims import PerScene
+from cases.claims import Claim
 from cases.cost import elastic_costs
 from cases.declare.methods import MethodUse
 from cases.library import _common as c
@@ -53,7 +53,7 @@ def incompressible_stiffness(scene: c.AnyScene) -> float:
 
 
 @dataclass(frozen=True, kw_only=True)
-class EvenAccuracy(PerScene):
+class EvenAccuracy(Claim):
     """On one and the same mesh the error exceeds that of the first scene by no more than the fraction ``tolerance``."""
 
     kind: ClassVar[Kind] = Kind.INVARIANT
@@ -65,17 +65,18 @@ class EvenAccuracy(PerScene):
         yield from places[1:] if places and places[0][0].name == SCENES[0].name else ()
 
     def needed(self, case: Case, scene: CaseScene, use: MethodUse) -> Iterator[Task]:
-        """Yield the reference of the scene, then both answers of the first scene."""
+        """Yield the answer and the reference of the scene, then both of the first scene."""
+        yield from super().needed(case, scene, use)
         first = case.scene(SCENES[0].name)
         for solved, label in ((scene, c.EQUATION.label), (first, use.label), (first, c.EQUATION.label)):
             yield case.task(solved, case.use(solved, label))
 
-    def judged(self, scene: CaseScene, label: str, answer: Answer, others: list[Answer]) -> Judgement:
+    def judged(self, case: Case, scene: CaseScene, answers: list[Answer]) -> Judgement:
         """Judge by how much the error is larger than that of the first scene."""
-        meshes = [compared.settings.get("mesh") for compared in (others[1], answer)]
+        meshes = [answers[which].settings.get("mesh") for which in (2, 0)]
         if meshes[0] is None or meshes[0] != meshes[1]:
             return nothing_compared(Status.INCOMPARABLE, f"not one mesh: {meshes[0]} and {meshes[1]}")
-        value, exact, first, first_exact = (a.quantities[self.quantity].values[-1] for a in (answer, *others))
+        value, exact, first, first_exact = (a.quantities[self.quantity].values[-1] for a in answers)
         growth = abs(value / exact - 1) / abs(first / first_exact - 1) - 1
         return judge_residual(growth, tolerance=self.tolerance)
 

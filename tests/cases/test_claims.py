@@ -71,7 +71,8 @@ def test_a_limit_reached_to_the_last_bit_has_no_rate():
 def bound(values, bounds, **changes):
     claim = dataclasses.replace(STIFFER[0], tolerance=1e-9, **({"multiple": None} | changes))
     name = claim.quantity
-    return claim.judged(case_scene(0.3), "fast", answer("s", *values, name=name), [answer("s", *bounds, name=name)])
+    answers = [answer("s", *numbers, name=name) for numbers in (values, bounds)]
+    return claim.judged(fake_case(), case_scene(0.3), answers)
 
 
 @pytest.mark.parametrize(
@@ -101,7 +102,7 @@ def test_one_more_step_presses_like_a_flat_punch(stiffness_error, status):
     cone = answer("s", 0.0)
     quantities = {name: Values(unit="1", scale=1.0, values=tuple(v.tolist())) for name, v in values.items()}
     claim = Zero(name="slope", quantity="contact_stiffness", tolerance=1e-9, why=WHY, derive=incremental_stiffness)
-    judged = claim.judged(case_scene(0.3), "fast", dataclasses.replace(cone, quantities=quantities), [])
+    judged = claim.judged(fake_case(), case_scene(0.3), [dataclasses.replace(cone, quantities=quantities)])
     assert judged.status is status
 
 
@@ -122,6 +123,5 @@ def test_accuracy_on_one_mesh_stays_that_of_the_first_scene(error, mesh, status)
     def stiffness(value, mesh=""):
         return answer("s", value, name="contact_stiffness", settings={"mesh": mesh})
 
-    others = [stiffness(1.0), stiffness(1 + 1e-6, "m"), stiffness(1.0)]
-    scene = INCOMPRESSIBLE.scenes[-1]
-    assert claim.judged(scene, "fem one mesh", stiffness(1 + error, mesh), others).status is status
+    answers = [stiffness(1 + error, mesh), stiffness(1.0), stiffness(1 + 1e-6, "m"), stiffness(1.0)]
+    assert claim.judged(INCOMPRESSIBLE, INCOMPRESSIBLE.scenes[-1], answers).status is status
