@@ -17,7 +17,6 @@ from typing import ClassVar
 from cases.answers import Answer
 from cases.case import Case, CaseScene, Task
 from cases.claims import Claim
-from cases.cost import elastic_costs
 from cases.declare.methods import MethodUse
 from cases.library import _common as c
 from cases.library import _refinements as r
@@ -97,6 +96,6 @@ CLAIMS = (
     *r.studies(ALMOST, "edge cell", {STIFFNESS: 1.0}, against=EQUATION),
     *r.studies(ALMOST, "outer radius", (STIFFNESS,), **r.LATE),
     *r.studies(ALMOST, "P3 cells", {STIFFNESS: 6.0}, **r.LATE),
-    *elastic_costs("bonded nu=0.4999 a/h=1", ("normal_force",)),
+    *r.costs("elastic", "bonded nu=0.4999 a/h=1", ("normal_force",)),
 )
 CASE = c.paper(__name__, __doc__, SCENES, (c.MDR, c.FEM, ONE_MESH, c.BEM, c.EQUATION, c.TABLE), CLAIMS)
