@@ -27,6 +27,8 @@ from cases.library import _common as c
 from cases.library import _refinements as r
 from cases.library.friction_flat_punch import frictionless
 from contact import DepthHistory, Friction, IndentationDepths, Layer, Loading, Paraboloid
+from mdr import Mdr
+from mdr.friction.statement import friction_effect
 
 WHY = c.reasons("friction_paraboloid")
 # 80, 40 and 20 cells; the finer grid has 240, 120 and 60.
@@ -87,9 +89,6 @@ def coefficient(scene: c.AnyScene) -> float:
 
 def statement(scene: c.AnyScene, which: str) -> tuple[float, float]:
     """Return MDR's F_0 [N] and F/F_0: its lower or upper bound, or its first order in mu."""
-    from mdr import Mdr  # noqa: PLC0415 - a method is imported when used
-    from mdr.friction.statement import friction_effect  # noqa: PLC0415
-
     path = Mdr().solve(frictionless(scene))
     change = getattr(friction_effect(path, coefficient(scene)), which)
     return float(path.normal_force[0]), 1 + float(change[0])

@@ -5,9 +5,9 @@ Source: Eq. (31).
 
 Poisson's ratio up to exactly one half: no locking, and the right limit. Bonded layers of soft matter are nearly
 incompressible, and there displacement elements lock: their stiffness grows without bound as nu -> 1/2. A flat punch at
-a/h = 1 walks from nu = 0.3 to exactly 0.5. Mixed elements must stay as accurate as MDR says they are, and five digits must
-be right on one and the same mesh. The stiffness must approach that of the incompressible layer with the first order of
-1/2 - nu.
+a/h = 1 walks from nu = 0.3 to exactly 0.5. Mixed elements must stay as accurate as MDR says they are, and have five
+right digits on one and the same mesh. The stiffness must approach that of the incompressible layer with the first order
+of 1/2 - nu.
 """
 
 from cases.case import CaseScene
