@@ -97,7 +97,7 @@ CLAIMS = (
     c.equal("fit of Hermanowicz", "normal_force", fitted_force, ON_FITTED, WHY["fitted"], **FITTED),
     *c.agreements(BY_RADIUS, c.required("fem", "bem", "integral_equation")),
     *c.agreements(RESOLVED, c.required("mdr_table")),
-    *c.agreements(COARSE, c.COARSE, derived_from=COARSE_TABLE, suffix=", thin layers"),
+    *c.agreements(COARSE, c.WITHIN["a sixth"], derived_from=COARSE_TABLE, suffix=", thin layers"),
     *c.agreements(SEARCHED, BY_EQUATION, RADIUS),
     *c.agreements(SEARCHED, c.required("fem"), RADIUS, derived_from=OF_A_RADIUS),
     *c.pressure_agreements(BY_RADIUS, {"pressure: MDR and fem": "weighted L2"}, "the root at r = a limits"),

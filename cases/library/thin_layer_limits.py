@@ -95,7 +95,7 @@ CLAIMS = (
         for label in c.LAYERS
     ),
     *c.agreements(CHECKED, c.required("fem", "integral_equation")),
-    *c.agreements(CHECKED, c.COARSEST, why=WHY["coarse grids"]),
+    *c.agreements(CHECKED, c.WITHIN["a half"], why=WHY["coarse grids"]),
     *c.agreements(FAR, c.required("fem"), suffix=", far"),
     *r.studies(THIN, "nodes", QUANTITIES, against="integral_equation"),
     *r.studies(THIN, "nodes of the direct equation", ("normal_force",), against=r.FINEST_MDR),
