@@ -163,7 +163,12 @@ class Claim(Study, ABC):
 
     def missing(self, answers: list[Answer]) -> Judgement | None:
         """Return why the first answer without the quantity cannot be compared; None if all have it."""
-        return first_missing(*answers, quantity=self.quantity)
+        for answer in answers:
+            if not answer.solved:
+                return nothing_compared(answer.status, f"{answer.method}: {answer.reason}")
+            if self.quantity not in answer.quantities:
+                return nothing_compared(Status.SKIP, f"{answer.method} gives no {self.quantity.replace('_', ' ')}")
+        return None
 
     @abstractmethod
     def judged(self, case: Case, scene: CaseScene, answers: list[Answer]) -> Judgement:
@@ -215,16 +220,6 @@ def numbers_of(numbers: Numbers, quantity: str) -> list[float]:
     """Return the numbers of a quantity, one per step."""
     values = numbers[quantity] if isinstance(numbers, Mapping) else numbers
     return [float(value) for value in np.atleast_1d(np.asarray(values))]
-
-
-def first_missing(*answers: Answer, quantity: str = "") -> Judgement | None:
-    """Return why the first of the answers without numbers (of ``quantity``) cannot be compared, or None."""
-    for answer in answers:
-        if not answer.solved:
-            return nothing_compared(answer.status, f"{answer.method}: {answer.reason}")
-        if quantity and quantity not in answer.quantities:
-            return nothing_compared(Status.SKIP, f"{answer.method} gives no {quantity.replace('_', ' ')}")
-    return None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -399,10 +394,6 @@ class Agree(Claim):
     def labels(self, use: MethodUse) -> tuple[str, ...]:
         """Return both labels."""
         return self.together
-
-    def tolerance_of(self, label: str) -> float:
-        """Return the tolerance of the pair."""
-        return self.tolerance
 
     def expected(self, scene: CaseScene) -> float | None:
         """Return the difference that is expected: none."""
