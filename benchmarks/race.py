@@ -23,7 +23,7 @@ from pathlib import Path
 
 import numpy as np
 
-from cases.gate.accept import SOURCE, git
+from cases.run.stamp import SOURCE, git
 from cases.run.timing import SAMPLES
 from cases.verdicts import ExitCode, Status
 from contact import InvalidInput

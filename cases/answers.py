@@ -127,9 +127,9 @@ class Table:
         """Return the answer of that identity; None if there is none."""
         return self._answers.get(identity)
 
-    def of_case(self, case: str, *, variants: bool = False) -> list[Answer]:
-        """Return the answers of a case on its own scenes, with ``variants`` also those on changed scenes."""
-        return [answer for answer in self if answer.case == case and (variants or not answer.variant)]
+    def of_case(self, case: str) -> list[Answer]:
+        """Return the answers of a case on its own scenes, without those on changed ones."""
+        return [answer for answer in self if answer.case == case and not answer.variant]
 
     def rows(self) -> Iterator[dict[str, object]]:
         """The long table, one row per value: for CSV files, data frames and spreadsheets."""

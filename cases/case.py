@@ -23,23 +23,19 @@ class Sampling:
     Attributes:
         ring_edges: Radii [m] between rings, at whose Gauss nodes the pressure of the last step is recorded; empty
             records no pressure.
-        nodes: Gauss nodes on each ring.
-        scales: Declared scale of a quantity, by name; otherwise its largest magnitude.
         inside: Points of the layer at which fields of the last step are recorded: r over the contact radius, z over the
             smaller of contact radius and thickness; empty records none.
         laws: Whether the laws of elastic bodies are checked on these fields.
     """
 
     ring_edges: tuple[float, ...] = ()
-    nodes: int = 12
-    scales: dict[str, float] = field(default_factory=dict)
     inside: tuple[tuple[float, float], ...] = ()
     laws: bool = True
 
     @property
     def rings(self) -> RingQuadrature:
         """Gauss nodes and weights on the rings."""
-        return ring_quadrature(self.ring_edges, self.nodes)
+        return ring_quadrature(self.ring_edges)
 
 
 @dataclass(frozen=True, kw_only=True)

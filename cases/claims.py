@@ -7,7 +7,6 @@ from dataclasses import dataclass, field, replace
 from typing import ClassVar, Literal, TypeAlias
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from cases.answers import Answer, Table, Values
 from cases.case import Case, CaseScene, Task
@@ -141,13 +140,39 @@ class Claim(Study, ABC):
                 yield from ((scene, use) for label, use in uses.items() if label in labels)
 
     def tasks(self, case: Case) -> Iterator[Task]:
-        """Yield the tasks that the verdicts need in addition to the case's own."""
+        """Yield the tasks that the verdicts need."""
         for scene, use in self.places(case):
             yield from self.needed(case, scene, use)
 
     def needed(self, case: Case, scene: CaseScene, use: MethodUse) -> Iterator[Task]:
-        """Yield the other tasks whose answers one verdict needs."""
-        yield from ()
+        """Yield the tasks whose answers one verdict needs, that of the judged answer first."""
+        yield case.task(scene, use)
+
+    def answered(self, case: Case, answers: Table) -> Iterator[tuple[CaseScene, MethodUse, list[Answer]]]:
+        """Yield each scene and method of the claim whose needed answers are all present, with these answers."""
+        for scene, use in self.places(case):
+            present = [answers.get(task.identity) for task in self.needed(case, scene, use)]
+            if None not in present:
+                yield scene, use, [answer for answer in present if answer is not None]
+
+    def judge(self, case: Case, answers: Table) -> Iterator[Verdict]:
+        """Yield the verdict of each scene and method whose answers are present."""
+        for scene, use, present in self.answered(case, answers):
+            judged = self.missing(present) or self.judged(case, scene, present)
+            yield self._verdict(case, scene, use, present, judged)
+
+    def missing(self, answers: list[Answer]) -> Judgement | None:
+        """Return why the first answer without the quantity cannot be compared; None if all have it."""
+        for answer in answers:
+            if not answer.solved:
+                return nothing_compared(answer.status, f"{answer.method}: {answer.reason}")
+            if self.quantity not in answer.quantities:
+                return nothing_compared(Status.SKIP, f"{answer.method} gives no {self.quantity.replace('_', ' ')}")
+        return None
+
+    @abstractmethod
+    def judged(self, case: Case, scene: CaseScene, answers: list[Answer]) -> Judgement:
+        """Judge the answers of the needed tasks, which all have numbers, the judged one first."""
 
     def tolerance_of(self, label: str) -> float:
         """Return the tolerance of one method."""
@@ -161,31 +186,20 @@ class Claim(Study, ABC):
         """Return the number compared with, if it is a single one."""
         return None
 
-    def stated(self, scene: CaseScene, answers: list[Answer]) -> dict[str, float]:
-        """Return the error that each method states at the step compared, relative, by its label."""
-        return {}
-
     def identity(self, scene: CaseScene, labels: Iterable[str]) -> str:
         """Return why the comparison cannot fail on ``scene``, empty where it can."""
         on_half_space = {TABLE: NO_TABLE} if scene.scene.layer.is_half_space else {}
         return next((why[label] for why in (self.identities, on_half_space) for label in labels if label in why), "")
 
-    def verdict(
-        self,
-        case: Case,
-        scene: CaseScene,
-        use: MethodUse,
-        answer: Answer,
-        *,
-        judged: Judgement,
-        others: Sequence[Answer] = (),
+    def _verdict(
+        self, case: Case, scene: CaseScene, use: MethodUse, answers: list[Answer], judged: Judgement
     ) -> Verdict:
-        """Return the verdict of a judgement; two methods that share code or data are related, not independent."""
-        agreement, why = self.kind is Kind.AGREEMENT, self.why
-        common = in_common(answer.shared, others[0].shared, quantity=self.quantity, case=case.name) if agreement else ()
+        """The verdict of a judgement; two methods that share code or data are related, not independent."""
+        why, common = self.why, tuple[str, ...]()
+        if self.kind is Kind.AGREEMENT:
+            common = in_common(answers[0].shared, answers[1].shared, quantity=self.quantity, case=case.name)
         if common and why.origin is Origin.INDEPENDENT_METHOD:
             why = replace(why, origin=Origin.RELATED_METHOD)
-        compared = judged.error is not None
         return Verdict(
             case=case.name,
             claim=self.name,
@@ -195,10 +209,9 @@ class Claim(Study, ABC):
             quantity=self.quantity,
             expected=self.expected(scene),
             tolerance=self.tolerance_of(use.label),
-            uncertainty=self.stated(scene, [answer, *others]) if compared else {},
             why=why,
             shared=common,
-            identity=self.identity(scene, self.labels(use)) if compared else "",
+            identity="" if judged.error is None else self.identity(scene, self.labels(use)),
             **vars(judged),
         )
 
@@ -209,45 +222,8 @@ def numbers_of(numbers: Numbers, quantity: str) -> list[float]:
     return [float(value) for value in np.atleast_1d(np.asarray(values))]
 
 
-def first_missing(*answers: Answer, quantity: str = "") -> Judgement | None:
-    """Return why the first of the answers without numbers (of ``quantity``) cannot be compared, or None."""
-    for answer in answers:
-        if not answer.solved:
-            return nothing_compared(answer.status, f"{answer.method}: {answer.reason}")
-        if quantity and quantity not in answer.quantities:
-            return nothing_compared(Status.SKIP, f"{answer.method} gives no {quantity.replace('_', ' ')}")
-    return None
-
-
 @dataclass(frozen=True, kw_only=True)
-class PerScene(Claim, ABC):
-    """A claim that judges the answer of each method on each scene by itself, with those of its needed tasks."""
-
-    # Whether answers without the quantity cannot be compared.
-    needs_quantity: ClassVar[bool] = True
-
-    def judge(self, case: Case, answers: Table) -> Iterator[Verdict]:
-        """Judge each scene and method whose answers are present."""
-        for scene, use in self.places(case):
-            answer = answers.get(case.task(scene, use).identity)
-            others = [answers.get(task.identity) for task in self.needed(case, scene, use)]
-            if answer is not None and None not in others:
-                present = [other for other in others if other is not None]
-                judged = self._judged(scene, use, answer, present)
-                yield self.verdict(case, scene, use, answer, judged=judged, others=present)
-
-    def _judged(self, scene: CaseScene, use: MethodUse, answer: Answer, others: list[Answer]) -> Judgement:
-        """Judgement of an answer, or of a missing answer or quantity, which cannot be compared."""
-        absent = first_missing(answer, *others, quantity=self.quantity if self.needs_quantity else "")
-        return absent or self.judged(scene, use.label, answer, others)
-
-    @abstractmethod
-    def judged(self, scene: CaseScene, label: str, answer: Answer, others: list[Answer]) -> Judgement:
-        """Judge one answer, and those of the needed tasks, which all have numbers."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Equal(PerScene):
+class Equal(Claim):
     """The values along the steps equal expected ones, of a closed form or the literature.
 
     Attributes:
@@ -281,7 +257,8 @@ class Equal(PerScene):
         return numbers_of(numbers, self.quantity)
 
     def needed(self, case: Case, scene: CaseScene, use: MethodUse) -> Iterator[Task]:
-        """Yield the scene with each uncertain input one standard deviation up and down."""
+        """Yield the scene, then with each uncertain input one standard deviation up and down."""
+        yield from super().needed(case, scene, use)
         if not self.uncertain:
             return
         inputs, task = read_inputs(self.uncertain), case.task(scene, use)
@@ -290,35 +267,28 @@ class Equal(PerScene):
                 problem = inputs.scene_at(task.problem, deviations)
                 yield task.changed(f"{self.name}, {uncertain.name} {side}", problem)
 
-    def judged(self, scene: CaseScene, label: str, answer: Answer, others: list[Answer]) -> Judgement:
-        """Judge the worst step."""
-        return self._worst(scene, label, answer, others)[0]
-
-    def stated(self, scene: CaseScene, answers: list[Answer]) -> dict[str, float]:
-        """Return the stated error of the worst step, and the relative uncertainty by the inputs."""
-        answer, *others = answers
-        values, q = self.values(scene), answer.quantities[self.quantity]
-        step = self._worst(scene, answer.method, answer, others)[1]
-        size = max(abs(values[step]), q.scale if 0.0 in values else 0.0)
-        errors = {answer.method: q.error[step] / size} if q.error or self.uncertain else {}
-        return errors | ({"inputs": float(self._by_inputs(others)[step] / size)} if self.uncertain else {})
-
-    def _worst(self, scene: CaseScene, label: str, answer: Answer, others: list[Answer]) -> tuple[Judgement, int]:
-        """Judgement of the worst step against the expected values, and the number of that step."""
-        values, q = self.values(scene), answer.quantities[self.quantity]
+    def judged(self, case: Case, scene: CaseScene, answers: list[Answer]) -> Judgement:
+        """Judge the worst step against the expected values, with the stated error and the uncertainty by the inputs."""
+        values, q = np.array(self.values(scene)), answers[0].quantities[self.quantity]
         if len(values) != len(q.values):
             message = f"{len(q.values)} steps for {len(values)} expected values of {self.quantity}"
-            return nothing_compared(Status.INCOMPARABLE, message), 0
+            return nothing_compared(Status.INCOMPARABLE, message)
         scale = q.scale if 0.0 in values else 0.0
-        inputs: ArrayLike = COVERAGE * self._by_inputs(others) if self.uncertain else 0.0
-        stated = np.hypot(q.error or (0.0,) * len(values), inputs)
-        tolerance = self.tolerance_of(label)
+        size = np.maximum(np.abs(values), scale)
+        numerical = np.array(q.error or np.zeros_like(values))
+        stated = {answers[0].method: numerical} if q.error or self.uncertain else {}
+        if self.uncertain:
+            stated["inputs"] = self._by_inputs(answers[1:])
+        total = np.hypot(numerical, COVERAGE * stated.get("inputs", np.zeros_like(values)))
+        words = {"scale": scale, "tolerance": self.tolerance_of(answers[0].method)}
         judgements = [
-            judge_exact(v, e, scale=scale, tolerance=tolerance, stated=float(u))
-            for v, e, u in zip(q.values, values, stated, strict=True)
+            replace(
+                judge_exact(q.values[step], values[step], stated=total[step], **words),
+                uncertainty={name: float(errors[step] / size[step]) for name, errors in stated.items()},
+            )
+            for step in range(len(values))
         ]
-        worst = worst_judgement(judgements)
-        return worst, judgements.index(worst)
+        return worst_judgement(judgements)
 
     def _by_inputs(self, others: list[Answer]) -> FloatArray:
         """Standard uncertainty by the inputs at every step, from answers with each input up and then down."""
@@ -333,7 +303,7 @@ class Equal(PerScene):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Agree(PerScene):
+class Agree(Claim):
     """Difference of two methods plus both stated errors within the tolerance, of values or of a field in a norm.
 
     Attributes:
@@ -356,47 +326,33 @@ class Agree(PerScene):
         """Both methods."""
         return self.fast, self.reference
 
-    def tasks(self, case: Case) -> Iterator[Task]:
-        """Yield the refined solutions, whose change replaces a missing stated error."""
-        for scene, _ in self.places(case):
-            yield from self._refined(case, scene)
-
     def needed(self, case: Case, scene: CaseScene, use: MethodUse) -> Iterator[Task]:
-        """Yield the reference's task, then the refined ones."""
+        """Yield both methods' tasks, then those of the methods ``refined`` with half the discretisation length."""
+        yield from super().needed(case, scene, use)
         yield case.task(scene, case.use(scene, self.reference))
-        yield from self._refined(case, scene)
-
-    def _refined(self, case: Case, scene: CaseScene) -> Iterator[Task]:
-        """Yield the tasks of the methods ``refined`` with half the discretisation length."""
         for label in self.refined:
             yield case.task(scene, case.use(scene, label)).changed("refined", refined=1)
 
-    def _judged(self, scene: CaseScene, use: MethodUse, answer: Answer, others: list[Answer]) -> Judgement:
-        # A refined solution that failed leaves its method without a stated error.
-        absent = first_missing(answer, others[0], quantity=self.quantity)
-        return absent or self.judged(scene, use.label, answer, others)
+    def missing(self, answers: list[Answer]) -> Judgement | None:
+        """Return why the two methods cannot be compared; a refined solution may be missing."""
+        return super().missing(answers[:2])
 
-    def judged(self, scene: CaseScene, label: str, answer: Answer, others: list[Answer]) -> Judgement:
+    def judged(self, case: Case, scene: CaseScene, answers: list[Answer]) -> Judgement:
         """Judge the field, or the worst step; without a stated error there is no pass."""
-        judged, stated = self._compared(scene, [answer, *others])
-        without_error = [compared.method for compared in (answer, others[0]) if compared.method not in stated]
+        a, b = (answer.quantities[self.quantity] for answer in answers[:2])
+        if a.unit != b.unit or len(a.values) != len(b.values):
+            message = f"{len(a.values)} values in {a.unit} against {len(b.values)} in {b.unit}"
+            return nothing_compared(Status.INCOMPARABLE, message)
+        judged = self._field(scene, answers) if self.norm else self._steps(answers)
+        without_error = [answer.method for answer in answers[:2] if answer.method not in judged.uncertainty]
         if not without_error or judged.status.is_failure:
             return judged
         message = f"{without_error[0]} states no uncertainty of {self.quantity}: no verdict is possible"
         return nothing_compared(Status.INCONCLUSIVE, message)
 
-    def stated(self, scene: CaseScene, answers: list[Answer]) -> dict[str, float]:
-        """Return both stated errors."""
-        return self._compared(scene, answers)[1]
-
-    def _compared(self, scene: CaseScene, answers: list[Answer]) -> tuple[Judgement, dict[str, float]]:
-        """Judgement of the field, or of the worst step, and the relative errors that both methods state, by label."""
+    def _steps(self, answers: list[Answer]) -> Judgement:
+        """Judgement of the worst step."""
         a, b = (answer.quantities[self.quantity] for answer in answers[:2])
-        if a.unit != b.unit or len(a.values) != len(b.values):
-            message = f"{len(a.values)} values in {a.unit} against {len(b.values)} in {b.unit}"
-            return nothing_compared(Status.INCOMPARABLE, message), {}
-        if self.norm:
-            return self._field(scene, answers)
         x, y = np.array(a.values), np.array(b.values)
         size = np.where(y == 0.0, b.scale, np.abs(y))
         stated = {
@@ -404,21 +360,20 @@ class Agree(PerScene):
             for answer, q in zip(answers, (a, b), strict=False)
             if q.error
         }
+        differences = ((x - y) / size).tolist()
         steps = [{label: float(u[i]) for label, u in stated.items()} for i in range(len(x))]
-        judgements = [
-            judge_agreement(float((x[i] - y[i]) / size[i]), steps[i], tolerance=self.tolerance) for i in range(len(x))
-        ]
-        worst = worst_judgement(judgements)
-        return worst, steps[judgements.index(worst)]
+        return worst_judgement(
+            [judge_agreement(d, u, tolerance=self.tolerance) for d, u in zip(differences, steps, strict=True)]
+        )
 
-    def _field(self, scene: CaseScene, answers: list[Answer]) -> tuple[Judgement, dict[str, float]]:
-        """Judgement of the difference of two fields in the norm, and the error that each method states, by label."""
+    def _field(self, scene: CaseScene, answers: list[Answer]) -> Judgement:
+        """Judgement of the difference of two fields in the norm."""
         fields = {answer.method: answer.quantities[self.quantity] for answer in answers[:2]}
         stated = {label: q.error[0] for label, q in fields.items() if q.error and label not in self.refined}
         for label, finer in zip(self.refined, answers[2:], strict=True):
             if finer.solved:
                 stated[label] = self.distance(scene, fields[label], finer.quantities[self.quantity])
-        return judge_agreement(self.distance(scene, *fields.values()), stated, tolerance=self.tolerance), stated
+        return judge_agreement(self.distance(scene, *fields.values()), stated, tolerance=self.tolerance)
 
     def distance(self, scene: CaseScene, first: Values, second: Values) -> float:
         """Return the difference of two fields in the norm, without unit.
@@ -440,17 +395,13 @@ class Agree(PerScene):
         """Return both labels."""
         return self.together
 
-    def tolerance_of(self, label: str) -> float:
-        """Return the tolerance of the pair."""
-        return self.tolerance
-
     def expected(self, scene: CaseScene) -> float | None:
         """Return the difference that is expected: none."""
         return 0.0
 
 
 @dataclass(frozen=True, kw_only=True)
-class Changed(PerScene, ABC):
+class Changed(Claim, ABC):
     """A claim that compares an answer with that of a changed scene.
 
     Attributes:
@@ -462,7 +413,8 @@ class Changed(PerScene, ABC):
     change: Callable[[Scene], Scene]
 
     def needed(self, case: Case, scene: CaseScene, use: MethodUse) -> Iterator[Task]:
-        """Yield the task of the changed scene."""
+        """Yield the task of the scene and that of the changed one."""
+        yield from super().needed(case, scene, use)
         yield case.task(scene, use).changed(self.name, self.change(scene.scene))
 
 
@@ -475,17 +427,17 @@ class Law(Changed):
     """
 
     factors: Mapping[str, float]
-    needs_quantity: ClassVar[bool] = False
 
-    def judged(self, scene: CaseScene, label: str, answer: Answer, others: list[Answer]) -> Judgement:
+    def judged(self, case: Case, scene: CaseScene, answers: list[Answer]) -> Judgement:
         """Judge the residuals of all quantities and steps."""
+        tolerance = self.tolerance_of(answers[0].method)
         residuals: list[float] = []
         for name, factor in self.factors.items():
-            a, b = answer.quantities[name], others[0].quantities[name]
+            a, b = (answer.quantities[name] for answer in answers)
             if len(a.values) != len(b.values):
                 return nothing_compared(Status.INCOMPARABLE, f"the changed scene has {len(b.values)} steps of {name}")
             residuals += [(y - factor * x) / (factor * a.scale) for x, y in zip(a.values, b.values, strict=True)]
-        return worst_judgement([judge_residual(r, tolerance=self.tolerance_of(label)) for r in residuals])
+        return worst_judgement([judge_residual(r, tolerance=tolerance) for r in residuals])
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -500,20 +452,21 @@ class Bound(Changed):
     multiple: Callable[[Scene], float] | None = None
     at_most: bool = False
 
-    def judged(self, scene: CaseScene, label: str, answer: Answer, others: list[Answer]) -> Judgement:
+    def judged(self, case: Case, scene: CaseScene, answers: list[Answer]) -> Judgement:
         """Judge by how much the worst step violates the bound."""
         multiple = 1.0 if self.multiple is None else self.multiple(scene.scene)
-        original, changed = (solved.quantities[self.quantity] for solved in (answer, others[0]))
+        original, changed = (answer.quantities[self.quantity] for answer in answers)
+        tolerance = self.tolerance_of(answers[0].method)
         sign = -1.0 if self.at_most else 1.0
         violations = (
             max(0.0, sign * (multiple * changed_value - value)) / changed.scale
             for value, changed_value in zip(original.values, changed.values, strict=True)
         )
-        return worst_judgement([judge_residual(v, tolerance=self.tolerance_of(label)) for v in violations])
+        return worst_judgement([judge_residual(v, tolerance=tolerance) for v in violations])
 
 
 @dataclass(frozen=True, kw_only=True)
-class Zero(PerScene):
+class Zero(Claim):
     """A residual vanishes: a quantity of the answers, or a residual computed from them.
 
     Attributes:
@@ -524,15 +477,19 @@ class Zero(PerScene):
 
     derive: Callable[[CaseScene, Answer], Iterable[float]] | None = None
 
-    def _judged(self, scene: CaseScene, use: MethodUse, answer: Answer, others: list[Answer]) -> Judgement:
+    def missing(self, answers: list[Answer]) -> Judgement | None:
+        """Return why there is no residual; one that a method should publish, and does not, is incomparable."""
+        (answer,) = answers
         if answer.solved and self.derive is None and self.quantity not in answer.quantities:
             return nothing_compared(Status.INCOMPARABLE, f"{answer.method} publishes no {self.quantity}")
-        return super()._judged(scene, use, answer, others)
+        return super().missing(answers)
 
-    def judged(self, scene: CaseScene, label: str, answer: Answer, others: list[Answer]) -> Judgement:
+    def judged(self, case: Case, scene: CaseScene, answers: list[Answer]) -> Judgement:
         """Judge the worst residual."""
+        (answer,) = answers
+        tolerance = self.tolerance_of(answer.method)
         residuals = self.derive(scene, answer) if self.derive else answer.quantities[self.quantity].values
-        return worst_judgement([judge_residual(float(r), tolerance=self.tolerance_of(label)) for r in residuals])
+        return worst_judgement([judge_residual(float(r), tolerance=tolerance) for r in residuals])
 
     def identity(self, scene: CaseScene, labels: Iterable[str]) -> str:
         """Return nothing: a residual can always fail."""
@@ -569,16 +526,11 @@ class Approach(Claim):
                 if scene is scenes[-1] and use.label in before:
                     yield scene, use
 
-    def judge(self, case: Case, answers: Table) -> Iterator[Verdict]:
-        """Judge the sequence once for each method."""
-        for scene, use in self.places(case):
-            before = self.scenes_of(case)[-2]
-            near, far = (
-                answers.get(case.task(place, case.use(place, use.label)).identity) for place in (scene, before)
-            )
-            if near is not None and far is not None:
-                judged = first_missing(far, near) or self._limit((before, scene), (far, near))
-                yield self.verdict(case, scene, use, near, judged=judged)
+    def needed(self, case: Case, scene: CaseScene, use: MethodUse) -> Iterator[Task]:
+        """Yield the tasks of the last scene and of the one before."""
+        yield from super().needed(case, scene, use)
+        before = self.scenes_of(case)[-2]
+        yield case.task(before, case.use(before, use.label))
 
     def expected(self, scene: CaseScene) -> float | None:
         """Return the formal order."""
@@ -588,11 +540,12 @@ class Approach(Claim):
         """Return nothing: an order can always fail."""
         return ""
 
-    def _limit(self, scenes: tuple[CaseScene, CaseScene], answers: tuple[Answer, Answer]) -> Judgement:
+    def judged(self, case: Case, scene: CaseScene, answers: list[Answer]) -> Judgement:
         """Judge the rate; a failure that the stated error explains is inconclusive."""
+        scenes, answers = (self.scenes_of(case)[-2], scene), answers[::-1]
         pairs = [
-            (answer.quantities[self.quantity], numbers_of(self.limit(scene.scene), self.quantity)[0])
-            for scene, answer in zip(scenes, answers, strict=True)
+            (answer.quantities[self.quantity], numbers_of(self.limit(place.scene), self.quantity)[0])
+            for place, answer in zip(scenes, answers, strict=True)
         ]
         far, near = (q.values[-1] / limit - 1 for q, limit in pairs)
         # A value that is too large does not widen its own error.

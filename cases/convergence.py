@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import pairwise
+from itertools import islice, pairwise
 from typing import Any, ClassVar, TypeAlias
 
 import numpy as np
@@ -11,11 +11,11 @@ from scipy.optimize import brentq
 
 from cases.answers import Answer, Table, Values
 from cases.case import Case, CaseScene, Task
-from cases.claims import Claim, first_missing
+from cases.claims import Claim
 from cases.declare.methods import MethodUse
 from cases.rules import Judgement, judge_digits, judge_order, nothing_compared
 from cases.studies import Convergence, Grid
-from cases.verdicts import Kind, Status, Verdict
+from cases.verdicts import Kind, Status
 from contact import InvalidInput
 from contact.records.validation import FloatArray
 
@@ -62,53 +62,38 @@ class Order(Claim):
 
     def needed(self, case: Case, scene: CaseScene, use: MethodUse) -> Iterator[Task]:
         """Yield the grids, coarsest first, then the reference; claims about other quantities share them."""
-        for level in self._levels(case, scene, use):
-            yield from level
+        for level in self.ladder:
+            for settings in (level,) if isinstance(level, Mapping) else level:
+                yield _grid(case, scene, replace(use, settings=settings))
         if isinstance(self.against, MethodUse):
             yield _grid(case, scene, self.against)
         elif self.against:
             yield case.task(scene, case.use(scene, self.against))
 
-    def _levels(self, case: Case, scene: CaseScene, use: MethodUse) -> Iterator[tuple[Task, ...]]:
-        for level in self.ladder:
-            grids = (level,) if isinstance(level, Mapping) else level
-            yield tuple(_grid(case, scene, replace(use, settings=settings)) for settings in grids)
-
-    def judge(self, case: Case, answers: Table) -> Iterator[Verdict]:
-        """Yield the verdict of each scene whose grids and reference were all run; the first failed answer fails it."""
-        for scene, use, grids in self._answered(case, answers):
-            judged = first_missing(*grids) or self._order(self._study(case, scene, use, grids))
-            yield self.verdict(case, scene, use, grids[0], judged=judged)
-
-    def records(self, case: Case, answers: Table) -> Iterator[Convergence]:
-        """Yield the study of each scene whose grids were all solved."""
-        for scene, use, grids in self._answered(case, answers):
-            if all(answer.solved for answer in grids):
-                yield self._study(case, scene, use, grids)
-
-    def _answered(self, case: Case, answers: Table) -> Iterator[tuple[CaseScene, MethodUse, list[Answer]]]:
-        """Each scene whose grids and reference were all run, with these answers."""
-        for scene, use in self.places(case):
-            grids = [answers.get(task.identity) for task in self.needed(case, scene, use)]
-            if None not in grids:
-                yield scene, use, [answer for answer in grids if answer is not None]
-
-    def expected(self, scene: CaseScene) -> float | None:
-        """Return the formal order."""
-        return self.formal_order
-
-    def _order(self, study: Convergence) -> Judgement:
-        """Judge the observed order of a study, or its digits per refinement."""
+    def judged(self, case: Case, scene: CaseScene, answers: list[Answer]) -> Judgement:
+        """Judge the observed order, or the digits per refinement."""
+        study = self._study(case, scene, answers)
         if self.formal_order is not None:
             return judge_order(study.observed_order, self.formal_order, study.kind)
         if study.digits is None:
             return nothing_compared(Status.INCONCLUSIVE, "every grid is at the floor: start coarser")
         return judge_digits(study.digits, self.least_digits)
 
-    def _study(self, case: Case, scene: CaseScene, use: MethodUse, solved: list[Answer]) -> Convergence:
+    def records(self, case: Case, answers: Table) -> Iterator[Convergence]:
+        """Yield the study of each scene whose grids were all solved."""
+        for scene, _, present in self.answered(case, answers):
+            if self.missing(present) is None:
+                yield self._study(case, scene, present)
+
+    def expected(self, scene: CaseScene) -> float | None:
+        """Return the formal order."""
+        return self.formal_order
+
+    def _study(self, case: Case, scene: CaseScene, solved: list[Answer]) -> Convergence:
         """Study of a scene from its solved grids and, last, the answer of the reference."""
         remaining = iter(solved)
-        levels = [[next(remaining) for _ in level] for level in self._levels(case, scene, use)][::-1]
+        sizes = [1 if isinstance(level, Mapping) else len(level) for level in self.ladder]
+        levels = [list(islice(remaining, size)) for size in sizes][::-1]
         quantities = [_last(level[0], self.quantity) for level in levels]
         lengths = [self.ratio**level for level in range(1 - len(levels), 1)]
         values, scale = [_size(q.values) for q in quantities], quantities[0].scale

@@ -42,7 +42,7 @@ class RingQuadrature:
         return values.reshape(self.radius.shape)
 
 
-def ring_quadrature(edges: Sequence[float], nodes: int = 8) -> RingQuadrature:
+def ring_quadrature(edges: Sequence[float], nodes: int = 12) -> RingQuadrature:
     """Return Gauss-Legendre nodes on the rings between increasing ``edges`` [m].
 
     The nodes are those of r = centre - half cos(theta): clustered at both edges, so the square-root and logarithmic

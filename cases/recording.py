@@ -8,13 +8,11 @@ from cases.answers import Values
 from cases.case import Sampling
 from cases.declare.quantities import IMPACT_NUMBERS, values_of
 from cases.inside_laws import residuals
-from contact import UNITS, ContactPath, DetachmentPath, HistoryPath, ImpactHistory, Solution
+from contact import UNITS, ContactPath, HistoryPath, ImpactHistory, Solution
 from contact.answer.inside import InsideFields
 from contact.records.validation import FloatArray
 
 _SCALES = {"energy_residual": 1.0}  # already over the initial energy: its own size is rounding
-# Array of the branch whose stated error is that of a critical value.
-_ON_BRANCH = {"pull_off_force": "normal_force", "pull_off_depth": "indentation_depth", "force_at_loss": "normal_force"}
 # By recorded name: the stated error, and the fields inside that are concatenated over all points.
 GROUPS = {
     "displacement_inside": ("displacement", ("radial_displacement", "axial_displacement")),
@@ -27,14 +25,14 @@ STRESSES = ("radial_stress", "axial_stress", "von_mises")
 
 def recorded(solution: Solution, sampling: Sampling) -> dict[str, Values]:
     """Return the quantities and fields that a run records from an answer, by name."""
-    values = quantities(solution, sampling)
+    values = quantities(solution)
     if isinstance(solution, ContactPath):
         values |= _pressure(solution, sampling) if sampling.ring_edges else {}
         values |= dict(_inside(solution, sampling)) if sampling.inside else {}
     return values
 
 
-def quantities(solution: Solution, sampling: Sampling) -> dict[str, Values]:
+def quantities(solution: Solution) -> dict[str, Values]:
     """Return the quantities of the answer by name, in SI units and with their stated errors.
 
     Equilibria and detachments: arrays along the steps, and scalars. Histories: values at the last instant. Impacts: the
@@ -52,39 +50,29 @@ def quantities(solution: Solution, sampling: Sampling) -> dict[str, Values]:
         for name, error in solution.error_estimate.items()
         if name not in UNITS
     }
-    return {name: _quantity(solution, name, sampling, end) for name in names} | residual
+    return {name: _quantity(solution, name, end) for name in names} | residual
 
 
 def _floats(values: object) -> tuple[float, ...]:
     return tuple(np.atleast_1d(np.asarray(values, dtype=np.float64)).ravel().tolist())
 
 
-def _quantity(solution: Solution, name: str, sampling: Sampling, steps: slice) -> Values:
+def _quantity(solution: Solution, name: str, steps: slice) -> Values:
     """Values, scale, unit and stated error of a quantity at the given steps."""
     values = values_of(solution, name)
     error = _stated(solution, name, values.size)[steps]
     values = values[steps]
-    scale = sampling.scales.get(name) or _SCALES.get(name) or float(np.max(np.abs(values))) or 1.0
+    scale = _SCALES.get(name) or float(np.max(np.abs(values))) or 1.0
     return Values(unit=UNITS.get(name, "1"), scale=scale, values=_floats(values), error=error)
 
 
 def _stated(solution: Solution, name: str, size: int) -> tuple[float, ...]:
     """Absolute stated error of a quantity, one per value; empty where none is stated."""
     if name not in solution.error_estimate:
-        return _of_the_branch(solution, name)
+        return ()
     stated = np.abs(np.atleast_1d(solution.uncertainty(name)))
     # There is one number for all steps, or one for each step of a history whose peak is the quantity.
     return _floats(stated) if stated.size == size else (float(np.max(stated)),) * size
-
-
-def _of_the_branch(solution: Solution, name: str) -> tuple[float, ...]:
-    """Stated error of a critical point: that of the nearest state of the branch; empty for other quantities."""
-    branch = _ON_BRANCH.get(name, "")
-    if branch not in solution.error_estimate or not isinstance(solution, DetachmentPath):
-        return ()
-    nearest = np.argmin(np.abs(solution.contact_radius - solution.pull_off_contact_radius))
-    stated = np.broadcast_to(np.abs(solution.uncertainty(branch)), solution.contact_radius.shape)
-    return (float(stated[nearest]),)
 
 
 def _pressure(path: ContactPath, sampling: Sampling) -> Mapping[str, Values]:

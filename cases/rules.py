@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -16,11 +16,20 @@ SMALLEST_RELATIVE = 1e-12
 
 @dataclass(frozen=True, kw_only=True)
 class Judgement:
-    """How a comparison ended: status, signed error and fraction of the tolerance (None if nothing was compared)."""
+    """How a comparison ended.
+
+    Attributes:
+        status: Result of the comparison.
+        error: Signed error; None if nothing was compared.
+        fraction: Error over tolerance; None if nothing was compared.
+        uncertainty: Error that each method states, by its label, same unit as the error.
+        message: Result in one sentence.
+    """
 
     status: Status
     error: float | None = None
     fraction: float | None = None
+    uncertainty: Mapping[str, float] = field(default_factory=dict)
     message: str
 
 
@@ -82,7 +91,7 @@ def judge_agreement(difference: float, stated: Mapping[str, float], *, tolerance
     if abs(difference) > u:
         message += "; more than the methods' own uncertainties explain"
     fraction = (abs(difference) + u) / tolerance
-    return Judgement(status=status, error=difference, fraction=fraction, message=message)
+    return Judgement(status=status, error=difference, fraction=fraction, uncertainty=stated, message=message)
 
 
 def judge_residual(residual: float, *, tolerance: float, failure: Status = Status.FAIL) -> Judgement:

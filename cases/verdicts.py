@@ -41,11 +41,6 @@ class Status(StrEnum):
         """Whether this alone makes the gate fail."""
         return self in _FAILURES
 
-    @property
-    def is_warning(self) -> bool:
-        """Whether this leaves the verdict open: under ``strict`` it has an exit code of its own."""
-        return self is Status.INCONCLUSIVE
-
 
 _FAILURES = frozenset(
     {Status.FAIL, Status.DIFF, Status.PERF, Status.INVALID, Status.INCOMPARABLE, Status.TIMEOUT, Status.XPASS}
@@ -91,7 +86,7 @@ def exit_code(statuses: Iterable[Status], *, strict: bool = False) -> ExitCode:
         return ExitCode.NOTHING_RAN
     if any(status.is_failure for status in ran):
         return ExitCode.GATE_FAILED
-    return ExitCode.UNDECIDED if strict and any(status.is_warning for status in ran) else ExitCode.PASSED
+    return ExitCode.UNDECIDED if strict and Status.INCONCLUSIVE in ran else ExitCode.PASSED
 
 
 class Kind(StrEnum):

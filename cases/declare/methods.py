@@ -47,8 +47,8 @@ class TableEntry:
 
 
 BUILT_IN: Mapping[str, TableEntry] = {
-    "mdr": TableEntry(module="cases.declare.methods", attribute="mdr_by_integral_equation"),
-    "mdr_table": TableEntry(module="cases.declare.methods", attribute="mdr_by_fft_table"),
+    "mdr": TableEntry(module="cases.declare.mdr_by_equation", attribute="mdr"),
+    "mdr_table": TableEntry(module="cases.declare.mdr_by_table", attribute="mdr_table"),
     "fem": TableEntry(module="fem_reference", attribute="Fem"),
     "bem": TableEntry(module="bem.method", attribute="Bem"),
     "integral_equation": TableEntry(module="bem.direct_method", attribute="IntegralEquationMethod"),
@@ -169,19 +169,3 @@ def load(name: str) -> Any:
         if lacking := missing_extra(error):
             raise InvalidInput(f"method {name!r}: {lacking}") from None
         raise InvalidInput(f"method {name!r} cannot be imported from {module}: {error}; install it again") from error
-
-
-def mdr_by_integral_equation(nodes: int = 24, panel_width: float = 1.0, accuracy: float = 1e-9) -> Method:
-    """Return MDR on flat-punch data from the integral equation."""
-    from bem.flat_punch import IntegralEquation  # noqa: PLC0415 - a method is imported when it is used
-    from mdr import Mdr  # noqa: PLC0415
-
-    return Mdr(flat_punch=IntegralEquation(nodes=nodes, panel_width=panel_width), accuracy=accuracy)
-
-
-def mdr_by_fft_table(cells: int = 256, ratios: int = 400, radii: int = 500) -> Method:
-    """Return MDR on a flat-punch table of the FFT boundary element method, as published."""
-    from bem.tables import FftTable  # noqa: PLC0415
-    from mdr import Mdr  # noqa: PLC0415
-
-    return Mdr(flat_punch=FftTable(cells=cells, ratios=ratios, radii=radii))

@@ -1,8 +1,6 @@
 """The only writer of baselines: what accepting a case would change, and everything that is refused."""
 
-import math
 import os
-import subprocess
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -23,14 +21,11 @@ from cases.gate.baseline import (
 from cases.gate.gate import judged_claims
 from cases.gate.spread import Spreads
 from cases.rules import SMALLEST_RELATIVE
-from cases.run import stamp
+from cases.run.stamp import git, revision
 from cases.runs import Run
 from cases.stress import worse_than
 from cases.verdicts import Kind, Verdict
 from contact import InvalidInput
-
-# The folder that holds every package.
-SOURCE = Path(__file__).resolve().parents[2]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -51,7 +46,7 @@ class WriteConditions:
 def write_conditions(repository: Path, baselines: Path, environment: Mapping[str, str] = os.environ) -> WriteConditions:
     """Return the conditions of this process and the source in ``repository``."""
     return WriteConditions(
-        revision=stamp.revision(repository),
+        revision=revision(repository),
         changed=_changed_files(repository, baselines),
         in_ci=environment.get("CI", "").lower() not in ("", "0", "false"),
     )
@@ -62,21 +57,6 @@ def _changed_files(repository: Path, baselines: Path) -> tuple[str, ...]:
     outside = f":(exclude){baselines.resolve()}" if baselines.resolve().is_relative_to(repository.resolve()) else "."
     listed = git(repository, "status", "--porcelain", "--", ".", outside)
     return tuple(line[3:] for line in listed.splitlines())
-
-
-def git(repository: Path, *arguments: str) -> str:
-    """Return the output of a git command.
-
-    Raises:
-        InvalidInput: If git fails, with its message.
-    """
-    command = ["git", "-C", str(repository), *arguments]
-    try:
-        return subprocess.run(command, capture_output=True, text=True, check=True).stdout
-    except FileNotFoundError:
-        raise InvalidInput("git is not installed; a baseline belongs to a commit") from None
-    except subprocess.CalledProcessError as error:
-        raise InvalidInput(f"git {arguments[0]}: {error.stderr.strip()}") from None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -198,8 +178,6 @@ def _with_spreads(answer: Answer, old: Answer | None, spreads: Spreads) -> Answe
         if not q.at and place not in spreads:
             raise InvalidInput(f"the spread of {' / '.join(place)} was not measured; a tolerance needs one")
         spread = 0.0 if q.at else spreads[place]
-        if not (math.isfinite(spread) and spread >= 0):
-            raise InvalidInput(f"the spread of {' / '.join(place)} is {spread}: it must be finite; measure it again")
         accepted = before[name].spread if name in before else 0.0
         is_within = OF_SPREAD * spread <= max(OF_SPREAD * accepted, SMALLEST_RELATIVE)
         quantities[name] = replace(q, spread=accepted if is_within else spread)
@@ -267,7 +245,6 @@ def refusals(proposal: Proposal, run: Run, now: WriteConditions, *, loosen: bool
     reason = proposal.baseline.accepted.reason.strip()
     return (
         *refusals_beforehand(proposal.case, run, now),
-        *_not_finite(proposal.baseline.answers),
         *(() if loosen else _loosenings(proposal)),
         *(() if reason else ("no reason is given; say why with --reason",)),
     )
@@ -304,27 +281,15 @@ def _refused_run(answers: Iterable[Answer], verdicts: Iterable[Verdict]) -> Iter
             yield f"the {verdict.kind} claim {verdict.claim!r} ended with {verdict.status}: {verdict.message}"
 
 
-def _not_finite(answers: Iterable[Answer]) -> Iterator[str]:
-    """Reasons in quantities that are not finite."""
-    for answer in answers:
-        for name, q in answer.quantities.items():
-            if not all(map(math.isfinite, (*q.values, *q.error, q.spread, q.scale))):
-                yield f"{name} of {answer.scene!r} by {answer.method} is not finite"
-
-
 def _loosenings(proposal: Proposal) -> Iterator[str]:
     """Reasons to refuse a baseline that checks less than before, or with wider tolerances."""
     for change in proposal.changes:
         if change.loosens:
-            yield f"{_loosening(change)}; find out why, then say --loosen"
+            name = f"{change.quantity} of {change.scene!r} by {change.method}"
+            reason = f"{name} would no longer be watched"
+            if change.old is not None and change.new is not None:
+                old, new = (relative_tolerance(q) for q in (change.old, change.new))
+                reason = f"the tolerance of {name} would grow from {old:.1e} to {new:.1e}"
+            yield f"{reason}; find out why, then say --loosen"
     for name in proposal.lost:
         yield f"{name} would no longer be watched, or is worse; say --loosen if that is meant"
-
-
-def _loosening(change: Change) -> str:
-    """How a change loosens the baseline, in words."""
-    name = f"{change.quantity} of {change.scene!r} by {change.method}"
-    if change.old is None or change.new is None:
-        return f"{name} would no longer be watched"
-    old, new = (relative_tolerance(q) for q in (change.old, change.new))
-    return f"the tolerance of {name} would grow from {old:.1e} to {new:.1e}"

@@ -129,8 +129,11 @@ def _of_answer(place: Place, new: Answer | None, old: Answer | None) -> Iterator
     if old is not None:
         accepted, counted = _counters(old), _counters(solved)
         for name in sorted({*accepted, *counted}):
-            absent = _absent(name, counted.get(name), accepted.get(name), new, old)
-            yield _count(place, name, counted.get(name, 0), accepted.get(name), absent)
+            now, before_now = counted.get(name, 0), accepted.get(name)
+            permitted = permitted_count_change(name, before_now or 0)
+            absent = _absent(name, counted.get(name), before_now, new, old)
+            judged = absent or judge_regression(now, before_now or 0, permitted=permitted)
+            yield _verdict(place, name, judged, COUNTS, tolerance=permitted, expected=before_now)
         if solved is not None and solved.question == old.question:
             yield from _stated(place, after, before)
 
@@ -175,20 +178,9 @@ def _counters(answer: Answer | None) -> dict[str, int]:
     return {} if answer is None else {UNKNOWNS: answer.unknowns, **answer.counters}
 
 
-def _count(place: Place, name: str, value: int, accepted: int | None, absent: Judgement | None) -> Verdict:
-    """Judge the change of a deterministic counter; the tolerance of an exact counter is 0.5."""
-    permitted = permitted_count_change(name, accepted or 0)
-    change = abs(value - (accepted or 0))
-    message = f"{name} {value} against accepted {accepted}, permitted change {permitted:g}"
-    fraction = change / permitted if permitted > 0 else float(change)
-    judged = absent or decided(change <= permitted, float(value), fraction, message, Status.DIFF)
-    expected = None if accepted is None else float(accepted)
-    return _verdict(place, name, judged, COUNTS, tolerance=max(permitted, 0.5), expected=expected)
-
-
 def permitted_count_change(name: str, accepted: int) -> float:
-    """Return the largest change of a counter that counts as equal."""
-    return 0.02 * accepted if name == UNKNOWNS else max(3.0, 0.2 * accepted)
+    """Return the largest change of a counter that counts as equal, at least half a count."""
+    return max(0.02 * accepted, 0.5) if name == UNKNOWNS else max(3.0, 0.2 * accepted)
 
 
 def _stated(place: Place, current: dict[str, Values], accepted: dict[str, Values]) -> Iterator[Verdict]:
@@ -205,28 +197,22 @@ def _stated(place: Place, current: dict[str, Values], accepted: dict[str, Values
 
 
 def _stated_error(what: str, current: Values, accepted: Values) -> Judgement:
-    """Judge the stated error of the worst step, or of a field."""
+    """Judge the stated error of a field, or of the worst step.
+
+    The ratio (stated + floor)/(accepted + floor) lies between 1/`LARGEST_RATIO` and `LARGEST_RATIO`. The floor is the
+    error of a few thousand roundings: between smaller ones there is no difference.
+    """
     if len(current.error) != len(accepted.error):
         words = f"extra: nobody accepted an {what}" if current.error else f"missing: this run does not state the {what}"
         return nothing_compared(Status.INCOMPARABLE, words)
     sizes = [1.0] if accepted.at else [max(abs(value), accepted.scale) for value in accepted.values]
-    rows = zip(current.error, accepted.error, sizes, strict=True)
-    return worst_judgement([judge_stated(what, x, y, SMALLEST_RELATIVE * size) for x, y, size in rows])
-
-
-def judge_stated(name: str, stated: float, accepted: float, floor: float) -> Judgement:
-    """Judge (stated + floor) / (accepted + floor), which lies between 1 / `LARGEST_RATIO` and `LARGEST_RATIO`.
-
-    Args:
-        name: Name of the error, for the message.
-        stated: Error that this run states.
-        accepted: Error in the baseline.
-        floor: Error of a few thousand roundings, same unit; between smaller ones there is no difference.
-    """
-    ratio = (stated + floor) / (accepted + floor)
-    fraction = max(ratio, 1.0 / ratio) / LARGEST_RATIO
-    message = f"{name} {stated:.3g} against accepted {accepted:.3g}: {ratio:.3g} times, permitted 0.1 to 10 times"
-    return decided(fraction <= 1.0, ratio, fraction, message, Status.DIFF)
+    judgements = []
+    for stated, before, size in zip(current.error, accepted.error, sizes, strict=True):
+        ratio = (stated + SMALLEST_RELATIVE * size) / (before + SMALLEST_RELATIVE * size)
+        fraction = max(ratio, 1.0 / ratio) / LARGEST_RATIO
+        message = f"{what} {stated:.3g} against accepted {before:.3g}: {ratio:.3g} times, permitted 0.1 to 10 times"
+        judgements.append(decided(fraction <= 1.0, ratio, fraction, message, Status.DIFF))
+    return worst_judgement(judgements)
 
 
 def judged_claims(verdicts: Iterable[Verdict]) -> tuple[AcceptedClaim, ...]:

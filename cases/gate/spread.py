@@ -8,8 +8,8 @@ machine may differ by as much.
 import math
 import os
 from collections.abc import Iterator, Mapping
-from concurrent.futures import Executor, Future
-from contextlib import contextmanager, nullcontext
+from concurrent.futures import BrokenExecutor
+from contextlib import contextmanager
 from functools import partial
 from typing import Any
 
@@ -18,7 +18,7 @@ import numpy as np
 from cases.answers import Answer, Table
 from cases.case import Case, Task
 from cases.rules import relative_spread
-from cases.run.executors import ahead, closing, completed, died, process_pool
+from cases.run.executors import closing, process_pool
 from cases.run.solve_task import job_of, solve
 from cases.units import changed
 from contact import DepthFunction, InvalidInput, Scene
@@ -40,31 +40,27 @@ def measured_spreads(case: Case, answers: Table, *, jobs: int = 2) -> Spreads:
     """
     tasks = [case.task(scene, use) for scene in case.scenes for use in case.methods_of(scene)]
     solved = [(task, answer) for task in tasks if (answer := answers.get(task.identity)) is not None and answer.solved]
-    repeated = {task.identity: [answer] for task, answer in solved}
-    for towards in (math.inf, 0.0):
-        with _plain_kernel() if towards == 0.0 else nullcontext():
-            for task, answer in _repeated([task for task, _ in solved], towards, jobs):
-                repeated[task.identity].append(answer)
-    return {place: spread for task, _ in solved for place, spread in _spreads(task, repeated[task.identity])}
+    repeated_tasks = [task for task, _ in solved]
+    larger = _repeated(repeated_tasks, math.inf, jobs)
+    with _plain_kernel():
+        smaller = _repeated(repeated_tasks, 0.0, jobs)
+    rows = zip(solved, larger, smaller, strict=True)
+    return {place: spread for (task, answer), *others in rows for place, spread in _spreads(task, [answer, *others])}
 
 
-def _repeated(tasks: list[Task], towards: float, jobs: int) -> Iterator[tuple[Task, Answer]]:
-    """Solve each task's nudged scene, in fresh processes."""
-    with closing(process_pool(jobs)) as executor:
-        for task, future in completed(partial(_submit, executor, towards), tasks, ahead(executor, jobs)):
-            if died(future):
-                raise InvalidInput(f"{task.label}: the process that repeated it died; accept nothing from such a run")
-            answer = future.result()
-            if not answer.solved:
-                raise InvalidInput(
-                    f"{task.label}: this repetition should change nothing, but {answer.status}: {answer.reason}"
-                )
-            yield task, answer
-
-
-def _submit(executor: Executor, towards: float, task: Task) -> Future[Answer]:
-    nudged = task.changed("one ulp away", nudged_scene(task.problem, towards))
-    return executor.submit(solve, job_of(nudged, estimates=False))
+def _repeated(tasks: list[Task], towards: float, jobs: int) -> list[Answer]:
+    """The answers to each task's nudged scene, in fresh processes."""
+    nudged = [task.changed("one ulp away", nudged_scene(task.problem, towards)) for task in tasks]
+    try:
+        with closing(process_pool(jobs)) as executor:
+            answers = list(executor.map(solve, [job_of(task, estimates=False) for task in nudged]))
+    except BrokenExecutor:
+        raise InvalidInput("a process that repeated an answer died; accept nothing from such a run") from None
+    for task, answer in zip(tasks, answers, strict=True):
+        if not answer.solved:
+            reason = f"this repetition should change nothing, but {answer.status}: {answer.reason}"
+            raise InvalidInput(f"{task.label}: {reason}")
+    return answers
 
 
 def _spreads(task: Task, answers: list[Answer]) -> Iterator[tuple[tuple[str, str, str], float]]:

@@ -305,27 +305,13 @@ EVERY = (MDR, FEM, BEM, EQUATION, TABLE)
 
 # -- requirements -----------------------------------------------------------------------------------------------------
 PATH = ("indentation_depth", "normal_force", "contact_stiffness")
-# Finite elements and the integral equation are references: six and nine digits. Grids of some hundred cells have two or
-# three digits where a layer is as thick as many cells, ..
-BY_METHOD: dict[str, dict[str, float]] = {
-    "fem": {**dict.fromkeys(PATH, 3e-6), "contact_radius": 2e-5, "pressure": 2e-4},
-    "integral_equation": dict.fromkeys((*PATH, "contact_radius"), 1e-9),
-    "bem": dict.fromkeys((*PATH, "contact_radius"), 2e-3),
-    "mdr_table": dict(zip(PATH, (2.5e-3, 6e-3, 3e-4), strict=True)),
-}
-# .. fewer where a cell is a sixth (a/h = 10) or a third (a/h = 20) of the thickness, ..
-COARSE = {"mdr_table": dict(zip(PATH, (1e-2, 5e-2, 5e-3), strict=True))}
-VERY_COARSE = {"mdr_table": dict(zip(PATH, (3e-2, 1e-1, 1.5e-2), strict=True))}
-# .. and the order of magnitude of the load where a cell is half of the thickness (a/h = 40).
-COARSEST = {
-    "bem": dict(zip(PATH, (1.5e-2, 1.2e-2, 1.5e-3), strict=True)),
-    "mdr_table": dict(zip(PATH, (4e-2, 1.8e-1, 2e-2), strict=True)),
-}
+# By resolution: on layers that grids resolve ("usual"), or where a cell is some share of the thickness.
+WITHIN: dict[str, dict[str, dict[str, float]]] = table("requirements.toml")
 
 
 def required(*labels: str) -> dict[str, dict[str, float]]:
     """Return the requirements of methods by quantity, on layers that grids resolve."""
-    return {label: BY_METHOD[label] for label in labels}
+    return {label: WITHIN["usual"][label] for label in labels}
 
 
 # -- claims -----------------------------------------------------------------------------------------------------------

@@ -1,13 +1,15 @@
-"""Studies of convergence: refinements of methods, and the claims that errors fall with them as theory says."""
+"""Studies of convergence and of cost: refinements of methods, how errors fall with them, and in how much time."""
 
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 from cases.convergence import Order
+from cases.cost import Cost
 from cases.declare.methods import MethodUse
 from cases.library._common import Scenes, Words, names_of, reasons, table
 
 TABLE = table("refinements.toml")
+COSTS = table("costs.toml")
 # Reference by the finest MDR, where no independent method is as accurate as the coarser ones.
 FINEST_MDR = MethodUse(label="mdr, 32 nodes", method="mdr", settings={"nodes": 32, "accuracy": 1e-12})
 # Errors against the direct equation, or MDR; "LATE" claims are judged in the suite nightly alone.
@@ -58,3 +60,31 @@ def studies(
         usual = f"{settings['method']}, {settings['mesh_family']}: {quantity.replace('_', ' ')}"
         more = {"scenes": names_of(scenes), "formal_order": order, "tolerance": 0.2, **settings, **words}
         yield Order(name=name or usual, quantity=quantity, **more)
+
+
+def costs(kind: str, scene: str, quantities: Iterable[str] = ()) -> Iterator[Cost]:
+    """Yield the studies of what accuracy costs on a scene, one per quantity.
+
+    Args:
+        kind: Name of the study in ``costs.toml``.
+        scene: Name of the scene within the case.
+        quantities: Quantities whose error is measured; those of the table by default.
+    """
+    study = COSTS["studies"][kind]
+    (reference,) = _timed(study["reference"])
+    ladder, cheap = (tuple(use for name in study[which] for use in _timed(name)) for which in ("timed", "cheap"))
+    words: Words = {"scene": scene, "ladder": ladder, "reference": reference, "cheap": cheap}
+    for quantity in tuple(quantities) or study["quantities"]:
+        name = f"cost of {quantity}, {scene}"
+        yield Cost(name=name, quantity=quantity, nightly=not study.get("in_ci", False), **words)
+
+
+def _timed(name: str) -> tuple[MethodUse, ...]:
+    """Settings of a group in ``costs.toml``, or the single one "group: label"."""
+    group, _, wanted = name.partition(": ")
+    entry = COSTS["settings"][group]
+    settings = entry.get("settings") or {
+        entry["label"].format(value): {entry["setting"]: value, **entry.get("fixed", {})} for value in entry["values"]
+    }
+    uses = (MethodUse(label=label, method=entry["method"], settings=each) for label, each in settings.items())
+    return tuple(use for use in uses if wanted in ("", use.label))

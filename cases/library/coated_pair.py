@@ -16,7 +16,6 @@ exact: two Winkler beds in series.
 import numpy as np
 
 from cases.case import CaseScene
-from cases.cost import elastic_costs
 from cases.library import _common as c
 from cases.library import _refinements as r
 from contact import CoatedPair, ContactRadii, Paraboloid, Scene
@@ -87,6 +86,6 @@ CLAIMS = (
     *r.studies(SYMMETRIC[1:2], "nodes", FORCE_AND_DEPTH, against="integral_equation"),
     *r.studies(SYMMETRIC[:1], "edge cell", {"normal_force": 1.0}, against="integral_equation"),
     *r.studies(SYMMETRIC[:1], "P3 cells", dict.fromkeys(FORCE_AND_DEPTH, 6.0), **r.TO_MDR_LATE),
-    *elastic_costs(SYMMETRIC[0].name),
+    *r.costs("elastic", SYMMETRIC[0].name),
 )
 CASE = c.paper(__name__, __doc__, (*SYMMETRIC, *THIN), c.EVERY, CLAIMS)

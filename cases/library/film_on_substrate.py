@@ -18,9 +18,9 @@ from dataclasses import replace
 import numpy as np
 
 from cases.case import CaseScene
-from cases.cost import elastic_costs
 from cases.declare.methods import MethodUse
 from cases.library import _common as c
+from cases.library import _refinements as r
 from cases.library import _stacks as s
 from contact import ElasticBase, ElasticLayer, LayerStack
 from contact.records.validation import FloatArray
@@ -112,6 +112,6 @@ CLAIMS = (
     *c.equals(NAMES, hertz, NO_FILM, s.WHY["no film"], **CLOSED),
     s.stiffness_limit(THIN, WIDE, thin_film, "thin film", largest=0.05, parameter=thinness),
     s.stiffness_limit(BENT, PLATES, bent_plate, "plate", largest=0.05, parameter=narrowness),
-    *elastic_costs(film(10.0, 1.0).name),
+    *r.costs("elastic", film(10.0, 1.0).name),
 )
 CASE = c.paper(__name__, __doc__, (*FILMS, *FLAT, *NO_FILM, *WIDE, *PLATES), s.METHODS, CLAIMS)

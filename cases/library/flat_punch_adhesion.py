@@ -16,7 +16,6 @@ from typing import Any
 import numpy as np
 
 from cases.case import CaseScene
-from cases.cost import detachment_costs
 from cases.effects import Ablation
 from cases.library import _common as c
 from cases.library import _refinements as r
@@ -103,6 +102,6 @@ CLAIMS = (
     # show an order. Abrupt detachment happens at the radius of the punch.
     *r.studies(ABRUPT, "points under a punch", dict.fromkeys(PULL_OFF[:2], 2.5), against=r.FINEST_MDR, nightly=True),
     Ablation(scene=BEYOND_MAXIMUM[0].name, slow=("fem", "bem")),
-    *detachment_costs(BEYOND_MAXIMUM[0].name),
+    *r.costs("detachment", BEYOND_MAXIMUM[0].name),
 )
 CASE = c.paper(__name__, __doc__, (*HALF_SPACE, *BEYOND_MAXIMUM, *ABRUPT, *UNDER_LOAD, *ON_THE_WAY), METHODS, CLAIMS)

@@ -15,7 +15,6 @@ from dataclasses import replace
 from typing import Any
 
 from cases.case import CaseScene
-from cases.cost import impact_costs
 from cases.effects import Ablation
 from cases.library import _common as c
 from cases.library import _refinements as r
@@ -112,6 +111,6 @@ CLAIMS = (
     *r.studies(STRUCK, "time step", dict.fromkeys(IN_TIME, 2.0), against=r.FINEST_MDR, nightly=True),
     *r.studies(STRUCK, "time step", {"energy_residual": 2.0}, nightly=True),
     Ablation(scene=ON_LAYERS[0].name, slow=("fem",)),
-    *impact_costs(ON_LAYERS[0].name),
+    *r.costs("impact", ON_LAYERS[0].name),
 )
 CASE = c.paper(__name__, __doc__, (*HALF_SPACE, *ON_LAYERS), c.EVERY, CLAIMS)

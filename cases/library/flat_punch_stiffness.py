@@ -17,7 +17,6 @@ and its depth a^2 / ((1 + m) R), Eq. (34), gives the exponent m of Eq. (33).
 import numpy as np
 
 from cases.case import CaseScene
-from cases.cost import elastic_costs
 from cases.declare.methods import MethodUse
 from cases.library import _common as c
 from cases.library import _refinements as r
@@ -113,6 +112,6 @@ CLAIMS = (
     *r.studies(AT_TWO, "nodes of the direct equation", (STIFFNESS,), against=r.FINEST_MDR),
     *r.studies(COMPRESSIBLE, "P2 cells", {STIFFNESS: 4.0}, **r.LATE),
     *r.studies(COMPRESSIBLE, "P3 cells", {STIFFNESS: 6.0}, **r.LATE),
-    *elastic_costs("bonded nu=0.5 a/h=2", (STIFFNESS,)),
+    *r.costs("elastic", "bonded nu=0.5 a/h=2", (STIFFNESS,)),
 )
 CASE = c.paper(__name__, __doc__, (*PUNCHES, *HAYES_WALKS, *FITTED, *EXPONENTS), c.EVERY, CLAIMS)

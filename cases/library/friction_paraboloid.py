@@ -22,12 +22,13 @@ import numpy as np
 from scipy.integrate import quad
 
 from cases.case import CaseScene
-from cases.cost import Cost
 from cases.declare.methods import MethodUse
 from cases.library import _common as c
 from cases.library import _refinements as r
 from cases.library.friction_flat_punch import frictionless
 from contact import DepthHistory, Friction, IndentationDepths, Layer, Loading, Paraboloid
+from mdr import Mdr
+from mdr.friction.statement import friction_effect
 
 WHY = c.reasons("friction_paraboloid")
 # 80, 40 and 20 cells; the finer grid has 240, 120 and 60.
@@ -88,9 +89,6 @@ def coefficient(scene: c.AnyScene) -> float:
 
 def statement(scene: c.AnyScene, which: str) -> tuple[float, float]:
     """Return MDR's F_0 [N] and F/F_0: its lower or upper bound, or its first order in mu."""
-    from mdr import Mdr  # noqa: PLC0415 - a method is imported when used
-    from mdr.friction.statement import friction_effect  # noqa: PLC0415
-
     path = Mdr().solve(frictionless(scene))
     change = getattr(friction_effect(path, coefficient(scene)), which)
     return float(path.normal_force[0]), 1 + float(change[0])
@@ -145,9 +143,6 @@ UNDER_STICK = {"radius under stick": "contact_radius", "force under stick": FORC
 CLOSED: c.Words = {"tolerance": 1e-8, "fem": 1e-5}
 GRIDS = {FORCE: 2e-4, "contact_radius": 1e-3, "dissipated_energy": 2e-2}
 TWO_GRIDS: c.Words = {"fast": "fem", "why": WHY["two grids"], "name": "{}: two grids", "nightly": True}
-TIMED = MethodUse(label="full stick", method="mdr")
-LADDER = (TIMED, *(MethodUse(label=f"growth {g:g}", method="fem", settings={"growth": g}) for g in (0.75, 0.5, 0.25)))
-PRICE: c.Words = {"scene": "nu=0.5 stick", "ladder": LADDER, "reference": TIMED, "cheap": (TIMED,), "nightly": True}
 CLAIMS = (
     *c.agreements(STUCK, {"fem": 1e-3}, (FORCE, "contact_stiffness"), why=WHY["two methods"]),
     c.approach(*RECIPROCITY, SMALL_ONES, to_first_order, WHY["first order"], **FIRST_ORDER),
@@ -164,7 +159,7 @@ CLAIMS = (
         c.zero(name, quantity, on, WHY[name], tolerance=tolerance, methods=("fem",))
         for name, (quantity, on, tolerance) in LAWS.items()
     ),
-    Cost(name="cost of full stick", quantity=FORCE, **PRICE),
+    *r.costs("full stick", "nu=0.5 stick"),
 )
 CASE = c.paper(
     __name__,

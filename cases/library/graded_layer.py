@@ -14,8 +14,8 @@ approached with nearly the second order of 1/n: the top one, of constant modulus
 
 import numpy as np
 
-from cases.cost import elastic_costs
 from cases.library import _common as c
+from cases.library import _refinements as r
 from cases.library import _stacks as s
 from contact import ElasticBase, ExponentialDepth, GradedLayer, LayerStack
 from contact.scene.layer import Support
@@ -79,6 +79,6 @@ CLAIMS = (
     s.pressed_shape(SCENES, radial_waves=1500.0),
     *c.equals(NAMES, published, FIRST, s.WHY["published digits"], tolerance=2e-9, methods=s.FAST),
     c.approach(APPROACH, "contact_stiffness", CUT, published, s.WHY["sublayers"], **NEARLY_SECOND),
-    *elastic_costs(FIRST[0].name),
+    *r.costs("elastic", FIRST[0].name),
 )
 CASE = c.paper(__name__, __doc__, (*SCENES, *PUNCHES, *CUT), s.METHODS, CLAIMS)

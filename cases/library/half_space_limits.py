@@ -13,7 +13,6 @@ with the second order of a/h.
 import numpy as np
 
 from cases.case import CaseScene
-from cases.cost import elastic_costs
 from cases.effects import Ablation
 from cases.library import _common as c
 from cases.library import _refinements as r
@@ -101,7 +100,7 @@ CLAIMS = (
     *r.studies(CURVED[1:2], "half-space, force", {FORCE: 3.0}, **r.TO_MDR_LATE),
     *r.studies(CURVED[:1], "edge cell", {FORCE: 1.0}, **r.TO_MDR_LATE),
     Ablation(scene="bonded nu=0.3 a/h=0.01"),
-    *elastic_costs("half-space, paraboloid"),
+    *r.costs("elastic", "half-space, paraboloid"),
 )
 CASE = c.paper(
     __name__, __doc__, (*CURVED, PUNCH, *(scene for pair in THICK.values() for scene in pair)), c.EVERY, CLAIMS

@@ -22,7 +22,6 @@ import numpy as np
 
 from cases.case import CaseScene, Sampling
 from cases.claims import Norm
-from cases.cost import inside_costs
 from cases.declare.methods import MethodUse
 from cases.library import _common as c
 from cases.library import _refinements as r
@@ -105,6 +104,6 @@ CLAIMS = (
     ),
     *r.studies(REFINED, "cells inside", ORDERS, **r.TO_MDR_LATE),
     c.approach(*FILM_LIMIT, THIN, film_pressure, WHY["film"], largest=0.15, methods=("mdr",)),
-    *inside_costs(REFINED[0].name),
+    *r.costs("inside", REFINED[0].name),
 )
 CASE = c.paper(__name__, __doc__, (*COMPARED, *LADDER, *REFINED, *THIN), (c.MDR, MESH), CLAIMS)

@@ -22,9 +22,9 @@ from dataclasses import replace
 import numpy as np
 
 from cases.case import CaseScene
-from cases.cost import costs_beside_others
 from cases.declare.methods import MethodUse
 from cases.library import _common as c
+from cases.library import _refinements as r
 from contact import FlatPunch, IndentationDepths, Paraboloid, Profile, TruncatedCone
 from contact.records.validation import FloatArray
 
@@ -138,7 +138,7 @@ CLAIMS = (
             name=f"{{}}: CalculiX and {other}{where}",
         )
     ),
-    *(study for scene in PRICED for study in costs_beside_others(scene)),
+    *(study for scene in PRICED for study in r.costs("beside outside solvers", scene)),
 )
 CASE = c.paper(
     __name__, __doc__, (*SCENES, *CURVES), (c.MDR, c.FEM, c.BEM, c.EQUATION, *REFEREES), CLAIMS, suites=("referees",)

@@ -22,7 +22,6 @@ from dataclasses import replace
 import numpy as np
 
 from cases.case import CaseScene
-from cases.cost import detachment_costs
 from cases.declare.methods import MethodUse
 from cases.effects import Ablation
 from cases.library import _common as c
@@ -98,6 +97,6 @@ CLAIMS = (
     *r.studies(BONDED, "discs", dict.fromkeys(CRITICAL, 2.0), against=r.FINEST_MDR, nightly=True),
     *r.studies(BONDED, "accuracy", CRITICAL.keys(), against=r.FINEST_MDR, nightly=True),
     Ablation(scene=BONDED[0].name, slow=("fem",)),
-    *detachment_costs(BONDED[0].name),
+    *r.costs("detachment", BONDED[0].name),
 )
 CASE = c.paper(__name__, __doc__, ALL, (*METHODS, c.TABLE, CELLS), CLAIMS)

@@ -12,7 +12,6 @@ and v0 enter only as a product. Kinetic, stored and dissipated energy must add u
 
 from cases.case import CaseScene
 from cases.claims import Law
-from cases.cost import impact_costs
 from cases.effects import Ablation
 from cases.library import _common as c
 from cases.library import _refinements as r
@@ -99,6 +98,6 @@ CLAIMS = (
     *r.studies(STRUCK, "nodes", IN_TIME, against=r.FINEST_MDR),
     *r.studies(STRUCK, "cells and time steps", {"energy_residual": 2.0}, nightly=True),
     Ablation(scene=STRUCK[0].name, slow=("fem",)),
-    *impact_costs(STRUCK[0].name),
+    *r.costs("impact", STRUCK[0].name),
 )
 CASE = c.paper(__name__, __doc__, EVERY_IMPACT, (c.MDR, c.PLAIN_FEM, c.BEM, c.EQUATION, c.TABLE), CLAIMS)

@@ -15,7 +15,6 @@ from dataclasses import replace
 import numpy as np
 
 from cases.case import CaseScene
-from cases.cost import elastic_costs
 from cases.library import _common as c
 from cases.library import _refinements as r
 from contact import ContactRadii, Paraboloid, Profile, TruncatedCone
@@ -96,11 +95,11 @@ CLAIMS = (
         for label in c.LAYERS
     ),
     *c.agreements(CHECKED, c.required("fem", "integral_equation")),
-    *c.agreements(CHECKED, c.COARSEST, why=WHY["coarse grids"]),
+    *c.agreements(CHECKED, c.WITHIN["a half"], why=WHY["coarse grids"]),
     *c.agreements(FAR, c.required("fem"), suffix=", far"),
     *r.studies(THIN, "nodes", QUANTITIES, against="integral_equation"),
     *r.studies(THIN, "nodes of the direct equation", ("normal_force",), against=r.FINEST_MDR),
     *r.studies(THIN, "P3 largest cells", dict.fromkeys(QUANTITIES, 6.0), **r.LATE),
-    *elastic_costs("bonded nu=0.45 a/h=40, paraboloid"),
+    *r.costs("elastic", "bonded nu=0.45 a/h=40, paraboloid"),
 )
 CASE = c.paper(__name__, __doc__, SCENES, (c.MDR, c.FEM, c.BEM, c.EQUATION, FINER_TABLE), CLAIMS)

@@ -13,7 +13,6 @@ out: a single layer of the mean modulus has an error of many times the differenc
 """
 
 from cases.case import CaseScene
-from cases.cost import elastic_costs
 from cases.library import _common as c
 from cases.library import _refinements as r
 from cases.library import _stacks as s
@@ -62,6 +61,6 @@ CLAIMS = (
     s.pressed_shape(SCENES),
     c.bound(SOFTER, "contact_stiffness", RIGID, on_elastic_bone, s.WHY["a stiffer base"], **LATE),
     *r.studies(ONE, "nodes of the direct equation", ("normal_force",), against=r.FINEST_MDR),
-    *elastic_costs(ONE[0].name),
+    *r.costs("elastic", ONE[0].name),
 )
 CASE = c.paper(__name__, __doc__, SCENES, s.METHODS, CLAIMS)

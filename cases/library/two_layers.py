@@ -16,7 +16,6 @@ The figure shows the errors of simplified layers, also of one on an elastic base
 import math
 
 from cases.case import CaseScene
-from cases.cost import elastic_costs
 from cases.library import _common as c
 from cases.library import _refinements as r
 from cases.library import _stacks as s
@@ -103,6 +102,6 @@ CLAIMS = (
     c.scaling_law(ALIKE, EQUAL, merged, (1.0, 1.0, 1.0), s.WHY["equal layers"], **SAME_ANSWER),
     s.stiffness_limit(FLOW, THIN, flowing, "flow", largest=0.1),
     *r.studies(ONE, "nodes of the direct equation", ("normal_force",), against=r.FINEST_MDR),
-    *elastic_costs(ONE[0].name),
+    *r.costs("elastic", ONE[0].name),
 )
 CASE = c.paper(__name__, __doc__, (*SCENES, *EQUAL, *THIN), s.METHODS, CLAIMS)

@@ -9,15 +9,18 @@ import os
 import pickle
 import subprocess
 import sys
+import time
 from collections.abc import Callable
 from contextlib import suppress
 from importlib import import_module
-from queue import Empty, SimpleQueue
-from threading import Thread
-from typing import Any, BinaryIO
+from queue import SimpleQueue
+from threading import Thread, Timer
+from typing import Any
 
 # Longest start of the process [s]: ten times the imports on a busy machine.
 STARTS = 60.0
+# The process that serves this one, if it was needed already.
+_running: list[subprocess.Popen[bytes]] = []
 
 
 class TimeLimitReached(Exception):
@@ -28,37 +31,8 @@ class ProcessDied(Exception):
     """The process that computed ended without a result."""
 
 
-class _Computer:
-    """A process that computes calls."""
-
-    def __init__(self) -> None:
-        environment = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
-        command = [sys.executable, "-m", "cases.run.apart"]
-        self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=environment)
-        self.results: SimpleQueue[Any] = SimpleQueue()
-        self.reader = Thread(target=_read, args=(self.process.stdout, self.results.put), daemon=True)
-        self.reader.start()
-        # The first result is sent when the process has started.
-        self.results.get(timeout=STARTS)
-
-    def call(self, function: Callable[..., Any], arguments: tuple[Any, ...], seconds: float) -> Any:
-        """Return ``function(*arguments)``, computed by the process; None if the process ended without a result.
-
-        Raises:
-            Empty: After so many seconds.
-        """
-        assert self.process.stdin is not None
-        pickle.dump((function, arguments), self.process.stdin)
-        self.process.stdin.flush()
-        return self.results.get(timeout=seconds)
-
-
-# The process that serves this one, if it was needed already.
-_running: list[_Computer] = []
-
-
 def apart(function: Callable[..., Any], *arguments: Any, seconds: float) -> Any:
-    """Return ``function(*arguments)``, computed in the separate process; it may neither raise nor return None.
+    """Return ``function(*arguments)``, computed in the separate process; it may not raise.
 
     Raises:
         TimeLimitReached: After so many seconds.
@@ -66,43 +40,45 @@ def apart(function: Callable[..., Any], *arguments: Any, seconds: float) -> Any:
     """
     try:
         if not _running:
-            _running.append(_Computer())
-        result = _running[0].call(function, arguments, seconds)
-    except Empty:
-        _end()
-        raise TimeLimitReached from None
+            environment = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
+            command, pipe = [sys.executable, "-m", "cases.run.apart"], subprocess.PIPE
+            _running.append(subprocess.Popen(command, stdin=pipe, stdout=pipe, env=environment))
+            # The first result is sent when the process has started.
+            _received(STARTS)
+        pickle.dump((function, arguments), _running[0].stdin)  # type: ignore[arg-type]  # it is a pipe
+        _running[0].stdin.flush()  # type: ignore[union-attr]
+        return _received(seconds)
     except BaseException:
-        # This is mostly Ctrl-C.
+        # This is a time limit, a death, or Ctrl-C.
         _end()
         raise
-    if result is None:
-        raise ProcessDied(f"exit code {_end()}")
-    return result
+
+
+def _received(seconds: float) -> Any:
+    """The next result of the process, which is killed after so many seconds."""
+    process, start = _running[0], time.monotonic()
+    timer = Timer(seconds, process.kill)
+    timer.start()
+    try:
+        return pickle.load(process.stdout)  # type: ignore[arg-type]  # it is a pipe
+    except Exception:
+        # A process that ended may leave a torn object.
+        if time.monotonic() - start >= seconds:
+            raise TimeLimitReached from None
+        raise ProcessDied(f"exit code {_end()}") from None
+    finally:
+        timer.cancel()
 
 
 @atexit.register
 def _end() -> int:
-    """Kill the process and return its exit code."""
-    code = 0
-    for computer in _running:
-        computer.process.kill()
-        code = computer.process.wait()
-        computer.reader.join()
-        for stream in (computer.process.stdin, computer.process.stdout):
-            with suppress(OSError):
-                stream.close()  # type: ignore[union-attr]  # both are pipes
-    _running.clear()
-    return code
-
-
-def _read(stream: BinaryIO, put: Callable[[Any], None]) -> None:
-    """Pass every pickled object of a stream to ``put``, and None at its end."""
-    try:
-        while True:
-            put(pickle.load(stream))
-    except Exception:
-        # A torn object ends a stream as well.
-        put(None)
+    """Kill the process, if there is one, and return its exit code."""
+    if not _running:
+        return 0
+    process = _running.pop()
+    with suppress(OSError), process:
+        process.kill()
+    return process.returncode
 
 
 def _serve() -> None:
@@ -113,15 +89,22 @@ def _serve() -> None:
     # Imports that every call needs do not count for its time limit.
     import_module("cases.run.solve_task")
     calls: SimpleQueue[Any] = SimpleQueue()
-    Thread(
-        target=_read, args=(sys.stdin.buffer, lambda call: calls.put(call) if call else os._exit(1)), daemon=True
-    ).start()
+    Thread(target=_listen, args=(calls,), daemon=True).start()
     result: Any = "ready"
     while True:
         pickle.dump(result, output)
         output.flush()
         function, arguments = calls.get()
         result = function(*arguments)
+
+
+def _listen(calls: SimpleQueue[Any]) -> None:
+    """Queue the calls that are read from the input, and end the process with it."""
+    try:
+        while True:
+            calls.put(pickle.load(sys.stdin.buffer))
+    except Exception:
+        os._exit(1)
 
 
 if __name__ == "__main__":

@@ -12,7 +12,6 @@ from typing import TypeAlias
 import numpy as np
 
 from cases.answers import Values
-from cases.case import Sampling
 from cases.declare.uncertain_inputs import UncertainInputs, read_inputs
 from cases.recording import quantities as quantities_of
 from contact import UNITS, DetachmentPath, InvalidInput, Method, Scene, Solution
@@ -129,7 +128,7 @@ def propagate(
 def _physical(answer: Solution) -> dict[str, Values]:
     """Quantities with a unit. Of a detachment only its scalars: the number of states varies."""
     names = answer.SCALARS if isinstance(answer, DetachmentPath) else tuple(UNITS)
-    return {name: values for name, values in quantities_of(answer, Sampling()).items() if name in names}
+    return {name: values for name, values in quantities_of(answer).items() if name in names}
 
 
 def _values(answer: dict[str, Values], middle: dict[str, Values]) -> dict[str, FloatArray]:

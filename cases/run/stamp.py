@@ -11,9 +11,11 @@ from pathlib import Path
 from threadpoolctl import threadpool_info  # type: ignore[import-untyped]
 
 from cases.runs import Stamp
+from contact import InvalidInput
 
 _PACKAGES = ("numpy", "scipy", "scikit-fem", "gmsh", "pyfftw", "h5py", "pydantic", "contact-verification")
-_SOURCE = Path(__file__).resolve().parent.parent
+# The folder that holds every package.
+SOURCE = Path(__file__).resolve().parents[2]
 
 
 def stamp(started: datetime, wall_seconds: float) -> Stamp:
@@ -34,8 +36,8 @@ def stamp(started: datetime, wall_seconds: float) -> Stamp:
 
 def repository() -> Path:
     """Return the repository that tracks this package; where it is installed, that of the working directory."""
-    tracked = _git(_SOURCE, "ls-files", "run/stamp.py")
-    directory = _SOURCE if tracked else Path.cwd()
+    tracked = _git(SOURCE, "ls-files", "cases/run/stamp.py")
+    directory = SOURCE if tracked else Path.cwd()
     return Path(_git(directory, "rev-parse", "--show-toplevel") or directory)
 
 
@@ -49,15 +51,29 @@ def is_dirty() -> bool:
     return bool(_git(repository(), "status", "--porcelain", "--untracked-files=no"))
 
 
+def git(directory: Path, *arguments: str) -> str:
+    """Return the output of a git command.
+
+    Raises:
+        InvalidInput: If git fails, with its message.
+    """
+    command = ["git", "-C", str(directory), *arguments]
+    try:
+        return subprocess.run(command, capture_output=True, text=True, check=True, timeout=20).stdout
+    except FileNotFoundError:
+        raise InvalidInput("git is not installed; a baseline belongs to a commit") from None
+    except subprocess.TimeoutExpired:
+        raise InvalidInput(f"git {arguments[0]}: no answer within 20 s") from None
+    except subprocess.CalledProcessError as error:
+        raise InvalidInput(f"git {arguments[0]}: {error.stderr.strip()}") from None
+
+
 def _git(directory: Path, *arguments: str) -> str:
     """Output of a git command, empty if it fails."""
     try:
-        done = subprocess.run(
-            ["git", *arguments], cwd=directory, capture_output=True, text=True, check=True, timeout=20
-        )
-    except (OSError, subprocess.SubprocessError):
+        return git(directory, *arguments).strip()
+    except InvalidInput:
         return ""
-    return done.stdout.strip()
 
 
 def _version(name: str) -> str:

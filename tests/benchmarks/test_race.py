@@ -7,7 +7,7 @@ import pytest
 
 from benchmarks import race as race_module
 from benchmarks.race import ROWS, Race, judge, main, raced, slowdown, worktree
-from cases.gate.accept import git
+from cases.run.stamp import git
 from cases.verdicts import Status
 from contact import InvalidInput
 

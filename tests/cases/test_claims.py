@@ -1,4 +1,4 @@
-"""Claims on fabricated answers: limits, bounds, laws of an answer by itself, and the same accuracy on one mesh."""
+"""Claims on fabricated answers: limits, bounds, and laws of an answer by itself."""
 
 import dataclasses
 
@@ -9,7 +9,6 @@ from cases.answers import Answer, Table, Values
 from cases.claims import Approach, Zero
 from cases.library._common import chebyshev_radii, incremental_stiffness
 from cases.library.friction_flat_punch import STIFFER
-from cases.library.near_incompressible import CASE as INCOMPRESSIBLE
 from cases.verdicts import Status
 from tests.cases.fake_case import WHY, case_scene, fake_case
 
@@ -71,7 +70,8 @@ def test_a_limit_reached_to_the_last_bit_has_no_rate():
 def bound(values, bounds, **changes):
     claim = dataclasses.replace(STIFFER[0], tolerance=1e-9, **({"multiple": None} | changes))
     name = claim.quantity
-    return claim.judged(case_scene(0.3), "fast", answer("s", *values, name=name), [answer("s", *bounds, name=name)])
+    answers = [answer("s", *numbers, name=name) for numbers in (values, bounds)]
+    return claim.judged(fake_case(), case_scene(0.3), answers)
 
 
 @pytest.mark.parametrize(
@@ -101,7 +101,7 @@ def test_one_more_step_presses_like_a_flat_punch(stiffness_error, status):
     cone = answer("s", 0.0)
     quantities = {name: Values(unit="1", scale=1.0, values=tuple(v.tolist())) for name, v in values.items()}
     claim = Zero(name="slope", quantity="contact_stiffness", tolerance=1e-9, why=WHY, derive=incremental_stiffness)
-    judged = claim.judged(case_scene(0.3), "fast", dataclasses.replace(cone, quantities=quantities), [])
+    judged = claim.judged(fake_case(), case_scene(0.3), [dataclasses.replace(cone, quantities=quantities)])
     assert judged.status is status
 
 
@@ -110,18 +110,3 @@ def test_an_answer_that_does_not_publish_its_residual_is_incomparable():
     case = dataclasses.replace(fake_case(), claims=(claim,))
     verdicts = list(claim.judge(case, Table(answer(scene.name, 1.0) for scene in case.scenes)))
     assert [verdict.status for verdict in verdicts] == [Status.INCOMPARABLE] * 2
-
-
-@pytest.mark.parametrize(
-    ("error", "mesh", "status"),
-    [(1.9e-6, "m", Status.PASS), (2.1e-6, "m", Status.FAIL), (1.9e-6, "another", Status.INCOMPARABLE)],
-)
-def test_accuracy_on_one_mesh_stays_that_of_the_first_scene(error, mesh, status):
-    claim = next(c for c in INCOMPRESSIBLE.claims if type(c).__name__ == "EvenAccuracy")
-
-    def stiffness(value, mesh=""):
-        return answer("s", value, name="contact_stiffness", settings={"mesh": mesh})
-
-    others = [stiffness(1.0), stiffness(1 + 1e-6, "m"), stiffness(1.0)]
-    scene = INCOMPRESSIBLE.scenes[-1]
-    assert claim.judged(scene, "fem one mesh", stiffness(1 + error, mesh), others).status is status

@@ -436,8 +436,9 @@ def everything_finite(_):
 def compared_with_itself(judged):
     """Both answers of an agreement are those of one method."""
 
-    def wrong(self, scene, use, answer, others):
-        return judged(self, scene, use, answer, [dataclasses.replace(answer, method=others[0].method), *others[1:]])
+    def wrong(self, case, scene, answers):
+        first, second, *others = answers
+        return judged(self, case, scene, [first, dataclasses.replace(first, method=second.method), *others])
 
     return wrong
 
@@ -482,7 +483,7 @@ COMPARATORS = {
         Test("cases.test_runner:test_a_coarse_method_is_inconclusive", (TEMPORARY,)),
     ),
     "an answer compared with itself": (
-        override("cases.claims:Agree", "_judged", compared_with_itself),
+        override("cases.claims:Agree", "judged", compared_with_itself),
         Test("cases.test_runner:test_a_wrong_factor_disagrees", (TEMPORARY,)),
     ),
     "the first judgement in place of the worst": (
