@@ -43,7 +43,7 @@ from contact.scene.loading import Controlled
 from contact.stated import stated_error
 from fem_reference.equilibria import FemEquilibrium, circle_of, equilibrium_at_depth, targets_of
 from fem_reference.materials import contact_modulus
-from fem_reference.prescribed_contact import ContactSolver, Neighbours, PrescribedContact
+from fem_reference.prescribed_contact import ContactSolver, Neighbours, PrescribedContact, solve_contact
 from fem_reference.profiles import height
 from fem_reference.settings import Discretisation
 from fem_reference.stated import FLOOR, LEAST_SHARE
@@ -303,10 +303,12 @@ class Separation:
     Attributes:
         scene: scene with a `Detachment`.
         branch: equilibria over the contact radius.
+        solve: function that solves the contact of a given radius [m] on a mesh of its own.
     """
 
     scene: Scene
     branch: Branch
+    solve: ContactSolver
 
     @classmethod
     def of(cls, scene: Scene, settings: Discretisation, log: StageLog) -> Self:
@@ -319,7 +321,8 @@ class Separation:
             if np.any(unstable):
                 break
         compliance = contact_modulus(scene.layer) / loading.machine_stiffness if loading.machine_stiffness else 0.0
-        return cls(scene, replace(branch, machine=compliance))
+        solve = cache(partial(solve_contact, scene, settings=settings, log=log))
+        return cls(scene, replace(branch, machine=compliance), solve)
 
     @property
     def control(self) -> Controlled:
@@ -332,9 +335,13 @@ class Separation:
         return self.branch.samples[::-1]
 
     def point(self, radius: float, control: Controlled, kind: str) -> CriticalPoint:
-        """Critical point at a radius [m], solved there: extremal loads err only in the square of the radius error."""
+        """Critical point at a radius [m], solved there: extremal loads err only in the square of the radius error.
+
+        At the edge of a flat punch the mesh of the last piece is stretched most. Its error is larger there, and that of
+        the companion need not be.
+        """
         piece = next(piece for piece in self.branch.pieces if radius <= piece.high)
-        contact = piece.solve(radius)
+        contact = (self.solve if radius == self.scene.indenter.flat_radius else piece.solve)(radius)
         state, a = adhesive_equilibrium(contact, self.branch.work), contact.contact_radius
         return CriticalPoint(
             control=control,

@@ -104,7 +104,9 @@ def test_small_or_compressible_punch_jumps_at_once():
     for nu, a in ((0.5, 0.3), (0.3, 1.0)):
         path = QUICK.solve(adhesive(unit_layer(nu), FlatPunch(radius=a), Detachment(), work=1e-4))
         assert path.pull_off_contact_radius == a
-        assert path.pull_off_depth == pytest.approx(path.indentation_depth[0], rel=1e-12, abs=0.0)
+        # The branch is solved on stretched meshes, the pull-off is not.
+        apart = abs(path.pull_off_depth / path.indentation_depth[0] - 1)
+        assert apart < path.error_estimate["indentation_depth"][0] + path.error_estimate["pull_off_depth"][0] < 1e-3
 
 
 @pytest.mark.slow

@@ -21,9 +21,9 @@ from tests.drawn_scenes import scene_of
 
 @pytest.mark.slow
 def test_a_measured_profile_states_what_its_force_misses_between_solved_radii() -> None:
-    """Errors of the depth, of the force at depth zero and of the slope of k_N were added: 333 times the true error."""
+    """Breakpoints inside a piece are interpolated across: the force at loss states 6 %, finer meshes leave 3 %."""
     scene = scene_of(1401, 6, "adhering_table", (0.1, 5.0))
-    path, exact = Fem(accuracy=1e-2).solve(scene), Mdr().solve(scene)
+    path, exact = Fem(accuracy=1e-1).solve(scene), Mdr().solve(scene)
     for name in ("pull_off_force", "pull_off_depth", "pull_off_contact_radius", "force_at_loss"):
         error = abs(getattr(path, name) / getattr(exact, name) - 1)
         assert error < path.error_estimate[name][0], name

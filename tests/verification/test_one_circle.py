@@ -180,21 +180,11 @@ def gap_beside(path, indenter):
 
 
 @pytest.mark.first(1)
-@pytest.mark.parametrize(("method", "count"), [(MDR, 25), (DIRECT, 3), (FEM, 2), (BEM, 2)], ids=lambda v: str(v)[:3])
-def test_what_is_answered_has_no_negative_gap_beside_the_contact(method, count):
-    check_random_tables(method, count, seed=1)
-
-
-@pytest.mark.slow
 @pytest.mark.parametrize(
-    ("method", "count"), [(MDR, 600), (DIRECT, 60), (FEM, 40), (BEM, 60)], ids=lambda v: str(v)[:3]
+    ("method", "count"), [(MDR, 25), (MDR, 150), (DIRECT, 15), (FEM, 10), (BEM, 15)], ids=lambda v: str(v)[:3]
 )
-def test_the_same_for_many_tables(method, count):
-    check_random_tables(method, count, seed=2)
-
-
-def check_random_tables(method, count, seed):
-    rng, answered = np.random.default_rng(seed), 0
+def test_what_is_answered_has_no_negative_gap_beside_the_contact(method, count):
+    rng, answered = np.random.default_rng(1), 0
     for _ in range(count):
         (indenter, depth), layer = falling_table(rng, 1e-3), random_layer(rng)
         try:

@@ -293,9 +293,8 @@ def random_scene(draw):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", [1, 2])
-def test_stated_errors_cover_forty_random_scenes(seed):
-    draw = np.random.default_rng(seed)
+def test_stated_errors_cover_forty_random_scenes():
+    draw = np.random.default_rng(1)
     covered, total, pressures = dict.fromkeys(ContactPath.ARRAYS, 0), 0, 0
     angle = np.linspace(0.0, np.pi, 7)
     while total < 40:
@@ -318,11 +317,7 @@ def test_stated_errors_cover_forty_random_scenes(seed):
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("order", "ratio", "nu"),
-    [
-        pytest.param(n, ratio, nu, marks=() if (n, ratio, nu) == (2, 1.0, 0.5) else pytest.mark.slow)
-        for n in (2, 3, 4)
-        for ratio, nu in ((0.0, 0.3), (0.3, 0.3), (0.3, 0.5), (1.0, 0.3), (1.0, 0.5), (3.0, 0.3), (3.0, 0.5))
-    ],
+    [(2, 0.0, 0.3), (2, 1.0, 0.5), (2, 3.0, 0.3), (3, 0.3, 0.3), (3, 3.0, 0.5), (4, 0.3, 0.5), (4, 1.0, 0.3)],
 )
 def test_the_second_order_of_the_force_is_that_of_cells(order, ratio, nu):
     """(F/F_circle - 1)/eps^2, extrapolated to eps = 0, within 0.5 % of a ratio of forces on the same cells."""
