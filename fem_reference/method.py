@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import asdict, dataclass, fields, replace
+from dataclasses import asdict, dataclass, replace
 from functools import cache, partial
 from typing import ClassVar, Self, TypeAlias, overload
 
@@ -50,7 +50,7 @@ from fem_reference.fields import FemFields
 from fem_reference.materials import contact_modulus
 from fem_reference.prescribed_contact import ContactSolver, solve_contact
 from fem_reference.settings import Discretisation
-from fem_reference.stated import path_with_errors, settings_for, solve_to_accuracy
+from fem_reference.stated import path_with_errors, solve_to_accuracy
 
 Answer: TypeAlias = ContactPath | DetachmentPath | ImpactHistory | HistoryPath
 # Loadings over time.
@@ -58,7 +58,7 @@ MOTIONS = Impact, DepthHistory, ForceHistory
 
 
 @dataclass(frozen=True, kw_only=True)
-class Fem:
+class Fem(Discretisation):
     """Axisymmetric finite elements: mixed P_k-P_(k-1) on graded triangles, at every Poisson's ratio.
 
     Attributes:
@@ -80,12 +80,6 @@ class Fem:
 
     accuracy: float | None = None
     pressure_accuracy: float | None = None
-    order: int = 4
-    edge_cell: float = 1e-7
-    growth: float = 0.5
-    truncation: float = 1e-8
-    half_space_thickness: float = 1e8
-    outer_distance: float | None = None
 
     def __post_init__(self) -> None:
         """Raise InvalidInput for settings outside their ranges."""
@@ -95,15 +89,7 @@ class Fem:
                 raise InvalidInput(f"{name} must lie in [1e-9, 0.1], got {value}")
         if self.pressure_accuracy is not None and self.accuracy is None:
             raise InvalidInput("pressure_accuracy is used besides an accuracy of the numbers; give both")
-        _ = self.discretisation
-
-    @property
-    def discretisation(self) -> Discretisation:
-        """The settings of the mesh and its elements, chosen from ``accuracy`` where that is given."""
-        if self.accuracy is not None:
-            return settings_for(self.accuracy)
-        written = asdict(self)
-        return Discretisation(**{f.name: written[f.name] for f in fields(Discretisation) if f.name in written})
+        super().__post_init__()
 
     def supports(self, scene: Scene) -> Supported | Unsupported:
         """Whether this method models the scene."""
@@ -158,7 +144,7 @@ class Fem:
         """The answer at the given settings, or at settings refined until ``accuracy`` is reached."""
         attempt = self._attempt(scene, log)
         if self.accuracy is None:
-            return attempt(self.discretisation)
+            return attempt(self)
         return solve_to_accuracy(
             attempt, self.accuracy, self.pressure_accuracy, moves=isinstance(scene.loading, MOTIONS)
         )
@@ -225,8 +211,7 @@ class Fem:
         """
         if self.accuracy is not None:
             return replace(self, accuracy=max(self.accuracy / 4**self.order, 1e-9))
-        finer = asdict(self.discretisation.refined())
-        return replace(self, **{name: value for name, value in finer.items() if name != "coarsening"})
+        return super().refined()
 
 
 def _supports_friction(scene: Scene) -> Supported | Unsupported:

@@ -55,5 +55,5 @@ def test_a_coarse_mesh_knows_how_its_depth_grows(indenter):
         loading=ContactRadii(near),
     )
     depth = Mdr().solve(scene).indentation_depth
-    found = solve_contact(scene, 1.0, Fem(growth=1.4, truncation=1e-5).discretisation, StageLog()).smooth_depth_slope
+    found = solve_contact(scene, 1.0, Fem(growth=1.4, truncation=1e-5), StageLog()).smooth_depth_slope
     assert found == pytest.approx((depth[2] - depth[0]) / (near[2] - near[0]), rel=0.1, abs=0)
