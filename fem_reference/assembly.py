@@ -23,6 +23,10 @@ from contact.records.errors import InvalidInput
 from contact.records.validation import FloatArray, IntArray
 from fem_reference.materials import PointModuli
 
+# Subtracts the mean of the normal strains (rr, zz, hoop) from a strain (rr, zz, hoop, sqrt(2) rz).
+DEVIATOR = np.eye(4)
+DEVIATOR[:3, :3] -= 1 / 3
+
 
 @dataclass(frozen=True)
 class ElementPair:
@@ -249,9 +253,9 @@ def element_matrices(pair: ElementPair, corners: FloatArray, moduli: PointModuli
     jacobian = np.stack([corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]], axis=-1)
     radius = corners[:, :, 0] @ barycentric(points)
     measure, strain = measures(jacobian, radius, weights), strains(pair, jacobian, radius)
-    dilation = strain[:, :3].sum(axis=1)
-    strain[:, :3] -= dilation[:, None] / 3
-    shear = _products(strain, 2 * moduli.shear * measure)
+    dilation, count = strain[:, :3].sum(axis=1), len(strain)
+    deviator = (DEVIATOR @ strain.reshape(count, 4, -1)).reshape(strain.shape)
+    shear = _products(deviator, 2 * moduli.shear * measure)
     if not pair.is_mixed:
         if np.any(moduli.compressibility == 0):
             raise InvalidInput("a displacement formulation needs nu < 0.5: take a mixed pair such as P3P2")

@@ -52,8 +52,6 @@ MOST = 16
 LEAST_RESTITUTION = 3e-8
 # Share of the peak force below which a force may be rounding: the rest of the contact time is its stated error.
 ROUNDING_FORCE = 1e-12
-# A quantity above this share of its peak is near it: the largest change there is the stated error of the peak.
-NEAR_PEAK = 0.9
 # The time-dependent quantity of each peak.
 PEAKS = {"peak_force": "normal_force", "peak_depth": "indentation_depth", "peak_contact_radius": "contact_radius"}
 # Error, in cells, of the contact edge extrapolated from pressures. At a kink, and where layers relax, it is one cell.
@@ -94,7 +92,9 @@ def impact(scene: Scene, settings: Discretisation, *, written: Mapping[str, Sett
         for name in answer.ARRAYS
         if name != "time"
     }
-    for name in (*answer.SCALARS, "coefficient_of_restitution", "contact_time"):
+    # The peaks of two resolutions may agree by accident: they err like their quantities.
+    errors |= {name: errors[quantity][:1] for name, quantity in PEAKS.items()}
+    for name in ("coefficient_of_restitution", "contact_time"):
         errors[name] = np.array([SAFETY * sum(_scalar_change(*pair, name) for pair in pairs) + FLOOR])
     errors["contact_time"] += _end_by_roundings(answer)
     cell, peak_radius = radius / setups[-1][1].cells, answer.peak_contact_radius
@@ -276,15 +276,8 @@ def _change(answer: A, companion: A, name: str) -> FloatArray:
 
 
 def _scalar_change(answer: ImpactHistory, companion: ImpactHistory, name: str) -> float:
-    """Relative change of a number; of a peak it is at least the largest change of its quantity near the peak.
-
-    The peaks of two resolutions may agree by accident.
-    """
-    change = abs(float(getattr(companion, name)) / float(getattr(answer, name)) - 1.0)
-    if name not in PEAKS:
-        return change
-    values = getattr(companion, PEAKS[name])
-    return max(change, float(_change(answer, companion, PEAKS[name])[values >= NEAR_PEAK * values.max()].max()))
+    """Relative change of a number."""
+    return abs(float(getattr(companion, name)) / float(getattr(answer, name)) - 1.0)
 
 
 def _change_near(
