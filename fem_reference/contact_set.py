@@ -26,6 +26,8 @@ MOST_SETS = 1000
 # Coefficients, highest power first, of the polynomial that maps the ratio of the last two pressures to the distance
 # [cells] from the last pressed vertex to the contact edge; it errs by 0.06 cells.
 EDGE_POLYNOMIAL = (0.11, 1.0, 0.04)
+# Error, in cells, of a contact edge read from pressures: half of it is less than the polynomial errs.
+EDGE_ERROR = 0.1
 
 
 # A set as one value per vertex, and the solution on it.
@@ -83,7 +85,7 @@ def settled(start: Chosen, follow: Callable[[Chosen], tuple[Solved, Chosen]]) ->
 def solve_complementarity(
     compliance: FloatArray, approach: FloatArray, start: BoolArray | None = None
 ) -> Complementary:
-    """Solution p, g of the complementarity problem.
+    """Pressures p of the complementarity problem, and the vertices that they press.
 
     Args:
         compliance: compliance C, shape (n, n), symmetric positive definite.
@@ -100,7 +102,7 @@ def solve_complementarity(
 def solve_on_line(
     compliance: FloatArray, gap: FloatArray, w: FloatArray, line: LoadLine, start: BoolArray
 ) -> tuple[Complementary, float]:
-    """Solution p, g for the approach ``b = delta w - gap`` at a depth delta that obeys the load line, and this depth.
+    """Pressures p for the approach ``b = delta w - gap`` at a depth delta that obeys the load line, and this depth.
 
     On an active set ``p = delta s - t`` with ``s = C^-1 w`` and ``t = C^-1 gap``, which determines the depth.
 

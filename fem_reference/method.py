@@ -135,22 +135,16 @@ class Fem(Discretisation):
         support = self.supports(scene)
         if isinstance(support, Unsupported):
             raise UnsupportedSceneError(support.reason)
+        attempt, moves = self._attempt(scene, StageLog()), isinstance(scene.loading, MOTIONS)
         try:
-            answer = self._solve(scene, StageLog())
+            if self.accuracy is None:
+                return attempt(self)
+            answer = solve_to_accuracy(attempt, self.accuracy, self.pressure_accuracy, moves=moves)
         except MemoryError:
             raise UnsupportedSceneError(
                 "the mesh does not fit into memory: give fem a less strict accuracy or a larger growth"
             ) from None
-        return answer if self.accuracy is None else with_accuracy_note(answer, self.accuracy, self.pressure_accuracy)
-
-    def _solve(self, scene: Scene, log: StageLog) -> Answer:
-        """The answer at the given settings, or at settings refined until ``accuracy`` is reached."""
-        attempt = self._attempt(scene, log)
-        if self.accuracy is None:
-            return attempt(self)
-        return solve_to_accuracy(
-            attempt, self.accuracy, self.pressure_accuracy, moves=isinstance(scene.loading, MOTIONS)
-        )
+        return with_accuracy_note(answer, self.accuracy, self.pressure_accuracy)
 
     def _attempt(self, scene: Scene, log: StageLog) -> Callable[[Discretisation], Answer]:
         """Function that solves the scene with given settings, and with coarser ones for its errors."""

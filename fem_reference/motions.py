@@ -33,7 +33,7 @@ from fem_reference.mesh import Section
 from fem_reference.prescribed_contact import solve_contact
 from fem_reference.profiles import ScaledIndenter
 from fem_reference.settings import Discretisation, contact_section
-from fem_reference.surface import TraceSpace, condense, strip_section
+from fem_reference.surface import FILLED, TraceSpace, condense, strip_section
 
 # Largest number of steps of an impact; then the body counts as not coming off. It is five hundred times the number at
 # the default settings.
@@ -56,9 +56,9 @@ OUTSIDE = 0.6
 TRUNCATION = 1e-7
 # Cells of the strip of pilot simulations.
 PILOT_CELLS = 30
-# A strip fits if the largest contact fills between FITTING and FULL of its radius. The strip of the answer is SPARE
+# A strip fits if the largest contact fills between FITTING and `FILLED` of its radius. The strip of the answer is SPARE
 # times the largest contact.
-FULL, FITTING, SPARE = 0.9, 0.3, 1.25
+FITTING, SPARE = 0.3, 1.25
 
 
 @dataclass(frozen=True)
@@ -482,9 +482,9 @@ class HistorySetup:
                 raise NotConvergedError(
                     "the pilot simulation has no step with contact: a strong dashpot stops the body, or no load presses"
                 )
-            if largest > FULL and radius >= indenter.max_radius:
+            if largest > FILLED and radius >= indenter.max_radius:
                 raise InvalidInput(f"contact reaches the end of the profile at {radius:g} m; load less")
-            if FITTING <= largest <= FULL:
+            if FITTING <= largest <= FILLED:
                 return min(SPARE * largest * radius, indenter.max_radius), motion
-            radius = min(1.6 * radius, indenter.max_radius) if largest > FULL else radius * max(1.5 * largest, 0.1)
+            radius = min(1.6 * radius, indenter.max_radius) if largest > FILLED else radius * max(1.5 * largest, 0.1)
         raise NotConvergedError("no strip of the surface fits the contact", {"strip_radius": radius})

@@ -23,6 +23,7 @@ from contact import (
 from contact.answer.solution import Setting
 from contact.records.validation import FloatArray
 from contact.stated import SAFETY
+from fem_reference.contact_set import EDGE_ERROR
 from fem_reference.equilibria import FemEquilibrium
 from fem_reference.fields import FemFields
 from fem_reference.friction.growth import GrowthRecord, StripMaker
@@ -40,8 +41,6 @@ QUANTITIES = {
     "stick": ("stick_radius", 0),
     "heat": ("dissipated_energy", 1),
 }
-# Error of an edge radius read from pressures, in cells (`contact_set.EDGE_POLYNOMIAL`).
-EDGE_UNCERTAIN = 0.1
 
 
 @dataclass(frozen=True)
@@ -170,7 +169,7 @@ def rubbed_history(
     surface = contact.surface
     cell = contact.radius * surface.radii[1] / fine["contact_radius"].max()
     # Error of radii from the size of cells, relative to the largest contact radius.
-    radius_errors = {"contact_radius": EDGE_UNCERTAIN * cell, "stick_radius": cell}
+    radius_errors = {"contact_radius": EDGE_ERROR * cell, "stick_radius": cell}
     errors = {}
     for name, values in fine.items():
         if np.any(values):

@@ -31,19 +31,17 @@ from fem_reference.materials import contact_modulus
 from fem_reference.profiles import shape
 from fem_reference.settings import Discretisation
 from fem_reference.stated import LEAST_SHARE
-from fem_reference.surface import RUBBED_STRIDE, STRIP_CELLS, condense, strip_section
+from fem_reference.surface import FILLED, RUBBED_STRIDE, STRIP_CELLS, condense, strip_section
 
-# Radius of the largest contact over that of its strip: a few nodes beyond the contact are needed to solve its growth.
-FILLED = 0.9
 # One pair of strips serves contacts with radii down to this share of its largest: the smallest has half of its cells.
 SERVED = 0.5
 # A quarter of the fewest cells of the finer strip, and its most cells. With half as few the difference of two strips is
 # accidental. With twice as many the time is eight times as long.
 FEWEST_CELLS, MOST_CELLS = 20, 480
+# Growth of the mesh outside a strip of STRIP_CELLS cells.
+OUTSIDE_GROWTH = 0.5
 # Share of a profile whose heights are used: at its very end a sphere's slope has no bound.
 INSIDE = 0.999
-# Growth of the mesh outside a strip of STRIP_CELLS cells, and the `Discretisation.growth` at which a strip has so many.
-OUTSIDE_GROWTH, USUAL_GROWTH = 0.5, 0.5
 # A touching node lies this share of a cell inside the contact's edge where the edge slides. On half-spaces without
 # friction, where a = sqrt(R delta), the share is 0.0307 on 40 cells and 0.0294 on 80: this is the limit.
 EDGE_SHARE = 0.028
@@ -80,12 +78,12 @@ class StripMaker:
 
     @property
     def cells(self) -> int:
-        """Cells of the finer strip: a multiple of four, inversely proportional to the growth of the settings.
+        """Cells of the finer strip: a multiple of four, `STRIP_CELLS` at the usual growth and more at less.
 
         Raises:
             NotConvergedError: more than `MOST_CELLS` cells.
         """
-        cells = 4 * max(FEWEST_CELLS, round(STRIP_CELLS * USUAL_GROWTH / self.settings.growth / 4))
+        cells = 4 * max(FEWEST_CELLS, round(STRIP_CELLS * Discretisation.growth / self.settings.growth / 4))
         if cells > MOST_CELLS:
             raise NotConvergedError(f"a contact with friction takes {MOST_CELLS} cells at most, not {cells}")
         return cells

@@ -30,11 +30,9 @@ import numpy as np
 from contact import InvalidInput
 from contact.answer.one_circle import no_single_circle
 from contact.records.validation import FloatArray, IntArray
-from fem_reference.contact_set import edge_radius, settled
+from fem_reference.contact_set import TOLERANCE, edge_radius, settled
 from fem_reference.surface import Surface
 
-# Largest tension or overlap that is accepted as rounding, relative to the largest pressure or to the depth.
-TOLERANCE = 1e-9
 # Fewest pressed nodes of contacts checked for tension and overlap: fewer do not resolve a pressure that is least on the
 # axis, like that under r^4.
 RESOLVED = 12
