@@ -22,7 +22,6 @@ from typing import Any, Self
 
 import numpy as np
 from numpy.polynomial import chebyshev
-from scipy.optimize import brentq
 
 from contact import (
     Adhesion,
@@ -93,22 +92,10 @@ class BranchPiece:
         return cls(low, high, graded, tuple(contacts[a] for a in map(float, radii)), solve)
 
     @cached_property
-    def _powers(self) -> FloatArray:
-        """Exponents n of delta_0 / a ~ a^n and F_2 / a^2 ~ a^n between the ends, shape (2,); zero if signs differ."""
-        ends = np.array([[c.smooth_depth, c.profile_force] for c in (self.contacts[0], self.contacts[-1])])
-        ratios = ends[1] / np.where(ends[0] == 0, np.inf, ends[0])
-        return np.asarray(np.log(np.where(ratios > 0, ratios, 1.0)) / np.log(self.high / self.low))
-
-    @cached_property
     def _series(self) -> FloatArray:
-        """Chebyshev coefficients of four functions of s, shape (node, 4).
-
-        They are ln(k_N / (E* a)), ln(k_N' / E*), and delta_0 / a and F_2 / (E* a^2), each divided by (a / high)^n with
-        its exponent n of `_powers`.
-        """
-        radii = np.array([c.contact_radius for c in self.contacts]) / self.high
+        """Chebyshev coefficients of ln(k_N / (E* a)), ln(k_N' / E*), delta_0 / a, F_2 / (E* a^2), shape (node, 4)."""
         rows = np.array([(c.stiffness, c.stiffness_slope, c.smooth_depth, c.profile_force) for c in self.contacts])
-        rows[:, :2], rows[:, 2:] = np.log(rows[:, :2]), rows[:, 2:] / radii[:, None] ** self._powers
+        rows[:, :2] = np.log(rows[:, :2])
         return chebyshev.chebfit(chebyshev.chebpts2(len(rows)), rows, len(rows) - 1)
 
     def evaluate(self, radius: FloatArray) -> FloatArray:
@@ -117,8 +104,7 @@ class BranchPiece:
             s = np.sqrt((radius - self.low) / (self.high - self.low))
         else:
             s = np.log(radius / self.low) / np.log(self.high / self.low)
-        stiffness, slope, *others = chebyshev.chebval(2 * s - 1, self._series)
-        smooth, profile = np.array(others) * (radius / self.high) ** self._powers[:, None]
+        stiffness, slope, smooth, profile = chebyshev.chebval(2 * s - 1, self._series)
         return np.array([radius * np.exp(stiffness), np.exp(slope), radius * smooth, radius**2 * profile])
 
 
@@ -197,6 +183,8 @@ class Branch:
 
 def root(function: Callable[[FloatArray], FloatArray], low: float, high: float) -> float:
     """Radius [m] between ``low`` and ``high`` at which a function of radii vanishes (Brent's method)."""
+    from scipy.optimize import brentq  # noqa: PLC0415 - takes 0.1 s to import
+
     return float(brentq(lambda a: function(np.array([a]))[0], low, high, xtol=1e-13 * high))
 
 

@@ -1,9 +1,8 @@
 """Unknowns of a mesh, and element matrices of the weak forms by batched dense products.
 
-The matrices equal those of scikit-fem's assembly of `weak_forms` and take a fifth of its time: on straight triangles
-the products of basis functions are tabulated once, and each triangle only weights them. Numbering is scikit-fem's own
-for `ElementVector`: displacement component c of scalar unknown i is ``2 i + c``. Pressures follow. Strains are stored
-as (rr, zz, hoop, sqrt(2) rz), so that ``eps : eps`` is a plain sum of squares.
+The matrices equal those of scikit-fem's assembly of `weak_forms` and take a fifth of its time: basis functions are
+tabulated once for all triangles, and each matrix is one product of strains. Numbering is scikit-fem's own for
+`ElementVector`: displacement component c of scalar unknown i is ``2 i + c``. Pressures follow.
 """
 
 from __future__ import annotations
@@ -27,8 +26,6 @@ from fem_reference.materials import PointModuli
 # Subtracts the mean of the normal strains (rr, zz, hoop) from a strain (rr, zz, hoop, sqrt(2) rz).
 DEVIATOR = np.eye(4)
 DEVIATOR[:3, :3] -= 1 / 3
-# Sums the normal strains.
-TRACE = np.array([1.0, 1.0, 1.0, 0.0])
 
 
 @dataclass(frozen=True)
@@ -199,38 +196,36 @@ def quadrature(degree: int) -> tuple[FloatArray, FloatArray]:
 
 
 @cache
-def _products(pair: ElementPair) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Products of basis functions at quadrature points, the same for all triangles.
-
-    The three terms of a displacement function phi are its reference derivatives ``phi,xi`` and ``phi,eta``, and phi.
+def tables(pair: ElementPair) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Basis functions at quadrature points, the same for all triangles.
 
     Returns:
-        Products of the terms of two displacement functions, shape (3, 3, point, basis, basis).
-        Products of the terms of a displacement function with the pressure functions, shape (3, point, pressure, basis).
-        Values of the pressure functions, shape (pressure, point).
+        Values of displacement functions, shape (basis, point).
+        Their reference gradients, shape (2, basis, point).
+        Values of pressure functions, shape (pressure, point).
     """
     points, _ = quadrature(pair.degree)
-    value, gradient = tabulate(pair.displacement, points)
-    terms = np.concatenate([gradient, value[None]])
     pressures = tabulate(pair.pressure, points)[0] if pair.pressure else np.empty((0, points.shape[1]))
-    squares, mixed = np.einsum("aip,bjp->abpij", terms, terms), np.einsum("aip,kp->apki", terms, pressures)
-    return np.asarray(squares), np.asarray(mixed), pressures
+    return *tabulate(pair.displacement, points), pressures
 
 
-def strains(jacobian: FloatArray) -> FloatArray:
-    """Coefficients of the strains of a basis function, shape (triangle, 4, 2, 3).
+def strains(pair: ElementPair, jacobian: FloatArray, radius: FloatArray) -> FloatArray:
+    """Strains of all displacement functions at quadrature points, shape (triangle, 4, point, 2 x basis).
 
-    Axes: triangle; strain (rr, zz, hoop, sqrt(2) rz); component (r, z); term ``phi,xi``, ``phi,eta`` or ``phi / r``.
+    The second axis is (rr, zz, hoop, sqrt(2) rz), so that ``eps : eps`` is a plain sum of squares.
 
     Args:
+        pair: elements of displacement and pressure.
         jacobian: d(r, z)/d(xi, eta), shape (triangle, 2, 2).
+        radius: r at the quadrature points, shape (triangle, point).
     """
+    value, gradient, _ = tables(pair)
     inverse = np.linalg.inv(jacobian)
-    strain = np.zeros((len(inverse), 4, 2, 3), dtype=inverse.dtype)
-    strain[:, 0, 0, :2], strain[:, 1, 1, :2] = inverse[:, :, 0], inverse[:, :, 1]
-    strain[:, 3, 0, :2], strain[:, 3, 1, :2] = np.sqrt(0.5) * inverse[:, :, 1], np.sqrt(0.5) * inverse[:, :, 0]
-    strain[:, 2, 0, 2] = 1.0
-    return strain
+    by_r, by_z = (np.tensordot(inverse[:, :, axis], gradient, 1).transpose(0, 2, 1) for axis in (0, 1))
+    strain = np.zeros((len(radius), 4, *by_r.shape[1:], 2), dtype=inverse.dtype)
+    strain[:, 0, ..., 0], strain[:, 1, ..., 1], strain[:, 2, ..., 0] = by_r, by_z, value.T / radius[..., None]
+    strain[:, 3, ..., 0], strain[:, 3, ..., 1] = np.sqrt(0.5) * by_z, np.sqrt(0.5) * by_r
+    return strain.reshape(*strain.shape[:3], -1)
 
 
 def measures(jacobian: FloatArray, radius: FloatArray, weights: FloatArray) -> FloatArray:
@@ -257,52 +252,25 @@ def element_matrices(pair: ElementPair, corners: FloatArray, moduli: PointModuli
     points, weights = quadrature(pair.degree)
     jacobian = np.stack([corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]], axis=-1)
     radius = corners[:, :, 0] @ barycentric(points)
-    measure, strain = measures(jacobian, radius, weights), strains(jacobian)
-    shear = _strain_products(pair, strain, 2 * moduli.shear * measure, radius, DEVIATOR)
+    measure, strain = measures(jacobian, radius, weights), strains(pair, jacobian, radius)
+    dilation, count = strain[:, :3].sum(axis=1), len(strain)
+    deviator = (DEVIATOR @ strain.reshape(count, 4, -1)).reshape(strain.shape)
+    shear = _products(deviator, 2 * moduli.shear * measure)
     if not pair.is_mixed:
         if np.any(moduli.compressibility == 0):
             raise InvalidInput("a displacement formulation needs nu < 0.5: take a mixed pair such as P3P2")
-        return shear + _strain_products(pair, strain, measure / moduli.compressibility, radius, np.outer(TRACE, TRACE))
-    constraint, pressures = _constraints(pair, strain, measure, radius), _products(pair)[2]
-    compliance = (pressures * (moduli.compressibility * measure)[:, None, :]) @ pressures.T
+        return shear + _products(dilation[:, None], measure / moduli.compressibility)
+    pressures = tables(pair)[2]
+    constraint = -(pressures * measure[:, None]) @ dilation
+    compliance = (pressures * (moduli.compressibility * measure)[:, None]) @ pressures.T
     return np.block([[shear, constraint.transpose(0, 2, 1)], [constraint, -compliance]])
 
 
-def _strain_products(
-    pair: ElementPair, strain: FloatArray, weight: FloatArray, radius: FloatArray, form: FloatArray
-) -> FloatArray:
-    """``int eps(u) : form : eps(v) weight`` of each triangle, shape (triangle, 2 x basis, 2 x basis).
-
-    It sums, over pairs of terms and over points, coefficients of the triangle times products of the reference triangle:
-    one matrix product for each pair of components.
-    """
-    # Axes: triangle, component of u, term of u, component of v, term of v, 1.
-    flat, products = strain.reshape(-1, 4, 6), _products(pair)[0]
-    mutual = (flat.transpose(0, 2, 1) @ form @ flat).reshape(-1, 2, 3, 2, 3, 1)
-    # Factor of each term: 1, 1 and 1/r.
-    over_r = np.stack([np.ones_like(radius)] * 2 + [1 / radius], axis=1)
-    weights, basis = (weight[:, None] * over_r)[:, :, None] * over_r[:, None], products.shape[-1]
-    elements = np.empty((len(weight), basis, 2, basis, 2), dtype=weight.dtype)
-    for row, column in ((0, 0), (0, 1), (1, 1)):
-        # u_z has no hoop strain: two terms instead of three.
-        i, j = slice(3 - row), slice(3 - column)
-        share = mutual[:, row, i, column, j] * weights[:, i, j]
-        block = share.reshape(len(share), -1) @ products[i, j].reshape(-1, basis**2)
-        elements[:, :, row, :, column] = block.reshape(-1, basis, basis)
-    elements[:, :, 1, :, 0] = elements[:, :, 0, :, 1].transpose(0, 2, 1)
-    return elements.reshape(-1, 2 * basis, 2 * basis)
-
-
-def _constraints(pair: ElementPair, strain: FloatArray, measure: FloatArray, radius: FloatArray) -> FloatArray:
-    """``- int q div u`` of each triangle, shape (triangle, pressure, displacement)."""
-    divergence, products = np.einsum("s,tscb->tcb", TRACE, strain), _products(pair)[1]
-    weights = np.stack([measure, measure, measure / radius], axis=1)
-    elements = np.empty((len(measure), *products.shape[2:], 2), dtype=measure.dtype)
-    for component, terms in enumerate((slice(3), slice(2))):
-        share = -divergence[:, component, terms, None] * weights[:, terms]
-        block = share.reshape(len(share), -1) @ products[terms].reshape(-1, elements[0, ..., 0].size)
-        elements[..., component] = block.reshape(elements.shape[:-1])
-    return elements.reshape(*elements.shape[:2], -1)
+def _products(strain: FloatArray, weight: FloatArray) -> FloatArray:
+    """Sum of products of strains (triangle, m, point, n) with weights (triangle, point), shape (triangle, n, n)."""
+    weighted = strain * weight[:, None, :, None]
+    shape = len(strain), -1, strain.shape[-1]
+    return np.asarray(weighted.reshape(shape).transpose(0, 2, 1) @ strain.reshape(shape))
 
 
 def scatter(elements: FloatArray, unknowns: IntArray, size: int) -> sparse.csc_array:

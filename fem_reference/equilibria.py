@@ -1,7 +1,7 @@
 """Equilibria without adhesion at prescribed radii, depths or forces at one resolution, and the path of these states.
 
 The load is a depth or a force. The contact radius that belongs to it is unknown. Newton's method on coarse meshes
-(`quick_solution`) finds it. A full solution at that radius is corrected to first order if its load differs by little,
+(`QUICK`) finds it. A full solution at that radius is corrected to first order if its load differs by little,
 else the radius is corrected and the solution repeated. At smooth contact dF/da = 0 at fixed depth, so that
 ``F = F_0 + k_N (delta - delta_0)`` at the solved radius, F_0 its force of smooth contact, errs only in the square of
 delta - delta_0.
@@ -32,7 +32,7 @@ from contact.answer.solution import Setting
 from contact.records.validation import FloatArray
 from contact.scene.extent import first_radius
 from fem_reference.materials import contact_modulus
-from fem_reference.prescribed_contact import QUICK, ContactSolver, Neighbours, PrescribedContact, quick_solution
+from fem_reference.prescribed_contact import QUICK, ContactSolver, Neighbours, PrescribedContact, solve_contact
 from fem_reference.profiles import height
 from fem_reference.settings import NARROWEST, narrowest_radius
 
@@ -152,7 +152,7 @@ def elastic_equilibria(
             states.append(state_at_load(scene, target, start, solve, coarsening))
         except NotConvergedError:
             # With tension inside the contact the load need not grow with the radius. The message then names it.
-            state = smooth_equilibrium(quick_solution(scene, start, StageLog()))
+            state = smooth_equilibrium(solve_contact(scene, start, QUICK, StageLog()))
             _refuse_pulled(scene, state, state)
             raise
     return states
@@ -350,7 +350,7 @@ def refuse_touching_at(scene: Scene, radius: float, log: StageLog) -> None:
     """
     if scene.indenter.is_convex or radius <= scene.indenter.flat_radius:
         return
-    state = smooth_equilibrium(quick_solution(scene, radius, log))
+    state = smooth_equilibrium(solve_contact(scene, radius, QUICK, log))
     refuse_touching(scene, [circle_of(state, QUICK_ERROR * state.depth * radius)])
 
 

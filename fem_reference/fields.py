@@ -7,7 +7,7 @@ averaged over the triangles that meet at a node; the pressure of a mixed pair is
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cached_property
 from pathlib import Path
 
@@ -23,17 +23,7 @@ from fem_reference.equilibria import FemEquilibrium
 from fem_reference.prescribed_contact import PrescribedContact
 from fem_reference.stated import FLOOR
 
-NAMES = (
-    "radial_displacement",
-    "axial_displacement",
-    "radial_stress",
-    "hoop_stress",
-    "axial_stress",
-    "shear_stress",
-    "hydrostatic_pressure",
-    "pressure_gradient_radial",
-    "pressure_gradient_axial",
-)
+NAMES = tuple(field.name for field in fields(InsideFields) if field.name != "error_estimate")
 # Fields that change sign across the axis.
 ODD = [NAMES.index(name) for name in ("radial_displacement", "shear_stress", "pressure_gradient_radial")]
 # Groups of fields with a common stated error, as slices of `NAMES`.

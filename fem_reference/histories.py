@@ -25,6 +25,7 @@ from contact.answer.solution import Setting
 from contact.records.validation import FloatArray
 from contact.scene.extent import first_radius
 from contact.stated import SAFETY
+from fem_reference.contact_set import EDGE_ERROR
 from fem_reference.equilibria import refuse_touching_at
 from fem_reference.materials import contact_modulus, shear_modulus
 from fem_reference.motions import (
@@ -56,8 +57,6 @@ ROUNDING_FORCE = 1e-12
 NEAR_PEAK = 0.9
 # The time-dependent quantity of each peak.
 PEAKS = {"peak_force": "normal_force", "peak_depth": "indentation_depth", "peak_contact_radius": "contact_radius"}
-# Error, in cells, of the contact edge extrapolated from pressures. At a kink, and where layers relax, it is one cell.
-EDGE_READING = 0.1
 # The error at an instant is the largest change among so many instants of the companion to either side.
 WINDOW = 6
 # While the contact radius is below so many cells, the largest change of all such instants is stated.
@@ -97,10 +96,11 @@ def impact(scene: Scene, settings: Discretisation, *, written: Mapping[str, Sett
     for name in (*answer.SCALARS, "coefficient_of_restitution", "contact_time"):
         errors[name] = np.array([SAFETY * sum(_scalar_change(*pair, name) for pair in pairs) + FLOOR])
     errors["contact_time"] += _end_by_roundings(answer)
+    # At a kink the edge is known to a cell.
     cell, peak_radius = radius / setups[-1][1].cells, answer.peak_contact_radius
     at_kink = any(abs(peak_radius - kink) < 2 * cell for kink in scene.indenter.kinks)
     for name in ("contact_radius", "peak_contact_radius"):
-        errors[name] = errors[name] + (1.0 if at_kink else EDGE_READING) * cell / peak_radius
+        errors[name] = errors[name] + (1.0 if at_kink else EDGE_ERROR) * cell / peak_radius
     return _with_errors(answer, errors)
 
 
@@ -139,8 +139,8 @@ def history(scene: Scene, settings: Discretisation, *, written: Mapping[str, Set
         for name in answer.ARRAYS
         if name != "time"
     }
-    # Pressures of a layer that relaxes do not end like sqrt(a - r).
-    errors["contact_radius"] = errors["contact_radius"] + (1.0 if scene.effects else EDGE_READING) * cell / largest
+    # Pressures of a layer that relaxes do not end like sqrt(a - r): their edge is known to a cell.
+    errors["contact_radius"] = errors["contact_radius"] + (1.0 if scene.effects else EDGE_ERROR) * cell / largest
     return _with_errors(answer, errors)
 
 

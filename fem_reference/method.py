@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import asdict, dataclass, fields, replace
+from dataclasses import asdict, dataclass, replace
 from functools import cache, partial
 from typing import ClassVar, Self, TypeAlias, overload
 
@@ -38,6 +38,7 @@ from contact.answer.method import not_round
 from contact.answer.no_contact import without_contact
 from contact.answer.one_thread import one_thread
 from contact.answer.small_strains import within_small_strains
+from fem_reference.adhesion import adhesive_equilibria, detachment_path
 from fem_reference.equilibria import (
     FemEquilibrium,
     contact_path,
@@ -47,10 +48,12 @@ from fem_reference.equilibria import (
     searched_radius,
 )
 from fem_reference.fields import FemFields
+from fem_reference.friction.answers import AdheredFemFields, rubbed_history, rubbed_path, with_shear_error
+from fem_reference.histories import history, impact
 from fem_reference.materials import contact_modulus
-from fem_reference.prescribed_contact import ContactSolver, solve_contact
+from fem_reference.prescribed_contact import solve_contact
 from fem_reference.settings import Discretisation
-from fem_reference.stated import path_with_errors, settings_for, solve_to_accuracy
+from fem_reference.stated import path_with_errors, solve_to_accuracy
 
 Answer: TypeAlias = ContactPath | DetachmentPath | ImpactHistory | HistoryPath
 # Loadings over time.
@@ -58,7 +61,7 @@ MOTIONS = Impact, DepthHistory, ForceHistory
 
 
 @dataclass(frozen=True, kw_only=True)
-class Fem:
+class Fem(Discretisation):
     """Axisymmetric finite elements: mixed P_k-P_(k-1) on graded triangles, at every Poisson's ratio.
 
     Attributes:
@@ -80,12 +83,6 @@ class Fem:
 
     accuracy: float | None = None
     pressure_accuracy: float | None = None
-    order: int = 4
-    edge_cell: float = 1e-7
-    growth: float = 0.5
-    truncation: float = 1e-8
-    half_space_thickness: float = 1e8
-    outer_distance: float | None = None
 
     def __post_init__(self) -> None:
         """Raise InvalidInput for settings outside their ranges."""
@@ -95,15 +92,7 @@ class Fem:
                 raise InvalidInput(f"{name} must lie in [1e-9, 0.1], got {value}")
         if self.pressure_accuracy is not None and self.accuracy is None:
             raise InvalidInput("pressure_accuracy is used besides an accuracy of the numbers; give both")
-        _ = self.discretisation
-
-    @property
-    def discretisation(self) -> Discretisation:
-        """The settings of the mesh and its elements, chosen from ``accuracy`` where that is given."""
-        if self.accuracy is not None:
-            return settings_for(self.accuracy)
-        written = asdict(self)
-        return Discretisation(**{f.name: written[f.name] for f in fields(Discretisation) if f.name in written})
+        super().__post_init__()
 
     def supports(self, scene: Scene) -> Supported | Unsupported:
         """Whether this method models the scene."""
@@ -146,40 +135,25 @@ class Fem:
         support = self.supports(scene)
         if isinstance(support, Unsupported):
             raise UnsupportedSceneError(support.reason)
+        attempt, moves = self._attempt(scene, StageLog()), isinstance(scene.loading, MOTIONS)
         try:
-            answer = self._solve(scene, StageLog())
+            if self.accuracy is None:
+                return attempt(self)
+            answer = solve_to_accuracy(attempt, self.accuracy, self.pressure_accuracy, moves=moves)
         except MemoryError:
             raise UnsupportedSceneError(
                 "the mesh does not fit into memory: give fem a less strict accuracy or a larger growth"
             ) from None
-        return answer if self.accuracy is None else with_accuracy_note(answer, self.accuracy, self.pressure_accuracy)
-
-    def _solve(self, scene: Scene, log: StageLog) -> Answer:
-        """The answer at the given settings, or at settings refined until ``accuracy`` is reached."""
-        attempt = self._attempt(scene, log)
-        if self.accuracy is None:
-            return attempt(self.discretisation)
-        return solve_to_accuracy(
-            attempt, self.accuracy, self.pressure_accuracy, moves=isinstance(scene.loading, MOTIONS)
-        )
+        return with_accuracy_note(answer, self.accuracy, self.pressure_accuracy)
 
     def _attempt(self, scene: Scene, log: StageLog) -> Callable[[Discretisation], Answer]:
-        """Function that solves the scene with given settings, and with coarser ones for its errors.
-
-        Modules of effects are imported for their scenes only.
-        """
+        """Function that solves the scene with given settings, and with coarser ones for its errors."""
         written, in_time = asdict(self), isinstance(scene.loading, MOTIONS)
         if scene.effect(Friction) is not None and not isinstance(scene.indenter, FlatPunch):
-            from fem_reference.friction.answers import rubbed_history, rubbed_path  # noqa: PLC0415
-
             return partial(rubbed_history if in_time else rubbed_path, scene, written=written, log=log)
         if in_time:
-            from fem_reference.histories import history, impact  # noqa: PLC0415
-
             return partial(impact if isinstance(scene.loading, Impact) else history, scene, written=written, log=log)
         if isinstance(scene.loading, Detachment):
-            from fem_reference.adhesion import detachment_path  # noqa: PLC0415
-
             return partial(detachment_path, scene, written, log)
         return partial(self._at_rest, scene, cache(partial(searched_radius, scene, log)), log)
 
@@ -189,12 +163,8 @@ class Fem:
         """Path of equilibria at prescribed radii, depths or forces; ``search`` is `searched_radius`, cached."""
         modulus, sticks = contact_modulus(scene.layer), scene.effect(Friction) is not None
         coarser, states = (self._states(scene, each, search, log) for each in (settings.coarser(), settings))
-        on_top = FemFields(states, modulus, coarser)
-        if sticks:
-            from fem_reference.friction.answers import AdheredFemFields, with_shear_error  # noqa: PLC0415
-
-            on_top = AdheredFemFields(states, modulus, coarser)
-        else:
+        on_top = (AdheredFemFields if sticks else FemFields)(states, modulus, coarser)
+        if not sticks:
             refuse_other_contacts(scene, states, coarser)
         path, companion = (contact_path(scene, each, on_top, asdict(self), log) for each in (states, coarser))
         answer = path_with_errors(path, companion, states, coarser)
@@ -204,19 +174,13 @@ class Fem:
         self, scene: Scene, settings: Discretisation, search: Callable[[float], float], log: StageLog
     ) -> list[FemEquilibrium]:
         """Equilibria at one resolution."""
-        solve = self._solver(scene, log, settings)
-        if scene.effect(Friction) is not None:
+        sticks = scene.effect(Friction) is not None
+        solve = partial(solve_contact, scene, settings=settings, log=log, sticks=sticks)
+        if sticks:
             return flat_punch_equilibria(scene, solve)
         if scene.effects:
-            from fem_reference.adhesion import adhesive_equilibria  # noqa: PLC0415
-
             return adhesive_equilibria(scene, solve, settings, log)
         return elastic_equilibria(scene, solve, settings.coarsening, search)
-
-    def _solver(self, scene: Scene, log: StageLog, settings: Discretisation) -> ContactSolver:
-        """Function that solves the contact of a given radius [m]; an indenter with friction sticks."""
-        sticks = scene.effect(Friction) is not None
-        return lambda radius: solve_contact(scene, radius, settings, log, sticks=sticks)
 
     def refined(self) -> Self:
         """A copy with cells half as large; the edge cell shrinks by 2^(2k), so that errors fall at the formal order 2k.
@@ -225,8 +189,7 @@ class Fem:
         """
         if self.accuracy is not None:
             return replace(self, accuracy=max(self.accuracy / 4**self.order, 1e-9))
-        finer = asdict(self.discretisation.refined())
-        return replace(self, **{name: value for name, value in finer.items() if name != "coarsening"})
+        return super().refined()
 
 
 def _supports_friction(scene: Scene) -> Supported | Unsupported:

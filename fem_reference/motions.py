@@ -11,8 +11,8 @@ trapezoidal rule, hence its kinetic energy changes exactly by the work of the fo
 
     delta + kappa F = reach,      kappa = dt^2 / (4 M),      reach = delta_0 + dt v_0 - kappa F_0,
 
-as if the layer were pressed through a spring of compliance kappa. Inserted above, this eliminates the depth: a step is
-one complementarity problem with the matrix A + kappa w w^T and reach in place of delta.
+as if the layer were pressed through a spring of compliance kappa. Prescribed depths, prescribed forces and impacts
+differ in this load line alone (`contact_set.LoadLine`), which determines the depth on every set of pressed vertices.
 """
 
 from __future__ import annotations
@@ -23,18 +23,17 @@ from itertools import pairwise
 from typing import NamedTuple, Self
 
 import numpy as np
-from scipy.interpolate import make_interp_spline
 
 from contact import FlatPunch, InvalidInput, NotConvergedError, Scene, StageLog
 from contact.records.validation import BoolArray, FloatArray
-from fem_reference.contact_set import Complementary, edge_radius, pressure_on, solve_complementarity
+from fem_reference.contact_set import LoadLine, edge_radius, pressure_on, solve_complementarity, solve_on_line
 from fem_reference.materials import Parts, ShearRelaxation, relaxation_of
 from fem_reference.memory import Modes, Top, compressible_modes, proportional_modes
 from fem_reference.mesh import Section
 from fem_reference.prescribed_contact import solve_contact
-from fem_reference.profiles import ScaledIndenter, shape
+from fem_reference.profiles import ScaledIndenter
 from fem_reference.settings import Discretisation, contact_section
-from fem_reference.surface import TraceSpace, condense, strip_section
+from fem_reference.surface import FILLED, TraceSpace, condense, strip_section
 
 # Largest number of steps of an impact; then the body counts as not coming off. It is five hundred times the number at
 # the default settings.
@@ -57,9 +56,9 @@ OUTSIDE = 0.6
 TRUNCATION = 1e-7
 # Cells of the strip of pilot simulations.
 PILOT_CELLS = 30
-# A strip fits if the largest contact fills between FITTING and FULL of its radius. The strip of the answer is SPARE
+# A strip fits if the largest contact fills between FITTING and `FILLED` of its radius. The strip of the answer is SPARE
 # times the largest contact.
-FULL, FITTING, SPARE = 0.9, 0.3, 1.25
+FITTING, SPARE = 0.3, 1.25
 
 
 @dataclass(frozen=True)
@@ -147,10 +146,12 @@ def simulate_impact(strip: Strip, mass: float, velocity: float, duration: float)
     for _ in range(MAX_STEPS):
         force = record.rows[-1][3]
         matrix, offset = top.begin(duration)
-        reach, gap = depth + duration * velocity - kappa * force, strip.profile + offset
-        approach = reach * w - gap
-        pressure, _, active = solve_complementarity(matrix + kappa * np.outer(w, w), approach, active)
-        mean, overlaps = (force + float(w @ pressure)) / 2, (*overlaps[1:], float((approach / w).max()))
+        # Depths are counted from that at the start of the step: sums with the memory of a dashpot would cancel.
+        reach, gap = duration * velocity - kappa * force, strip.profile + offset - depth * w
+        overlap = reach - gap / w
+        start = overlap > 0 if active is None else active
+        (pressure, active), _ = solve_on_line(matrix, gap, w, LoadLine(1.0, kappa, reach), start)
+        mean, overlaps = (force + float(w @ pressure)) / 2, (*overlaps[1:], float(overlap.max()))
         is_free, part = not pressure.any() and velocity < duration * mean / mass, duration
         if is_free:
             part *= _release_fraction(*overlaps)
@@ -241,12 +242,17 @@ def simulate_prescribed(
         """Step of a duration [s] to a depth or force at its end."""
         nonlocal depth, pressure, active
         matrix, offset = top.begin(duration)
-        gap = strip.profile + offset
-        if by_depth:
-            pressure, _, active = solve_complementarity(matrix, load * top.resultants - gap, active)
-            depth = load
+        w = top.resultants
+        gap = strip.profile + offset - depth * w
+        distances = gap / w
+        if by_depth or load > 0:
+            line = LoadLine(1.0, 0.0, load - depth) if by_depth else LoadLine(0.0, 1.0, load)
+            start = active if active.any() else distances == distances.min()
+            (pressure, active), change = solve_on_line(matrix, gap, w, line, start)
         else:
-            (pressure, _, active), depth = _carrying(matrix, gap, top.resultants, load, depth)
+            # Without a force the indenter stays at its last depth, unless the recovering surface pushes it up.
+            pressure, change = np.zeros_like(gap), min(0.0, float(distances.min()))
+        depth = load if by_depth else depth + change
         top.accept(pressure)
 
     if values[0] > 0:
@@ -281,6 +287,8 @@ def smooth_dashpot(rows: list[tuple[float, ...]], events: Sequence[tuple[float, 
     """
     if len(events) < FEWEST_EVENTS:
         return rows
+    from scipy.interpolate import make_interp_spline  # noqa: PLC0415 - takes 0.1 s to import
+
     ends, forces = np.array(events).T
     middles, motion = (ends[1:] + ends[:-1]) / 2, Motion(*np.array(rows).T)
     smooth = make_interp_spline(middles, forces[1:], k=1)(motion.time)
@@ -383,40 +391,6 @@ def _first_zero(
     return instant, zeros <= instant + 2 * tiny, pressure
 
 
-def _carrying(
-    matrix: FloatArray, gap: FloatArray, w: FloatArray, force: float, depth: float
-) -> tuple[Complementary, float]:
-    """Contact under a given force F, and its depth: Newton's method on the convex, piecewise linear F(delta).
-
-    On the active vertices A p = delta w - gap, hence dF/d(delta) = w . A^-1 w. At zero force the indenter stays at its
-    last depth, unless the recovering surface pushes it up.
-
-    Args:
-        matrix: A, shape (n, n).
-        gap: f + o, moments of the profile and of the surface without pressure, shape (n,).
-        w: moments of the function one, shape (n,).
-        force: F.
-        depth: first guess of delta.
-
-    Raises:
-        NotConvergedError: no depth has the prescribed force.
-    """
-    touch = float(np.min(gap / w))
-    if force == 0:
-        return solve_complementarity(matrix, np.minimum(touch * w - gap, 0.0)), min(depth, touch)
-    depth, change, active = max(depth, touch + 1e-9 * abs(touch) + 1e-15), np.inf, None
-    for _ in range(60):
-        state = solve_complementarity(matrix, depth * w - gap, active)
-        defect = force - float(w @ state.pressure)
-        # A small force cannot be met better than its depth is rounded, where o is large.
-        if abs(defect) <= 1e-10 * force or abs(change) <= 1e-14 * abs(depth):
-            return state, depth
-        active = state.active if state.active.any() else gap / w <= depth + 1e-12
-        change = defect / float(w @ pressure_on(matrix, w, active))
-        depth += change
-    raise NotConvergedError("no depth has the prescribed force", {"force_defect": defect})
-
-
 class Resolution(NamedTuple):
     """Numbers of cells and steps of a motion.
 
@@ -459,8 +433,7 @@ class HistorySetup:
             modes, indenter, profile = self._modes(radius, cells), self.scene.indenter, np.zeros(1)
             if len(modes.radii) > 1:
                 space = TraceSpace(modes.radii, 1)
-                inside = np.minimum(space.gauss(4)[0] * radius, min(radius, indenter.max_radius))
-                profile = space.moments(shape(indenter, inside).height / radius, 4)
+                profile = space.moments(ScaledIndenter(indenter, radius).height(space.gauss(4)[0]), 4)
             self._strips[radius, cells] = Strip(modes, self.relaxation, profile, radius)
         return self._strips[radius, cells]
 
@@ -509,9 +482,9 @@ class HistorySetup:
                 raise NotConvergedError(
                     "the pilot simulation has no step with contact: a strong dashpot stops the body, or no load presses"
                 )
-            if largest > FULL and radius >= indenter.max_radius:
+            if largest > FILLED and radius >= indenter.max_radius:
                 raise InvalidInput(f"contact reaches the end of the profile at {radius:g} m; load less")
-            if FITTING <= largest <= FULL:
+            if FITTING <= largest <= FILLED:
                 return min(SPARE * largest * radius, indenter.max_radius), motion
-            radius = min(1.6 * radius, indenter.max_radius) if largest > FULL else radius * max(1.5 * largest, 0.1)
+            radius = min(1.6 * radius, indenter.max_radius) if largest > FILLED else radius * max(1.5 * largest, 0.1)
         raise NotConvergedError("no strip of the surface fits the contact", {"strip_radius": radius})

@@ -195,11 +195,6 @@ def solve_contact(
     return Neighbours(scene, settings, log, sticks)(radius)
 
 
-def quick_solution(scene: Scene, radius: float, log: StageLog) -> PrescribedContact:
-    """The contact of a radius [m] on few cells, accurate to about 1e-5, for tabulated profiles to 1e-4."""
-    return solve_contact(scene, radius, QUICK, log)
-
-
 def factorised_contact(layer: DiscreteLayer, log: StageLog) -> RestrictedSolver:
     """Factorised layer with u_z prescribed within radius one: the last prescribed unknowns, in `top_nodes` order."""
     with log.stage("assemble"):

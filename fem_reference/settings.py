@@ -7,7 +7,7 @@ The companion of an answer is a second solution on coarser cells. The difference
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Self
+from typing import ClassVar, Self
 
 import numpy as np
 
@@ -42,8 +42,10 @@ class Discretisation:
         truncation: relative change of the stiffness that the finite outer radius may cause.
         half_space_thickness: thickness, in contact radii, of the layer that represents a half-space.
         outer_distance: distance of the outer edge from the contact edge, in thicknesses; None to use ``truncation``.
-        coarsening: growth over that of the answer: one in the answer, `COARSER` in its companion.
+        coarsening: growth over that of the answer: one in the answer, `COARSER` in its `Companion`.
     """
+
+    coarsening: ClassVar[float] = 1.0
 
     order: int = 4
     edge_cell: float = 1e-7
@@ -51,7 +53,6 @@ class Discretisation:
     truncation: float = 1e-8
     half_space_thickness: float = 1e8
     outer_distance: float | None = None
-    coarsening: float = 1.0
 
     def __post_init__(self) -> None:
         """Refuse settings outside their ranges."""
@@ -63,10 +64,10 @@ class Discretisation:
             "truncation": (1e-14, 0.1),
             "half_space_thickness": (10.0, 1e12),
         }
-        for name, (low, high) in bounds.items() if self.coarsening == 1.0 else ():
+        for name, (low, high) in bounds.items():
             if not low <= getattr(self, name) <= high:
                 raise InvalidInput(f"{name} must lie in [{low:g}, {high:g}], got {getattr(self, name)}")
-        if self.outer_distance is not None and not 1.0 <= self.outer_distance * self.coarsening <= 100.0:
+        if self.outer_distance is not None and not 1.0 <= self.outer_distance <= 100.0:
             raise InvalidInput(f"outer_distance must lie in [1, 100] thicknesses, got {self.outer_distance}")
 
     @property
@@ -84,11 +85,10 @@ class Discretisation:
             half_space_thickness=min(self.half_space_thickness * 4**self.order, 1e12),
         )
 
-    def coarser(self) -> Self:
+    def coarser(self) -> Companion:
         """Settings of the companion: all are coarser, so that each of them contributes to the stated error."""
-        return replace(
-            self,
-            coarsening=COARSER * self.coarsening,
+        return Companion(
+            order=self.order,
             growth=COARSER * self.growth,
             edge_cell=min(COARSER_EDGE * self.edge_cell, 0.3),
             truncation=min(10 * self.truncation, 0.3),
@@ -107,6 +107,16 @@ class Discretisation:
             return float(parts.thicknesses[-1])
         distance = self.outer_distance or -np.log(self.truncation) * np.sqrt(parts.contrast)
         return float(1 + parts.depths[-1] * distance)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Companion(Discretisation):
+    """Settings of the coarser companion of an answer, whose ranges are not restricted."""
+
+    coarsening = COARSER
+
+    def __post_init__(self) -> None:
+        """Accept all settings."""
 
 
 def contact_section(

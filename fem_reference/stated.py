@@ -164,11 +164,11 @@ def solve_to_accuracy(
         try:
             answer = attempt(settings)
         except NotConvergedError:
-            # On coarse meshes the radius of a load near a flat end may not settle. An excess of 1e3 halves the growth.
+            # On coarse meshes the radius of a load near a flat end may not settle.
             in_vain += 1
             if not attempts_left or in_vain == IN_VAIN:
                 raise
-            settings = _finer(settings, 1e3, 0.0, moves=False)
+            settings = _finer(settings, 0.5, moves=False)
             continue
         missed = shortfalls(answer, accuracy, pressure_accuracy)
         if not missed:
@@ -178,8 +178,8 @@ def solve_to_accuracy(
         in_vain, last_excess = in_vain + 1 if excess[worst] > LEFT * last_excess else 0, excess[worst]
         if in_vain == IN_VAIN:
             break
-        pressure = excess.pop("pressure", 0.0)
-        settings = _finer(settings, max(excess.values(), default=0.0), pressure, moves=moves)
+        order = PRESSURE_ORDER if worst == "pressure" else ERROR_ORDER
+        settings = _finer(settings, float(np.clip(0.9 * excess[worst] ** (-1 / order), 0.5, 0.9)), moves=moves)
     why = "; finer meshes do not lessen its error" if in_vain == IN_VAIN else ""
     required = pressure_accuracy if worst == "pressure" else accuracy
     raise NotConvergedError(
@@ -188,23 +188,14 @@ def solve_to_accuracy(
     )
 
 
-def _finer(settings: Discretisation, numbers: float, pressure: float, *, moves: bool) -> Discretisation:
-    """Settings for the next attempt.
-
-    Args:
-        settings: settings of the last attempt.
-        numbers: largest stated error of a number over the accuracy; zero if all are below.
-        pressure: stated error of the pressure over its accuracy; zero if it is below.
-        moves: whether the scene is a motion, whose cells and steps are halved.
-    """
+def _finer(settings: Discretisation, factor: float, *, moves: bool) -> Discretisation:
+    """Settings for the next attempt: the growth times a factor, in a motion, whose cells and steps are halved, 1/2."""
     if moves:
         return replace(settings, growth=settings.growth / 2)
-    # Near the edge the error of the pressure falls like the root of the edge cell.
-    factor = min(max(numbers, 1.0) ** (-1 / ERROR_ORDER), max(pressure, 1.0) ** (-1 / PRESSURE_ORDER))
-    edge = min(0.25, max(pressure, 1.0) ** -2)
     return replace(
         settings,
-        growth=float(max(settings.growth * np.clip(0.9 * factor, 0.5, 0.9), 0.02)),
-        edge_cell=float(max(settings.edge_cell * max(edge, 1e-4), 1e-12)),
+        growth=max(settings.growth * factor, 0.02),
+        # Near the edge the error of the pressure falls like the root of the edge cell.
+        edge_cell=max(settings.edge_cell / 16, 1e-12),
         truncation=max(settings.truncation / 10, 1e-13),
     )

@@ -35,6 +35,8 @@ STRIP_ORDER = 4
 STRIDE, RUBBED_STRIDE = 2, 4
 # Number of cells of a strip at which the growth outside it is the given one: with more cells it is lower.
 STRIP_CELLS = 120
+# Radius of the largest contact over that of its strip: a few nodes beyond the contact are needed to solve its growth.
+FILLED = 0.9
 # Cells from the axis below which a kink gets no vertex: narrow cells next to the axis make pressures there oscillate.
 NEAREST_KINK = 0.5
 

@@ -23,11 +23,11 @@ from contact import (
 from contact.answer.solution import Setting
 from contact.records.validation import FloatArray
 from contact.stated import SAFETY
-from fem_reference.contact_set import edge_radius
+from fem_reference.contact_set import EDGE_ERROR
 from fem_reference.equilibria import FemEquilibrium
 from fem_reference.fields import FemFields
 from fem_reference.friction.growth import GrowthRecord, StripMaker
-from fem_reference.friction.step import RubbedContact, RubbedState, followed, stick_radius
+from fem_reference.friction.step import RubbedState, followed
 from fem_reference.materials import contact_modulus
 from fem_reference.settings import Discretisation
 from fem_reference.stated import contact_rule, l2_change
@@ -41,32 +41,6 @@ QUANTITIES = {
     "stick": ("stick_radius", 0),
     "heat": ("dissipated_energy", 1),
 }
-# Error of an edge radius read from pressures, in cells (`contact_set.EDGE_POLYNOMIAL`).
-EDGE_UNCERTAIN = 0.1
-
-
-@dataclass(frozen=True)
-class Rubbed:
-    """One equilibrium with friction on its strip.
-
-    Attributes:
-        contact: condensed layer and indenter on the strip.
-        state: the equilibrium.
-        modulus: E* [Pa].
-    """
-
-    contact: RubbedContact
-    state: RubbedState
-    modulus: float
-
-    def at_radii(self, values: FloatArray, radius: FloatArray) -> FloatArray:
-        """Piecewise linear function on the strip with nodal ``values``, at radii [m]."""
-        return self.contact.surface.tractions.evaluate(values, radius / self.contact.radius)
-
-    @property
-    def base_force(self) -> float:
-        """Force on the base over E* L^2, which equals that of the indenter in equilibrium."""
-        return float(self.contact.surface.base_forces @ self.state.tractions)
 
 
 @dataclass(frozen=True)
@@ -74,20 +48,20 @@ class RubbedFields:
     """Surface fields of a path; satisfies `contact.Fields`.
 
     Attributes:
-        steps: equilibria of the path.
+        states: equilibria of the path.
+        modulus: E* [Pa].
     """
 
-    steps: Sequence[Rubbed]
+    states: Sequence[RubbedState]
+    modulus: float
 
     def pressure(self, radius: FloatArray, step: int) -> FloatArray:
         """Pressure p(r) [Pa]."""
-        rubbed = self.steps[step]
-        return rubbed.modulus * rubbed.at_radii(rubbed.state.pressure, radius)
+        return self.modulus * self._evaluated(step, self.states[step].pressure, radius)
 
     def tangential_traction(self, radius: FloatArray, step: int) -> FloatArray:
         """Traction q(r) [Pa], positive where the layer is pushed outward, zero outside."""
-        rubbed = self.steps[step]
-        return rubbed.modulus * rubbed.at_radii(rubbed.state.shear, radius)
+        return self.modulus * self._evaluated(step, self.states[step].shear, radius)
 
     def slip(self, radius: FloatArray, step: int) -> FloatArray:
         """Radial displacement u_r(r) of the surface since the instant of first touch [m], zero outside, shape of r.
@@ -99,16 +73,21 @@ class RubbedFields:
             radius: r [m].
             step: index of the state in the path.
         """
-        rubbed = self.steps[step]
-        slip = (rubbed.state.radial - rubbed.state.touched) / rubbed.contact.surface.resultants
+        state = self.states[step]
+        slip = (state.radial - state.touched) / state.contact.surface.resultants
         slip[0] = 0.0  # u_r = 0 on the axis
-        return rubbed.contact.radius * rubbed.at_radii(np.where(rubbed.state.pressure > 0.0, slip, 0.0), radius)
+        return state.contact.radius * self._evaluated(step, np.where(state.pressure > 0.0, slip, 0.0), radius)
 
     def surface_displacement(self, radius: FloatArray, step: int) -> FloatArray:
         """Displacement w(r) [m], positive into the layer; zero beyond the mesh."""
-        rubbed, surface = self.steps[step], self.steps[step].contact.surface
-        nodal = surface.top_displacements @ rubbed.state.tractions
-        return rubbed.contact.radius * surface.top.evaluate(nodal, radius / rubbed.contact.radius)
+        state, surface = self.states[step], self.states[step].contact.surface
+        nodal = surface.top_displacements @ state.tractions
+        return state.contact.radius * surface.top.evaluate(nodal, radius / state.contact.radius)
+
+    def _evaluated(self, step: int, values: FloatArray, radius: FloatArray) -> FloatArray:
+        """Piecewise linear function on the strip of a state with nodal ``values`` (n,), at radii [m]."""
+        contact = self.states[step].contact
+        return contact.surface.tractions.evaluate(values, radius / contact.radius)
 
 
 def rubbed_path(
@@ -132,11 +111,8 @@ def rubbed_path(
             with log.stage("grow"):
                 growth = GrowthRecord.of(*contacts)
         numbers[step], stated = growth.numbers(name, value), growth.errors(name, value)
-        fine, coarse = (
-            Rubbed(strip.contact, strip.state_at(numbers[step]["depth"]), modulus)
-            for strip in (growth.fine, growth.coarse)
-        )
-        defect = {"base_force_defect": abs(fine.base_force / fine.state.force - 1.0)}
+        fine, coarse = (strip.state_at(numbers[step]["depth"]) for strip in (growth.fine, growth.coarse))
+        defect = {"base_force_defect": abs(fine.base_force / fine.force - 1.0)}
         number_errors = {QUANTITIES[n][0]: e for n, e in stated.items()}
         errors[step], steps[step] = number_errors | _traction_errors(fine, coarse) | defect, fine
     quantities: dict[str, Any] = {
@@ -150,16 +126,16 @@ def rubbed_path(
         error_estimate={n: np.array([error[n] for error in errors]) for n in errors[0]},
         cost=log.cost(unknowns=max(each.contact.surface.unknowns for each in steps.values())),
         stages=log.records,
-        fields=RubbedFields([steps[step] for step in range(len(values))]),
+        fields=RubbedFields([steps[step] for step in range(len(values))], modulus),
         **quantities,
     )
 
 
-def _traction_errors(fine: Rubbed, coarse: Rubbed) -> dict[str, float]:
+def _traction_errors(fine: RubbedState, coarse: RubbedState) -> dict[str, float]:
     """Stated errors of p and q from half the cells: L2 norms with weight 2 pi r, relative to that of p."""
     radius, weight = (values.ravel() for values in fine.contact.surface.tractions.gauss(2))
     (p, q), others = (
-        [each.contact.surface.tractions.evaluate(values, radius) for values in (each.state.pressure, each.state.shear)]
+        [each.contact.surface.tractions.evaluate(values, radius) for values in (each.pressure, each.shear)]
         for each in (fine, coarse)
     )
     changes = [SAFETY * l2_change(weight, *pair, p) for pair in zip((p, q), others, strict=True)]
@@ -183,18 +159,17 @@ def rubbed_history(
     if largest <= 0.0 or (not by_depth and targets.min() < 0.0):
         raise InvalidInput(f"a history from {targets.min():g} to {largest:g}: press, and do not pull")
     pressed = scene.replace(loading=(IndentationDepths if by_depth else NormalForces)([largest]))
-    runs, numbers = [], []
+    runs = []
     for contact in StripMaker(pressed, settings, log).fitted(largest):
         unit = contact.radius if by_depth else modulus * contact.radius**2
         with log.stage("follow"):
-            states = followed(contact, [max(0.0, float(target)) / unit for target in targets], by_depth=by_depth)
-        runs.append([Rubbed(contact, state, modulus) for state in states])
-        numbers.append(_numbers(contact, states, modulus))
-    fine, coarse = numbers
-    surface = runs[0][0].contact.surface
-    cell = runs[0][0].contact.radius * surface.radii[1] / fine["contact_radius"].max()
+            runs.append(followed(contact, [max(0.0, float(target)) / unit for target in targets], by_depth=by_depth))
+    fine, coarse = (_numbers(states, modulus) for states in runs)
+    contact = runs[0][0].contact
+    surface = contact.surface
+    cell = contact.radius * surface.radii[1] / fine["contact_radius"].max()
     # Error of radii from the size of cells, relative to the largest contact radius.
-    radius_errors = {"contact_radius": EDGE_UNCERTAIN * cell, "stick_radius": cell}
+    radius_errors = {"contact_radius": EDGE_ERROR * cell, "stick_radius": cell}
     errors = {}
     for name, values in fine.items():
         if np.any(values):
@@ -210,33 +185,33 @@ def rubbed_history(
         cost=log.cost(unknowns=surface.unknowns),
         stages=log.records,
         time=loading.time,  # type: ignore[attr-defined]
-        surface=RubbedFields(runs[0]),
+        surface=RubbedFields(runs[0], modulus),
         **fine,
     )
 
 
-def _numbers(contact: RubbedContact, states: list[RubbedState], modulus: float) -> dict[str, Any]:
+def _numbers(states: Sequence[RubbedState], modulus: float) -> dict[str, Any]:
     """Quantities at each instant in SI units, by their names in the answer."""
-    unit, radii = contact.radius, contact.surface.radii
-    return {
-        "indentation_depth": unit * np.array([state.depth for state in states]),
-        "normal_force": modulus * unit**2 * np.array([state.force for state in states]),
-        "contact_radius": unit * np.array([edge_radius(radii, state.pressure) for state in states]),
-        "stick_radius": unit * np.array([stick_radius(contact, state) for state in states]),
-        "dissipated_energy": modulus * unit**3 * np.array([state.dissipated for state in states]),
+    unit = states[0].contact.radius
+    units = {
+        "indentation_depth": ("depth", unit),
+        "normal_force": ("force", modulus * unit**2),
+        "contact_radius": ("radius", unit),
+        "stick_radius": ("stick_radius", unit),
+        "dissipated_energy": ("dissipated", modulus * unit**3),
     }
+    return {name: scale * np.array([getattr(s, own) for s in states]) for name, (own, scale) in units.items()}
 
 
-def _checks(steps: Sequence[Rubbed]) -> dict[str, FloatArray]:
+def _checks(states: Sequence[RubbedState]) -> dict[str, FloatArray]:
     """Checks (n,) at the instants, relative to the largest work and force: energy balance, heat, and force on the base.
 
     They are |work - stored energy - heat|, any decrease of the heat, and |F_base - F|.
     """
-    work, heat, force, stored = (
-        np.array([getattr(each.state, name) for each in steps])
-        for name in ("work", "dissipated", "force", "stored_energy")
+    work, heat, force, stored, base = (
+        np.array([getattr(state, name) for state in states])
+        for name in ("work", "dissipated", "force", "stored_energy", "base_force")
     )
-    base = np.array([each.base_force for each in steps])
     return {
         "energy_defect": np.abs(work - stored - heat) / work.max(),
         "heat_given_back": np.maximum(-np.diff(heat, prepend=0.0), 0.0) / work.max(),

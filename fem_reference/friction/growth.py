@@ -14,7 +14,6 @@ from functools import cached_property
 from typing import Self
 
 import numpy as np
-from scipy.optimize import brentq
 
 from contact import ContactRadii, Friction, InvalidInput, NormalForces, NotConvergedError, Profile, Scene, StageLog
 from contact.records.validation import FloatArray
@@ -27,25 +26,22 @@ from fem_reference.friction.step import (
     at_load,
     at_rest,
     grown,
-    stick_radius,
 )
 from fem_reference.materials import contact_modulus
 from fem_reference.profiles import shape
 from fem_reference.settings import Discretisation
 from fem_reference.stated import LEAST_SHARE
-from fem_reference.surface import RUBBED_STRIDE, STRIP_CELLS, condense, strip_section
+from fem_reference.surface import FILLED, RUBBED_STRIDE, STRIP_CELLS, condense, strip_section
 
-# Radius of the largest contact over that of its strip: a few nodes beyond the contact are needed to solve its growth.
-FILLED = 0.9
 # One pair of strips serves contacts with radii down to this share of its largest: the smallest has half of its cells.
 SERVED = 0.5
 # A quarter of the fewest cells of the finer strip, and its most cells. With half as few the difference of two strips is
 # accidental. With twice as many the time is eight times as long.
 FEWEST_CELLS, MOST_CELLS = 20, 480
+# Growth of the mesh outside a strip of STRIP_CELLS cells.
+OUTSIDE_GROWTH = 0.5
 # Share of a profile whose heights are used: at its very end a sphere's slope has no bound.
 INSIDE = 0.999
-# Growth of the mesh outside a strip of STRIP_CELLS cells, and the `Discretisation.growth` at which a strip has so many.
-OUTSIDE_GROWTH, USUAL_GROWTH = 0.5, 0.5
 # A touching node lies this share of a cell inside the contact's edge where the edge slides. On half-spaces without
 # friction, where a = sqrt(R delta), the share is 0.0307 on 40 cells and 0.0294 on 80: this is the limit.
 EDGE_SHARE = 0.028
@@ -59,7 +55,8 @@ EDGE_UNCERTAIN = 0.0015
 PER_NEIGHBOUR, DEGREE = 15, 3
 # Order of the heat's error in the cell: slip begins at the edge, where the pressure vanishes like sqrt(a - r).
 HEAT_ORDER = 1.5
-# The stick radius is extrapolated if the stick region and the slip region each have so many cells of the finer strip.
+# The stick radius is extrapolated where the stick region and the slip region each have so many cells of the finer
+# strip. With fewer it errs by a cell.
 FEWEST_STUCK = 8
 # Error of an extrapolated stick radius, in cells. On half-spaces with c/a = 0.7 and 0.9 it is 0.03 to 0.09.
 STICK_UNCERTAIN = 0.2
@@ -81,12 +78,12 @@ class StripMaker:
 
     @property
     def cells(self) -> int:
-        """Cells of the finer strip: a multiple of four, inversely proportional to the growth of the settings.
+        """Cells of the finer strip: a multiple of four, `STRIP_CELLS` at the usual growth and more at less.
 
         Raises:
             NotConvergedError: more than `MOST_CELLS` cells.
         """
-        cells = 4 * max(FEWEST_CELLS, round(STRIP_CELLS * USUAL_GROWTH / self.settings.growth / 4))
+        cells = 4 * max(FEWEST_CELLS, round(STRIP_CELLS * Discretisation.growth / self.settings.growth / 4))
         if cells > MOST_CELLS:
             raise NotConvergedError(f"a contact with friction takes {MOST_CELLS} cells at most, not {cells}")
         return cells
@@ -133,12 +130,15 @@ class Growing:
     """A growing contact on one strip, at its touching points; lengths in metres, forces over E* in m^2.
 
     Attributes:
-        contact: condensed layer and indenter on the strip.
         states: states at k touching points; in the first, node 1 just touches.
     """
 
-    contact: RubbedContact
     states: list[RubbedState]
+
+    @property
+    def contact(self) -> RubbedContact:
+        """Condensed layer and indenter on the strip."""
+        return self.states[0].contact
 
     @property
     def cell(self) -> float:
@@ -158,8 +158,10 @@ class Growing:
         little as the contact grows.
         """
         unit, nodes = self.contact.radius, self.contact.surface.radii[1 : len(self.states) + 1]
-        depth, force, heat = (np.array([getattr(s, n) for s in self.states]) for n in ("depth", "force", "dissipated"))
-        stick = np.array([stick_radius(self.contact, state) for state in self.states])
+        depth, force, heat, stick = (
+            np.array([getattr(state, name) for state in self.states])
+            for name in ("depth", "force", "dissipated", "stick_radius")
+        )
         sticks, sliding_radius = stick == nodes, nodes + EDGE_SHARE * nodes[0]
         return {
             "depth": unit * depth,
@@ -172,8 +174,8 @@ class Growing:
     def at(self, depth: float) -> dict[str, float]:
         """The quantities of `points` at a depth [m], by polynomials in ln(depth) fitted to nearby points.
 
-        Two more are the stiffness k_N = dF/d(delta) = (F/delta) dlnF/dln(delta), since without pressure at the edge
-        dF/da = 0 at given depth, and the widening dln(a)/dln(delta).
+        One more is the stiffness k_N = dF/d(delta) = (F/delta) dlnF/dln(delta), since without pressure at the edge
+        dF/da = 0 at given depth.
         """
         points = self.points
         log = np.log(points["depth"] / depth)
@@ -184,13 +186,13 @@ class Growing:
         fit = np.polynomial.polynomial.polyfit(log[near], np.column_stack(columns)[near], DEGREE)
         force, radius, stick, heat = map(float, (*np.exp(fit[0, :2]), *fit[0, 2:]))
         quantities = {"force": force, "radius": radius, "stick": stick, "heat": heat}
-        return quantities | {"stiffness": force / depth * float(fit[1, 0]), "widening": float(fit[1, 1])}
+        return quantities | {"stiffness": force / depth * float(fit[1, 0])}
 
     def state_at(self, depth: float) -> RubbedState:
         """Equilibrium at a depth [m], one step after the last touching point of smaller depth."""
         count = int(np.searchsorted(self.points["depth"][:-1], depth))
         last_state = self.states[count - 1] if count else at_rest(self.contact)
-        return advance(self.contact, last_state, count + 1, at_load(depth / self.contact.radius, by_depth=True))
+        return advance(last_state, count + 1, at_load(self.contact, depth / self.contact.radius, by_depth=True))
 
 
 @dataclass(frozen=True)
@@ -208,7 +210,7 @@ class GrowthRecord:
     @classmethod
     def of(cls, fine: RubbedContact, coarse: RubbedContact) -> Self:
         """The growing contacts on two strips."""
-        return cls(Growing(fine, grown(fine)), Growing(coarse, grown(coarse)))
+        return cls(Growing(grown(fine)), Growing(grown(coarse)))
 
     def serves(self, name: str, value: float) -> bool:
         """Whether at a radius [m], depth [m] or force/E* [m^2] the contact radius is at least `SERVED` of the last."""
@@ -225,9 +227,9 @@ class GrowthRecord:
         """
         depth = value if name == "depth" else self._depth_of(name, value, extrapolated)
         quantities = self._at(depth, extrapolated)
-        heat, stick = quantities["heat"] * quantities["force"] * depth, self._stick(depth, quantities, extrapolated)
-        selected = {each: quantities[each] for each in ("radius", "force", "stiffness")}
-        return selected | {"depth": depth, "stick": stick * quantities["radius"], "heat": heat} | {name: value}
+        heat, stick = quantities["heat"] * quantities["force"] * depth, self._stick(depth, quantities)
+        selected = {each: quantities[each] for each in ("radius", "force", "stiffness")} | {"depth": depth, name: value}
+        return selected | {"stick": stick * selected["radius"], "heat": heat}
 
     def _depth_of(self, name: str, value: float, extrapolated: bool) -> float:
         """Depth [m] at which the radius [m] or force/E* [m^2] equals ``value``."""
@@ -235,6 +237,8 @@ class GrowthRecord:
         def defect(log_depth: float) -> float:
             """Relative difference of the quantity from ``value`` at a depth."""
             return self._at(math.exp(log_depth), extrapolated)[name] / value - 1.0
+
+        from scipy.optimize import brentq  # noqa: PLC0415 - takes 0.1 s to import
 
         log_depths = np.log(self.fine.points["depth"])
         return float(np.exp(brentq(defect, log_depths[0], log_depths[-1] + 0.1, xtol=1e-14)))
@@ -247,20 +251,10 @@ class GrowthRecord:
         coarse, orders = self.coarse.at(depth), {"heat": HEAT_ORDER}
         return {name: v + (v - coarse[name]) / float(2.0 ** orders.get(name, 2.0) - 1.0) for name, v in fine.items()}
 
-    def _stick(self, depth: float, quantities: dict[str, float], extrapolated: bool) -> float:
-        """Stick radius over a.
-
-        If too few cells stick or slide, it is that of the finer strip, and without extrapolation that of the coarser
-        one, so that `errors` still compares two strips.
-        """
-        fine, coarse = (
-            float(np.interp(depth, strip.points["depth"], strip.points["stick"])) for strip in (self.fine, self.coarse)
-        )
-        if min(fine, coarse) == 1.0:
-            return 1.0
-        if min(fine, 1.0 - fine) < FEWEST_STUCK * self.fine.cell / quantities["radius"]:
-            return fine if extrapolated else coarse
-        return min(quantities["stick"], 1.0)
+    def _stick(self, depth: float, quantities: dict[str, float]) -> float:
+        """Stick radius over a: one where all nodes of one of the strips stick."""
+        shares = [np.interp(depth, strip.points["depth"], strip.points["stick"]) for strip in (self.fine, self.coarse)]
+        return 1.0 if min(shares) == 1.0 else float(np.clip(quantities["stick"], 0.0, 1.0))
 
     def errors(self, name: str, value: float) -> dict[str, float]:
         """Relative stated errors of `numbers`; the stick radius is relative to a, the heat to F delta.
@@ -281,12 +275,9 @@ class GrowthRecord:
         # Slip may be narrower than a cell. The edge then lies between that of full stick and that of a sliding edge.
         edge = cell * (EDGE_UNCERTAIN + self.fine.stick_shift * math.isfinite(self.fine.contact.coefficient))
         if name == "radius":
-            # The edge shifts the depth by d ln(delta)/d ln(a) times as much, and dF/F = (k_N delta/F) d(delta)/delta.
-            # The stiffness grows more slowly than the force.
-            depth = edge / self.fine.at(fine["depth"])["widening"]
-            exponent = fine["stiffness"] * fine["depth"] / fine["force"]
-            for each, power in (("depth", 1.0), ("force", exponent), ("stiffness", exponent)):
-                error[each] += power * depth
+            shifted = self.numbers(name, (1.0 - edge) * value)
+            for each in ("depth", "force", "stiffness"):
+                error[each] += 1.0 - shifted[each] / fine[each]
         else:
             error["radius"] += edge
         if fine["stick"] == radius:

@@ -21,27 +21,24 @@ steps that end where the next node touches, where the last one leaves, or where 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TypeAlias
 
 import numpy as np
 
-from contact import InvalidInput, NotConvergedError
+from contact import InvalidInput
 from contact.answer.one_circle import no_single_circle
 from contact.records.validation import FloatArray, IntArray
+from fem_reference.contact_set import TOLERANCE, edge_radius, settled
 from fem_reference.surface import Surface
 
-# Largest tension or overlap that is accepted as rounding, relative to the largest pressure or to the depth.
-TOLERANCE = 1e-9
 # Fewest pressed nodes of contacts checked for tension and overlap: fewer do not resolve a pressure that is least on the
 # axis, like that under r^4.
 RESOLVED = 12
 # A node whose traction differs from mu p by less than this share keeps its state: rounding must not decide where the
 # slip reverses.
 TIE = 1e-9
-# Largest number of sets of sliding nodes tried in one step; two to six suffice for growing contacts.
-MOST_SETS = 400
 # Nodes at the end of the strip that the contact does not reach: the last hat function is only half of one.
 SPARE = 2
 # A prescribed load that exceeds that of a touching point by less than this share counts as not exceeding it.
@@ -70,6 +67,7 @@ class RubbedState:
     """One equilibrium at the end of a step, in the units of `RubbedContact`.
 
     Attributes:
+        contact: layer and indenter.
         depth: indentation depth delta / L.
         tractions: tractions p and q at the nodes, shape (2 n,).
         displacements: moments of u_z and u_r, shape (2 n,).
@@ -81,6 +79,7 @@ class RubbedState:
         dissipated: heat of friction since the start, over E* L^3.
     """
 
+    contact: RubbedContact
     depth: float
     tractions: FloatArray
     displacements: FloatArray
@@ -111,18 +110,47 @@ class RubbedState:
         """Elastic energy (p . u_z + q . u_r) / 2 over E* L^3."""
         return float(self.tractions @ self.displacements) / 2.0
 
+    @property
+    def base_force(self) -> float:
+        """Force on the base over E* L^2, which equals that of the indenter in equilibrium."""
+        return float(self.contact.surface.base_forces @ self.tractions)
+
+    @property
+    def radius(self) -> float:
+        """Contact radius over L, extrapolated from the pressures."""
+        return edge_radius(self.contact.surface.radii, self.pressure)
+
+    @property
+    def stick_radius(self) -> float:
+        """Stick radius c over L, extrapolated from the tractions at three nodes inside it.
+
+        With r -> c ``y = 1 - |q|/(mu p)`` falls to zero like ``(c - r)^(3/2)`` where the stick region grows and like
+        ``(c - r)^(1/2)`` where it shrinks. Hence y^(2/3) or y^2 is linear: the straighter one of these at three nodes
+        is extrapolated to zero. The last sticking node is omitted, since it slid during a part of its step.
+        """
+        radii: FloatArray = self.contact.surface.radii
+        last = int(np.flatnonzero(self.sliding[: self.active] == 0).max(initial=0))
+        if last == self.active - 1:
+            return float(radii[self.active])
+        # Without the last node fewer than three nodes lie off the axis.
+        if last < 4:
+            return float(radii[last])
+        near = slice(last - 3, last)
+        margin = np.maximum(0.0, 1.0 - np.abs(self.shear[near]) / (self.contact.coefficient * self.pressure[near]))
+        _, distance = min(_curvature_and_root(margin**power) for power in (2.0 / 3.0, 2.0))
+        return float(radii[last - 1] + min(max(distance, 1.0), 3.0) * (radii[last] - radii[last - 1]))
+
 
 def at_rest(contact: RubbedContact, *, work: float = 0.0, dissipated: float = 0.0) -> RubbedState:
     """The state without contact: zero tractions and displacements."""
     n = len(contact.profile)
     zero, both = np.zeros(n), np.zeros(2 * n)
-    return RubbedState(0.0, both, both, zero, zero.astype(np.int64), 0, work=work, dissipated=dissipated)
+    return RubbedState(contact, 0.0, both, both, zero, zero.astype(np.int64), 0, work=work, dissipated=dissipated)
 
 
 # The equation that determines the end of a step: coefficients of the tractions (2 n,) and of the depth, and the
 # right-hand side.
 Equation: TypeAlias = tuple[FloatArray, float, float]
-Control: TypeAlias = Callable[[RubbedContact, int], Equation]
 
 
 def touching(contact: RubbedContact, active: int) -> Equation:
@@ -134,71 +162,52 @@ def touching(contact: RubbedContact, active: int) -> Equation:
     return surface.compliance[active], -float(surface.resultants[active]), -float(contact.profile[active])
 
 
-def at_load(load: float, *, by_depth: bool) -> Control:
-    """Control of a step that ends at a depth over L, or at a force w . p over E* L^2."""
-
-    def equation(contact: RubbedContact, active: int) -> Equation:
-        """Coefficients and right-hand side of ``delta = load`` or ``w . p = load``."""
-        w = np.concatenate([contact.surface.resultants, np.zeros(len(contact.profile))])
-        return (0.0 * w, 1.0, load) if by_depth else (w, 0.0, load)
-
-    return equation
+def at_load(contact: RubbedContact, load: float, *, by_depth: bool) -> Equation:
+    """Equation ``delta = load`` or ``w . p = load`` of a step that ends at a depth over L or a force over E* L^2."""
+    w = np.concatenate([contact.surface.resultants, np.zeros(len(contact.profile))])
+    return (0.0 * w, 1.0, load) if by_depth else (w, 0.0, load)
 
 
-def advance(contact: RubbedContact, before: RubbedState, active: int, control: Control) -> RubbedState:
+def advance(before: RubbedState, active: int, end: Equation) -> RubbedState:
     """The equilibrium at the end of a step, with the first ``active`` nodes pressed.
 
     Raises:
         NotConvergedError: no set of sliding nodes satisfies the conditions.
         UnsupportedSceneError: tension at a pressed node, or overlap at a free node: the contact is no single circle.
     """
-    sliding = _first_guess(before, active, contact.coefficient)
-    earlier_sets: set[bytes] = set()
-    for _ in range(MOST_SETS):
-        tractions, depth = _equilibrium(contact, before, sliding, active, control)
-        displacements = contact.surface.compliance @ tractions
-        after = replace(
-            before, depth=depth, tractions=tractions, displacements=displacements, sliding=sliding, active=active
-        )
-        next_sliding = _sliding(contact, before, after)
-        if np.array_equal(next_sliding, sliding):
-            return _accounted(contact, before, after)
-        sliding = next_sliding if next_sliding.tobytes() not in earlier_sets else _one_changed(sliding, next_sliding)
-        earlier_sets.add(sliding.tobytes())
-    raise NotConvergedError(f"the sliding part of the contact is not settled after {MOST_SETS} attempts")
+
+    def follow(sliding: IntArray) -> tuple[RubbedState, IntArray]:
+        """The equilibrium with a set of sliding nodes, and the set that follows from it."""
+        after = _equilibrium(before, sliding, active, end)
+        return after, _sliding(before, after)
+
+    return _accounted(before, settled(_first_guess(before, active), follow))
 
 
-def _one_changed(sliding: IntArray, next_sliding: IntArray) -> IntArray:
-    """The set in which only the outermost wrong node has changed: principal pivoting (Murty 1974) does not cycle."""
-    last = int(np.flatnonzero(next_sliding != sliding)[-1])
-    return np.where(np.arange(len(next_sliding)) == last, next_sliding, sliding)
-
-
-def _first_guess(before: RubbedState, active: int, coefficient: float) -> IntArray:
+def _first_guess(before: RubbedState, active: int) -> IntArray:
     """First guess (n,) of the sliding nodes: those before the step; new nodes slide as their inner neighbour does."""
     sliding = before.sliding.copy()
-    if active > before.active > 0 and math.isfinite(coefficient):
+    if active > before.active > 0 and math.isfinite(before.contact.coefficient):
         sliding[before.active : active] = sliding[before.active - 1]
     sliding[active:] = 0
     return sliding
 
 
-def _equilibrium(
-    contact: RubbedContact, before: RubbedState, sliding: IntArray, active: int, control: Control
-) -> tuple[FloatArray, float]:
-    """Tractions (2 n,) and depth with a given set of sliding nodes; the axis does not move and has no shear.
+def _equilibrium(before: RubbedState, sliding: IntArray, active: int, end: Equation) -> RubbedState:
+    """The state at the end of a step with a given set of sliding nodes; the axis does not move and has no shear.
 
     Unknowns are the pressures of active nodes, the shears of sticking ones, and the depth; at the others q = s mu p
     with s = ``sliding``. The rows are ``Z_p p + Z_q q - delta w = -f`` at active nodes, ``Z_q^T p + R_q q = u_r`` as
-    before at sticking nodes, and the equation of ``control``.
+    before at sticking nodes, and the equation ``end``.
     """
-    compliance, n = contact.surface.compliance, len(contact.profile)
+    contact, n = before.contact, len(sliding)
+    compliance = contact.surface.compliance
     slides = sliding[:active] != 0
     stuck = 1 + np.flatnonzero(~slides[1:])
     friction = np.zeros(active)
     friction[slides] = contact.coefficient * sliding[:active][slides]
     unknown, pressures, shears = np.append(np.arange(active), n + stuck), slice(0, active), slice(n, n + active)
-    row, depth_share, value = control(contact, active)
+    row, depth_share, value = end
     size = len(unknown)
     matrix = np.zeros((size + 1, size + 1))
     matrix[:size, :size] = compliance[np.ix_(unknown, unknown)]
@@ -211,15 +220,22 @@ def _equilibrium(
     tractions = np.zeros(2 * n)
     tractions[unknown] = solved[:size]
     tractions[shears] += friction * solved[pressures]
-    return tractions, float(solved[size])
+    return replace(
+        before,
+        depth=float(solved[size]),
+        tractions=tractions,
+        displacements=compliance @ tractions,
+        sliding=sliding,
+        active=active,
+    )
 
 
-def _sliding(contact: RubbedContact, before: RubbedState, after: RubbedState) -> IntArray:
+def _sliding(before: RubbedState, after: RubbedState) -> IntArray:
     """Nodes that slide (n,), as in `RubbedState`: sign of the traction that would keep them, where it exceeds mu p.
 
     ``after`` was solved with its set of sliding nodes, which stays where the traction equals mu p to rounding.
     """
-    sliding, n = after.sliding, len(contact.profile)
+    contact, sliding, n = after.contact, after.sliding, len(after.sliding)
     if not math.isfinite(contact.coefficient):
         return np.zeros_like(sliding)
     sticking_traction = after.shear - (after.radial - before.radial) / contact.surface.compliance.diagonal()[n:]
@@ -230,18 +246,18 @@ def _sliding(contact: RubbedContact, before: RubbedState, after: RubbedState) ->
     return np.where(tied | (np.arange(n) == 0) | (after.pressure <= 0.0), sliding, next_sliding)
 
 
-def _accounted(contact: RubbedContact, before: RubbedState, after: RubbedState) -> RubbedState:
+def _accounted(before: RubbedState, after: RubbedState) -> RubbedState:
     """The state with its force, work and heat, after the conditions of contact were checked.
 
     The heat is -sum q_i Du_i over sliding nodes, with the changes Du of the moments of u_r. A node that slid in the
     same direction before the step slides under the mean of both tractions, a node that begins to slide in the step
     under the traction at its end. Neither contribution is negative.
     """
-    _refuse_rings(contact, after)
+    _refuse_rings(after)
     steady = before.sliding == after.sliding
     traction = np.where(steady, (before.shear + after.shear) / 2.0, after.shear)
     heat = -(traction * (after.radial - before.radial))[after.sliding != 0]
-    force = float(contact.surface.resultants @ after.pressure)
+    force = float(after.contact.surface.resultants @ after.pressure)
     return replace(
         after,
         force=force,
@@ -251,11 +267,12 @@ def _accounted(contact: RubbedContact, before: RubbedState, after: RubbedState) 
     )
 
 
-def _refuse_rings(contact: RubbedContact, state: RubbedState) -> None:
+def _refuse_rings(state: RubbedState) -> None:
     """Refuse a negative pressure in the contact, and an overlap u_z < delta - f anywhere on the strip."""
     if state.active < RESOLVED:
         return
-    depth_moments, n = state.depth * contact.surface.resultants, len(contact.profile)
+    contact, n = state.contact, len(state.sliding)
+    depth_moments = state.depth * contact.surface.resultants
     gap = state.displacements[:n] - (depth_moments - contact.profile)
     pulled = state.pressure < -TOLERANCE * np.abs(state.pressure).max()
     wrong = pulled | (gap < -TOLERANCE * (np.abs(depth_moments).max() + np.abs(contact.profile).max()))
@@ -271,7 +288,7 @@ def grown(contact: RubbedContact) -> list[RubbedState]:
     """The states at touching points, in which node 1, 2, .. of the strip just touches, as the contact grows."""
     states = [at_rest(contact)]
     for active in range(1, len(contact.profile) - SPARE):
-        states.append(advance(contact, states[-1], active, touching))
+        states.append(advance(states[-1], active, touching(contact, active)))
     return states[1:]
 
 
@@ -283,62 +300,39 @@ def followed(contact: RubbedContact, targets: Sequence[float], *, by_depth: bool
     """
     state, active, states = at_rest(contact), 1, []
     for target in targets:
-        state, active = _towards(contact, state, active, target, by_depth)
+        state, active = _towards(state, active, target, by_depth)
         states.append(state)
     return states
 
 
-def _towards(
-    contact: RubbedContact, state: RubbedState, active: int, target: float, by_depth: bool
-) -> tuple[RubbedState, int]:
+def _towards(state: RubbedState, active: int, target: float, by_depth: bool) -> tuple[RubbedState, int]:
     """Equilibrium at one target, and the number of nodes pressed just before the target is reached.
 
     The contact advances from one touching point to the next: in loading one more node touches, in unloading the last
     one leaves. The last step ends at the target itself.
 
     Args:
-        contact: layer and indenter.
         state: equilibrium at the previous target.
         active: number of nodes pressed just before the previous target.
         target: depth over L, or force over E* L^2.
         by_depth: whether the target is a depth.
     """
     start = state.depth if by_depth else state.force
-    loading, control = target > start, at_load(target, by_depth=by_depth)
+    loading, contact = target > start, state.contact
     while target != start:
         next_active = active if loading else active - 1
         if next_active >= len(contact.profile) - SPARE:
             raise InvalidInput(f"contact reaches the end of the profile at {contact.radius:g} m; press less")
-        event = advance(contact, state, next_active, touching) if next_active else None
+        event = advance(state, next_active, touching(contact, next_active)) if next_active else None
         event_load = (event.depth if by_depth else event.force) if event else 0.0
         if event is None or (target - event_load if loading else event_load - target) <= CLOSE * abs(target):
-            final = advance(contact, state, active, control) if event or (target > 0 and not by_depth) else None
+            is_held = event or (target > 0 and not by_depth)
+            final = advance(state, active, at_load(contact, target, by_depth=by_depth)) if is_held else None
             if final is None or final.force < 0:
                 return at_rest(contact, work=state.work, dissipated=state.dissipated), 1
             return final, active
         state, active = event, active + 1 if loading else active - 1
     return state, active
-
-
-def stick_radius(contact: RubbedContact, state: RubbedState) -> float:
-    """Stick radius c over L, extrapolated from the tractions at three nodes inside it.
-
-    With r -> c ``y = 1 - |q|/(mu p)`` falls to zero like ``(c - r)^(3/2)`` where the stick region grows and like
-    ``(c - r)^(1/2)`` where it shrinks. Hence y^(2/3) or y^2 is linear: the straighter one of these at three nodes is
-    extrapolated to zero. The last sticking node is omitted, since it slid during a part of its step.
-    """
-    radii: FloatArray = contact.surface.radii
-    stuck = [i for i in range(state.active) if state.sliding[i] == 0]
-    last = stuck[-1] if stuck else 0
-    if last == state.active - 1:
-        return float(radii[state.active])
-    # Without the last node fewer than three nodes lie off the axis.
-    if last < 4:
-        return float(radii[last])
-    near = slice(last - 3, last)
-    margin = np.maximum(0.0, 1.0 - np.abs(state.shear[near]) / (contact.coefficient * state.pressure[near]))
-    _, distance = min(_curvature_and_root(margin**power) for power in (2.0 / 3.0, 2.0))
-    return float(radii[last - 1] + min(max(distance, 1.0), 3.0) * (radii[last] - radii[last - 1]))
 
 
 def _curvature_and_root(values: FloatArray) -> tuple[float, float]:

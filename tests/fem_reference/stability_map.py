@@ -87,7 +87,7 @@ def stable_ranges(found: Iterable[Reversal]) -> list[tuple[float, float]]:
 def reversals_at(poissons_ratio: float, method: Fem | None = None) -> tuple[Reversal, ...]:
     """Changes of stability on a bonded layer of unit thickness and contact modulus, with what coarser cells change."""
     layer = Layer(thickness=1.0, youngs_modulus=1 - poissons_ratio**2, poissons_ratio=poissons_ratio)
-    settings = (method or Fem(edge_cell=1e-8, truncation=1e-9)).discretisation
+    settings = method or Fem(edge_cell=1e-8, truncation=1e-9)
     fine, coarse = (reversals(layer, _punches(layer, each)) for each in (settings, settings.coarser()))
     return tuple(
         replace(

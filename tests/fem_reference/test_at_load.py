@@ -15,7 +15,7 @@ from contact import (
     TruncatedCone,
 )
 from fem_reference import Fem
-from fem_reference.prescribed_contact import quick_solution, solve_contact
+from fem_reference.prescribed_contact import QUICK, solve_contact
 from mdr import Mdr
 from tests.drawn_scenes import scene_of
 
@@ -32,7 +32,7 @@ def test_a_quick_solution_knows_how_its_depth_grows(indenter, radius):
     near = radius * (1 + 1e-3 * np.array([-1.0, 0.0, 1.0]))
     scene = Scene(layer=LAYER, indenter=indenter, loading=ContactRadii(near))
     depth = Mdr().solve(scene).indentation_depth
-    found = quick_solution(scene, radius, StageLog()).smooth_depth_slope
+    found = solve_contact(scene, radius, QUICK, StageLog()).smooth_depth_slope
     assert found == pytest.approx((depth[2] - depth[0]) / (near[2] - near[0]), rel=1e-2, abs=0)
 
 
@@ -55,5 +55,5 @@ def test_a_coarse_mesh_knows_how_its_depth_grows(indenter):
         loading=ContactRadii(near),
     )
     depth = Mdr().solve(scene).indentation_depth
-    found = solve_contact(scene, 1.0, Fem(growth=1.4, truncation=1e-5).discretisation, StageLog()).smooth_depth_slope
+    found = solve_contact(scene, 1.0, Fem(growth=1.4, truncation=1e-5), StageLog()).smooth_depth_slope
     assert found == pytest.approx((depth[2] - depth[0]) / (near[2] - near[0]), rel=0.1, abs=0)

@@ -90,15 +90,13 @@ def slope_on_strips(nu, support, depth):
     """d ln F/d mu at mu = 0 by the fast method, and on strips of 40 and 80 cells, extrapolated in mu."""
     path = Mdr().solve(rubbed(None, layer(nu, support), IndentationDepths([depth])))
     effect, radius = friction_effect(path, 1.0), float(path.contact_radius[0])
-    maker = growth.StripMaker(
-        rubbed(1.0, layer(nu, support), ContactRadii([radius])), Fem().discretisation, growth.StageLog()
-    )
+    maker = growth.StripMaker(rubbed(1.0, layer(nu, support), ContactRadii([radius])), Fem(), growth.StageLog())
     found = []
     for cells in (40, 80):
         contact, logs = maker.contact(radius / 0.85, cells), []
         for mu in (0.0, 0.005, 0.01):
             rubbing = _with_coefficient(contact, mu)
-            strip = growth.Growing(rubbing, step.grown(rubbing))
+            strip = growth.Growing(step.grown(rubbing))
             logs.append(math.log(strip.at(depth)["force"]))
         slopes = np.expm1(np.array(logs[1:]) - logs[0]) / [0.005, 0.01]
         found.append(float(2.0 * slopes[0] - slopes[1]))
@@ -238,7 +236,7 @@ def test_what_is_hardly_pressed_any_more_carries_its_force_and_never_pulls():
 
 def followed_strip(cells):
     scene = rubbed(0.2, layer(0.5), ContactRadii([2.0]))
-    maker = growth.StripMaker(scene, Fem().discretisation, growth.StageLog())
+    maker = growth.StripMaker(scene, Fem(), growth.StageLog())
     return step.followed(maker.contact(2.0, cells), [0.04, 0.02, 0.04, 0.01], by_depth=True)
 
 
@@ -257,9 +255,9 @@ def test_work_is_stored_or_dissipated_with_second_order_in_the_cells():
 @pytest.mark.slow
 def test_forces_converge_with_second_order_in_the_cells():
     scene = rubbed(0.3, layer(0.5), ContactRadii([2.0]))
-    maker = growth.StripMaker(scene, Fem().discretisation, growth.StageLog())
+    maker = growth.StripMaker(scene, Fem(), growth.StageLog())
     contacts = [maker.contact(2.0, cells) for cells in (20, 40, 80)]
-    grown = [growth.Growing(contact, step.grown(contact)) for contact in contacts]
+    grown = [growth.Growing(step.grown(contact)) for contact in contacts]
     logs = [math.log(strip.at(0.06)["force"]) for strip in grown]
     assert math.log2((logs[1] - logs[0]) / (logs[2] - logs[1])) == pytest.approx(2.0, rel=0.0, abs=0.5)
     assert abs(logs[2] - logs[1]) < 2e-3
@@ -272,11 +270,11 @@ def test_forces_under_stick_converge_to_those_of_mdr_with_second_order(support):
     scene = rubbed(math.inf, layer(0.5, support), ContactRadii([5.0]))
     exact = Mdr().solve(scene)
     depth, force = float(exact.indentation_depth[0]), float(exact.normal_force[0]) / scene.layer.contact_modulus
-    maker = growth.StripMaker(scene, Fem().discretisation, growth.StageLog())
+    maker = growth.StripMaker(scene, Fem(), growth.StageLog())
     errors = []
     for cells in (40, 80):
         contact = maker.contact(5.0 / 0.9, cells)
-        strip = growth.Growing(contact, step.grown(contact))
+        strip = growth.Growing(step.grown(contact))
         errors.append(math.log(strip.at(depth)["force"] / force))
     assert math.log2(errors[0] / errors[1]) == pytest.approx(2.0, rel=0.0, abs=0.1)
     assert (4.0 * errors[1] - errors[0]) / 3.0 == pytest.approx(0.0, rel=0.0, abs=2e-5)

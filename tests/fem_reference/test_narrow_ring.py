@@ -66,7 +66,7 @@ def test_a_radius_that_is_slightly_off_settles_at_once(indenter):
 
     def solve(radius):
         solved.append(radius)
-        return solve_contact(scene, radius, COARSE.discretisation, StageLog())
+        return solve_contact(scene, radius, COARSE, StageLog())
 
     ring = 1.02 * (exact.contact_radius[0] - 1.0)
     state = state_at_load(scene, 2e-5, 1.0 + ring, solve)
@@ -80,7 +80,7 @@ def test_a_radius_that_is_slightly_off_settles_at_once(indenter):
 def test_loads_grow_like_the_root_of_what_is_beyond_a_flat_end(gap):
     """Read three cells from the edge, one mesh said -0.6 and 0.7 in the wider rings."""
     scene = Scene(layer=LAYER, indenter=PROFILES[1], loading=ContactRadii(values=[1.0 + gap]))
-    contact = solve_contact(scene, 1.0 + gap, Fem(growth=0.7).discretisation, StageLog())
+    contact = solve_contact(scene, 1.0 + gap, Fem(growth=0.7), StageLog())
     ring = contact.radius - 1.0 / max(1.0 + gap, narrowest_radius(LAYER, PROFILES[1]))
     assert contact.smooth_depth_slope * ring / contact.smooth_depth == pytest.approx(0.5, rel=5e-2, abs=0.0)
 

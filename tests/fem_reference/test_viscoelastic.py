@@ -284,7 +284,7 @@ def test_peak_lies_between_samples():
 @pytest.mark.parametrize("effects", [(), (SOLID,)])
 def test_peak_depth_is_of_the_energys_order_in_the_cells(effects):
     """The mesh outside the strip must not hide the third order: it moved the peak by 5e-5 from mesh to mesh."""
-    setup = HistorySetup(impact_scene(3e-3, effects=effects), QUICK.discretisation, StageLog())
+    setup = HistorySetup(impact_scene(3e-3, effects=effects), QUICK, StageLog())
     radius, duration = 1.2e-3, 1.6e-5
 
     def peak_depth(cells):

@@ -247,8 +247,8 @@ TRANSFORMS = {
 def without_hoop(strains):
     """u_r / r is no strain."""
 
-    def wrong(jacobian):
-        values = strains(jacobian)
+    def wrong(*of):
+        values = strains(*of)
         values[:, 2] = 0.0
         return values
 

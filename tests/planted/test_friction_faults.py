@@ -34,8 +34,8 @@ def test_stick_held_at_zero(monkeypatch):
     """A new point is pulled back to where it lay before anything was pressed."""
     right = step._equilibrium
 
-    def wrong(contact, before, *others):
-        return right(contact, dataclasses.replace(before, displacements=0.0 * before.displacements), *others)
+    def wrong(before, *others):
+        return right(dataclasses.replace(before, displacements=0.0 * before.displacements), *others)
 
     monkeypatch.setattr(step, "_equilibrium", wrong)
     with pytest.raises(CAUGHT):
@@ -59,8 +59,8 @@ def test_heat_given_back(monkeypatch):
     """What slid is counted with the traction before the step, which pointed the other way where the slip turned."""
     right = step._accounted
 
-    def wrong(contact, before, after):
-        found = right(contact, before, after)
+    def wrong(before, after):
+        found = right(before, after)
         heat = -(before.shear * (after.radial - before.radial))[after.sliding != 0]
         return dataclasses.replace(found, dissipated=before.dissipated + float(heat.sum()))
 
@@ -73,10 +73,10 @@ def test_new_points_forget_that_they_slid_on_the_way(monkeypatch):
     """The displacement of points ahead of the contact is not remembered when they touch."""
     right = step.advance
 
-    def wrong(contact, before, active, control):
+    def wrong(before, active, end):
         radial = np.where(np.arange(len(before.radial)) >= before.active, 0.0, before.radial)
         moved = np.append(before.displacements[: len(radial)], radial)
-        return right(contact, dataclasses.replace(before, displacements=moved), active, control)
+        return right(dataclasses.replace(before, displacements=moved), active, end)
 
     monkeypatch.setattr(step, "advance", wrong)
     with pytest.raises(CAUGHT):

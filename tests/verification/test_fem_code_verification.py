@@ -59,7 +59,7 @@ def test_a_hundredth_of_the_body_force_missing_costs_the_order(monkeypatch):
 def test_a_wrong_hoop_strain_fails_the_patch_claims(monkeypatch):
     right = assembly.strains
     spoiled = np.array([1, 1, 1 + 1e-6, 1])[:, None, None]
-    monkeypatch.setattr(assembly, "strains", lambda jacobian: right(jacobian) * spoiled)
+    monkeypatch.setattr(assembly, "strains", lambda *of: right(*of) * spoiled)
     for name in ("P2P1", "P3"):
         assert {claim.status for claim in patch_claims(patches(name), name)} == {Status.FAIL}
 
