@@ -6,9 +6,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from cases.accuracy import solve as solve_to_accuracy
 from cases.declare.guarded_method import build_guarded
 from cases.declare.methods import load
 from cases.declare.uncertain_inputs import read_inputs
+from cases.sweep import read_range, sweep
+from cases.validity import validity_lines
 from contact import (
     ContactPath,
     InvalidInput,
@@ -143,8 +146,6 @@ def _solved(scene: Scene, request: Request) -> tuple[Solution, list[tuple[str, s
         solution = request.solver().solve(scene)
         _require_accuracy(solution, request.accuracy, request.pressure_accuracy)
         return with_accuracy_note(solution, request.accuracy, request.pressure_accuracy), []
-    from cases.accuracy import solve as solve_to_accuracy  # noqa: PLC0415 - loaded only for an accuracy
-
     reached = solve_to_accuracy(scene, accuracy=request.accuracy, pressure_accuracy=request.pressure_accuracy)
     stated = f"stated error {small(reached.stated_error)}, asked for {small(request.accuracy)}, by {reached.method}"
     return reached.answer, [("achieved", stated)]
@@ -158,8 +159,6 @@ def _show_answer(solution: Solution) -> None:
 
 def _notes(solution: Solution) -> list[tuple[str, str]]:
     """Notes on the effect of a smoothed tip, and on the validity of the theory."""
-    from cases.validity import validity_lines  # noqa: PLC0415 - MDR is loaded only for notes
-
     notes: list[tuple[str, str]] = []
     indenter = solution.scene.indenter
     if isinstance(indenter, Tabulated) and indenter.smoothing and isinstance(solution, ContactPath):
@@ -211,8 +210,6 @@ def _sweep(scene: Scene, scene_file: Path, request: Request) -> None:
     Raises:
         InvalidInput: If every value is refused.
     """
-    from cases.sweep import read_range, sweep  # noqa: PLC0415 - loaded only for this option
-
     swept = read_range(request.over, scene, with_units=uses_units(scene_file))
     with progress_bar("solving") as progress:
         result = sweep(scene, swept, request.solver(), progress)
@@ -248,10 +245,8 @@ def _writers(solution: Solution) -> Writers:
     def picture(path: Path) -> None:
         """Draw the fields inside where the name says so, else the answer."""
         if path.stem.startswith(INSIDE):
-            from reports.inside import draw_inside  # noqa: PLC0415 - as above
-
             other = _answer_or_none(OTHER_METHOD.get(solution.method, "fem"), solution.scene)
-            return write_picture(path, lambda: draw_inside(solution, other), key=INSIDE)
+            return write_picture(path, lambda: _pictures().draw_inside(solution, other), key=INSIDE)
         # Other methods than MDR would take longer for states between than for the answer.
         finer = _pictures().between(solution.scene) if solution.method == "mdr" else None
         curve = None if finer is None else _answer_or_none("mdr", finer)
