@@ -6,6 +6,7 @@ The section is drawn as it deforms, with displacements enlarged by a factor that
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -97,7 +98,7 @@ def draw_inside(solution: Solution, other: Solution | None) -> Figure:
     for axes, name in zip(maps, MAPS, strict=False):
         _draw_map(axes, section, name)
         for method, x, side in zip(names, (0.02, 0.98), ("left", "right"), strict=False):
-            look = {"fontsize": 8.0, "weight": "bold", "path_effects": OUTLINE}
+            look: Any = {"fontsize": 8.0, "weight": "bold", "path_effects": OUTLINE}
             axes.text(x, 0.04, method, transform=axes.transAxes, ha=side, **look)
     notes = ["", _draw_arrows(maps[1], section), *([_draw_differences(maps[2], section)] if names else [])]
     for axes, note in zip(maps, notes, strict=True):
@@ -174,7 +175,7 @@ def _draw_arrows(axes: Axes, section: Section) -> str:
     size = np.sqrt(np.hypot(along, down))
     arrows = [np.divide(part, size, out=np.zeros_like(size), where=size > 0) for part in (along, down)]
     steepest, places = float(size.max()), [place[shown] for place in section.places]
-    look = {"width": 3.5e-3, "color": "white", "edgecolor": BLACK, "linewidth": 0.5}
+    look: Any = {"width": 3.5e-3, "color": "white", "edgecolor": BLACK, "linewidth": 0.5}
     axes.quiver(*places, *arrows, angles="xy", scale=14.0 * steepest, **look)
     return f"arrows: where it falls, lengths by the root of the gradient, at most {with_prefix(steepest**2, 'Pa/m')}"
 

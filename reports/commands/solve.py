@@ -140,12 +140,8 @@ def _answer(scene: Scene, request: Request) -> Solution:
 
 def _solved(scene: Scene, request: Request) -> tuple[Solution, list[tuple[str, str]]]:
     """The answer and facts about it; with an accuracy and no method, methods are tried from cheap to fine."""
-    if request.accuracy is None:
-        return request.solver().solve(scene), []
-    if request.method:
-        solution = request.solver().solve(scene)
-        _require_accuracy(solution, request.accuracy, request.pressure_accuracy)
-        return with_accuracy_note(solution, request.accuracy, request.pressure_accuracy), []
+    if request.accuracy is None or request.method:
+        return _accurate(request.solver().solve(scene), request), []
     reached = solve_to_accuracy(scene, accuracy=request.accuracy, pressure_accuracy=request.pressure_accuracy)
     stated = f"stated error {small(reached.stated_error)}, asked for {small(request.accuracy)}, by {reached.method}"
     return reached.answer, [("achieved", stated)]
@@ -168,16 +164,22 @@ def _notes(solution: Solution) -> list[tuple[str, str]]:
     return notes + [("validity", line) for line in validity_lines(solution.scene, solution)]
 
 
-def _require_accuracy(solution: Solution, accuracy: float, pressure_accuracy: float | None) -> None:
-    """Refuse an answer that states a larger error than the accuracy, or none at all."""
-    too_large = shortfalls(solution, accuracy, pressure_accuracy)
-    if too_large:
+def _accurate(solution: Solution, request: Request) -> Solution:
+    """The answer with a note on quantities less accurate than asked for, if the request has an accuracy.
+
+    Raises:
+        NotConvergedError: If the answer states a larger error of its numbers or its pressure, or none at all.
+    """
+    if request.accuracy is None:
+        return solution
+    if too_large := shortfalls(solution, request.accuracy, request.pressure_accuracy):
         worst = max(too_large, key=lambda name: too_large[name])
-        wanted = pressure_accuracy if worst == "pressure" else accuracy
+        wanted = request.pressure_accuracy if worst == "pressure" else request.accuracy
         raise NotConvergedError(
             f"{solution.method} estimates the relative error of {worst.replace('_', ' ')} at {too_large[worst]:.1e}, "
             f"asked for {wanted:.1e}; name another method with --method, or ask for less"
         )
+    return with_accuracy_note(solution, request.accuracy, request.pressure_accuracy)
 
 
 def _uncertain(scene: Scene, scene_file: Path, request: Request) -> Solution:
@@ -187,11 +189,10 @@ def _uncertain(scene: Scene, scene_file: Path, request: Request) -> Solution:
     inputs = read_inputs(request.uncertain, scene, with_units=uses_units(scene_file))
     with progress_bar("solving"):
         propagated = propagate(scene, inputs, method=request.solver(), samples=request.samples)
-    if request.accuracy is not None:
-        _require_accuracy(propagated.answer, request.accuracy, request.pressure_accuracy)
-    _show_answer(propagated.answer)
+    answer = _accurate(propagated.answer, request)
+    _show_answer(answer)
     show_table(propagated_table(propagated), on=console())
-    return propagated.answer
+    return answer
 
 
 def _advise(scene: Scene, request: Request) -> None:
