@@ -121,7 +121,7 @@ def _draw_convergence(studies: Sequence[Convergence], axes: Axes) -> None:
     exponential = first.formal_order is None
     axes.set(xscale="linear" if exponential else "log", yscale="log", ylabel="relative error")
     axes.set_xlabel("refinement" if exponential else "relative discretisation length")
-    axes.set_title(f"{first.scene}\n{display_name(first.method)}: {first.refined}")
+    axes.set_title(f"{first.scene}\n{display_name(first.method)}: {first.refined}", y=1.0)
     for number, study in enumerate(studies):
         _draw_study(axes, study, *QUANTITY_LOOKS[number % len(QUANTITY_LOOKS)])
     if not axes.lines:
@@ -199,7 +199,8 @@ def _draw_stress_test(tests: Sequence[StressTest], axes: Axes) -> None:
     """Shared digits over the parameter, with crosses at steps without an answer."""
     first = tests[0]
     unit = "" if first.unit == "1" else f" [{first.unit}]"
-    axes.set(xscale="log", xlabel=f"{first.parameter}{unit}", title=first.name)
+    axes.set(xscale="log", xlabel=f"{first.parameter}{unit}")
+    axes.set_title(first.name, y=1.0)
     axes.set(ylabel=f"digits of {quantity_words(first.quantity)}", ylim=(0.0, 17.0))
     axes.axhline(-math.log10(2.0**-53), color="black", linestyle=":", linewidth=0.8)
     for test in tests:

@@ -406,16 +406,15 @@ def carry_out(arguments: list[str]) -> int:
 
 def _ended_by(error: Exception) -> int:
     """Exit code of a command that ended with an error; prints what the user can do about it."""
-    from contact import ContactError, InvalidInput, NotConvergedError, UnsupportedSceneError  # noqa: PLC0415
-    from contact.records.extras import missing_extra  # noqa: PLC0415
+    from contact.records import errors, extras  # noqa: PLC0415 - help does not wait for them
 
-    if isinstance(error, InvalidInput | UnsupportedSceneError):
+    if isinstance(error, errors.InvalidInput | errors.UnsupportedSceneError):
         return _complain(str(error), USAGE)
-    if isinstance(error, NotConvergedError):
+    if isinstance(error, errors.NotConvergedError):
         return _complain(f"no answer: {error}", 1)
-    if isinstance(error, ContactError):
+    if isinstance(error, errors.ContactError):
         return _complain(str(error), INTERNAL_ERROR)
-    if package := missing_extra(error):
+    if package := extras.missing_extra(error):
         return _complain(package, USAGE)
     if isinstance(error, OSError) and error.strerror:
         return _complain(f"{error.filename or 'a file'}: {error.strerror}; name another place, or make room", USAGE)
