@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import field
-from typing import Annotated, Literal, Self, TypeAlias
+from typing import Annotated, Literal, TypeAlias
 
 from pydantic import model_validator
 
 from contact.records.record import Record
-from contact.records.validation import PositiveLength, Scalar, Vector, positive, vector
+from contact.records.validation import FloatArray, PositiveLength, Scalar, Vector, positive, vector
 
 Controlled: TypeAlias = Literal["displacement", "force", "machine"]
 """Quantity that a detachment prescribes: depth, force, or the displacement of a compliant machine."""
@@ -105,23 +105,7 @@ class Impact(Loading):
     velocity: Annotated[Scalar, *positive("give the approach velocity in metres per second", "m/s")]
 
 
-class _History(Loading):
-    """Base of the histories in time."""
-
-    time: Instants
-
-    @model_validator(mode="after")
-    def _check(self) -> Self:
-        """Refuse a history of fewer than two instants, or without one value per instant."""
-        name = "depth" if isinstance(self, DepthHistory) else "force"
-        values = getattr(self, name)
-        if self.time.shape != values.shape or self.time.size < 2:
-            sizes = f"got {self.time.size} instants and {values.size} values"
-            raise ValueError(f"a history needs at least two instants and one {name} for each; {sizes}")
-        return self
-
-
-class DepthHistory(_History):
+class DepthHistory(Loading):
     """A prescribed depth in time, linear between the given instants.
 
     Attributes:
@@ -129,10 +113,16 @@ class DepthHistory(_History):
         depth: Depths delta [m] at these instants, shape (n,).
     """
 
+    time: Instants
     depth: Annotated[Vector, *vector("give one depth in metres for each instant", "m")]
 
+    @model_validator(mode="after")
+    def _check(self) -> DepthHistory:
+        _check_lengths(self.time, self.depth, "depth")
+        return self
 
-class ForceHistory(_History):
+
+class ForceHistory(Loading):
     """A prescribed normal force in time, linear between the given instants.
 
     Attributes:
@@ -140,7 +130,20 @@ class ForceHistory(_History):
         force: Normal forces F_N [N] at these instants, shape (n,).
     """
 
+    time: Instants
     force: Annotated[Vector, *vector("give one force in newtons for each instant", "N")]
+
+    @model_validator(mode="after")
+    def _check(self) -> ForceHistory:
+        _check_lengths(self.time, self.force, "force")
+        return self
+
+
+def _check_lengths(time: FloatArray, values: FloatArray, name: str) -> None:
+    """Refuse a history of fewer than two instants, or without one value per instant."""
+    if time.shape != values.shape or time.size < 2:
+        sizes = f"got {time.size} instants and {values.size} values"
+        raise ValueError(f"a history needs at least two instants and one {name} for each; {sizes}")
 
 
 EquilibriumLoading: TypeAlias = ContactRadii | IndentationDepths | NormalForces
