@@ -2,16 +2,16 @@
 
 import math
 import re
+from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
 from textwrap import shorten
-from typing import Any, Final, NamedTuple
+from typing import Any, Final, NamedTuple, TypeGuard
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from cases.answers import Answer
 from cases.cost import pareto_front
 from cases.runs import CaseText, Run
 from cases.studies import Convergence, CostOfAccuracy, Grid, Point, StressTest
@@ -47,22 +47,31 @@ UNITS_OF_PARAMETERS: Final = {"thickness": " [m]"}
 
 
 class Picture(NamedTuple):
-    """A picture: file name (unique in the run), title, and the drawing, made in the figure style."""
+    """A picture: file name (unique in the run), title, size [inches], and the function that fills its axes."""
 
     name: str
     title: str
-    draw: Callable[[], Figure]
+    size: Place
+    fill: Callable[[Axes], None]
+
+    def draw(self) -> Figure:
+        """The drawing, in the style that is set, with labels on the decades of its logarithmic axes."""
+        drawing, (axes,) = panels(1, size=self.size)
+        self.fill(axes)
+        mark_decades(*(axis for axis in (axes.xaxis, axes.yaxis) if axis.get_scale() == "log"))
+        return drawing
 
 
-def front(run: Run) -> tuple[Picture | None, Picture | None, Picture | None]:
+def front(run: Run) -> list[list[Picture]]:
     """The pictures of the three questions: do the methods agree, what does accuracy cost, where does it break."""
-    differences, costs, tests = compared(run), run.judged.costs, run.judged.stress_tests
-    agreement = "Difference of two methods against the error they state"
-    return (
-        Picture("all-differences", agreement, partial(_draw_differences, differences)) if differences else None,
-        Picture("all-costs", "Error against seconds, all timed cases", partial(_draw_costs, costs)) if costs else None,
-        Picture("all-stress-tests", "How far stress tests go", partial(_draw_ends, tests)) if tests else None,
+    title, tests = "Difference of two methods against the error they state", run.judged.stress_tests
+    bars = (FRONT[0], max(FRONT[1], 1.0 + 0.24 * len(tests)))
+    drawn: tuple[tuple[str, str, Place, Callable[[Any, Axes], None], Sequence[Any]], ...] = (
+        ("all-differences", title, FRONT, _draw_differences, compared(run)),
+        ("all-costs", "Error against seconds, all timed cases", FRONT, _draw_costs, run.judged.costs),
+        ("all-stress-tests", "How far stress tests go", bars, _draw_ends, tests),
     )
+    return [[Picture(name, title, size, partial(fill, of))] if of else [] for name, title, size, fill, of in drawn]
 
 
 def of_case(run: Run, case: CaseText) -> list[Picture]:
@@ -70,8 +79,8 @@ def of_case(run: Run, case: CaseText) -> list[Picture]:
     judged, name = run.judged, case.name
     differences = [v for v in compared(run) if v.case == name]
     worst = sorted(differences, key=lambda v: -(v.fraction or 0.0))[:WORST_DRAWN]
-    title = f"Largest of {len(differences)} differences between methods"
-    agreement = Picture(file_name(name, "differences"), title, partial(_draw_agreement, worst))
+    title, size = f"Largest of {len(differences)} differences between methods", (5.0, 0.8 + 0.4 * len(worst))
+    agreement = Picture(file_name(name, "differences"), title, size, partial(_draw_agreement, worst))
     studies = grouped((s for s in judged.convergence if s.case == name), lambda s: (s.scene, s.method, s.refined))
     tests = grouped((t for t in judged.stress_tests if t.case == name), lambda t: (t.name, t.quantity))
     orders, digits = "Convergence: error under refinement", "Stress tests: digits left as a parameter gets hard"
@@ -84,30 +93,20 @@ def of_case(run: Run, case: CaseText) -> list[Picture]:
     ]
 
 
-def _panels(name: str, title: str, groups: Iterable[Any], draw: Callable[[Axes, Any], None]) -> Iterable[Picture]:
+def _panels(name: str, title: str, groups: Iterable[Any], draw: Callable[[Any, Axes], None]) -> Iterable[Picture]:
     """One picture per group, as wide as a telephone's screen."""
-    for number, group in enumerate(groups, 1):
-        yield Picture(f"{name}-{number}", title, partial(_panel, group, draw))
+    return (Picture(f"{name}-{n}", title, (5.0, 3.1), partial(draw, group)) for n, group in enumerate(groups, 1))
 
 
-def _panel(group: Any, draw: Callable[[Axes, Any], None]) -> Figure:
-    drawing, (axes,) = panels(1, size=(5.0, 3.1))
-    draw(axes, group)
-    return drawing
-
-
-def _logarithmic(size: tuple[float, float], x_label: str, y_label: str) -> tuple[Figure, Axes]:
-    """One pair of logarithmic axes."""
-    drawing, (axes,) = panels(1, size=size)
+def _logarithmic(axes: Axes, x_label: str, y_label: str) -> None:
+    """Make both axes logarithmic and label them."""
     axes.set(xscale="log", yscale="log", xlabel=x_label, ylabel=y_label)
-    return drawing, axes
 
 
-def _finished(drawing: Figure, axes: Axes, columns: int = 2) -> Figure:
-    """The figure with labels on its decades and a legend below."""
-    mark_decades(axes.xaxis, axes.yaxis)
-    drawing.legend(loc="outside lower center", ncols=columns)
-    return drawing
+def _legend(axes: Axes, columns: int = 2) -> None:
+    """Draw the legend below the axes, each label once."""
+    handles = dict(zip(*reversed(axes.get_legend_handles_labels()), strict=True))
+    axes.figure.legend(handles.values(), handles, loc="outside lower center", ncols=columns)
 
 
 def _crosses(axes: Axes, places: Iterable[Place], colour: str, **more: Any) -> None:
@@ -116,13 +115,13 @@ def _crosses(axes: Axes, places: Iterable[Place], colour: str, **more: Any) -> N
         axes.plot([x], [y], "x", color=colour, markersize=8, markeredgewidth=2.0, clip_on=False, **more)
 
 
-def _draw_convergence(axes: Axes, studies: Sequence[Convergence]) -> None:
+def _draw_convergence(studies: Sequence[Convergence], axes: Axes) -> None:
     """Error over discretisation length, or over number of refinements where convergence is exponential."""
     first = studies[0]
     exponential = first.formal_order is None
     axes.set(xscale="linear" if exponential else "log", yscale="log", ylabel="relative error")
     axes.set_xlabel("refinement" if exponential else "relative discretisation length")
-    axes.set_title(f"{first.scene}\n{display_name(first.method)}: {first.refined}")
+    axes.set_title(f"{first.scene}\n{display_name(first.method)}: {first.refined}", y=1.0)
     for number, study in enumerate(studies):
         _draw_study(axes, study, *QUANTITY_LOOKS[number % len(QUANTITY_LOOKS)])
     if not axes.lines:
@@ -131,9 +130,8 @@ def _draw_convergence(axes: Axes, studies: Sequence[Convergence]) -> None:
     # The legend stands above the symbols: a tenth of the axis for each of its lines.
     bottom, top = axes.get_ylim()
     axes.set_ylim(bottom, top * (top / bottom) ** (0.1 * len(studies)))
-    mark_decades(axes.yaxis, *([] if exponential else [axes.xaxis]))
     if exponential:
-        axes.xaxis.set_major_locator(MaxNLocator(integer=True))
+        axes.xaxis.set(major_locator=MaxNLocator(integer=True), major_formatter="{x:g}")
     axes.legend(loc="upper left")
 
 
@@ -164,13 +162,14 @@ def relative_distance(study: Convergence, grid: Grid) -> float:
 def _cost(cost: CostOfAccuracy) -> Picture:
     quantity = quantity_words(cost.quantity)
     title = f"Error against seconds: {quantity}, {cost.scene}, against {display_name(cost.reference)}"
-    return Picture(file_name(cost.case, "cost", cost.scene, cost.quantity), title, partial(_draw_cost, cost))
+    return Picture(
+        file_name(cost.case, "cost", cost.scene, cost.quantity), title, (6.4, 4.2), partial(_draw_cost, cost)
+    )
 
 
-def _draw_cost(cost: CostOfAccuracy) -> Figure:
+def _draw_cost(cost: CostOfAccuracy, axes: Axes) -> None:
     """Error bound over time of each setting, with the Pareto front and the error of the reference."""
-    label = f"bound of the relative error, {quantity_words(cost.quantity)}"
-    drawing, axes = _logarithmic((6.4, 4.2), "median time [s]", label)
+    _logarithmic(axes, "median time [s]", f"bound of the relative error, {quantity_words(cost.quantity)}")
     for method, points in timed_methods(cost).items():
         look = look_of(method)
         for point in points:
@@ -188,7 +187,7 @@ def _draw_cost(cost: CostOfAccuracy) -> Figure:
     for number, point in enumerate(p for p in cost.points if p.bound is None):
         place = (0.98 - 0.03 * number, 1.0)
         _crosses(axes, [place], look_of(point.method).colour, transform=axes.transAxes)
-    return _finished(drawing, axes, columns=3)
+    _legend(axes, columns=3)
 
 
 def _place(point: Point) -> Place:
@@ -196,11 +195,12 @@ def _place(point: Point) -> Place:
     return point.seconds, point.bound or SMALLEST
 
 
-def _draw_stress_test(axes: Axes, tests: Sequence[StressTest]) -> None:
+def _draw_stress_test(tests: Sequence[StressTest], axes: Axes) -> None:
     """Shared digits over the parameter, with crosses at steps without an answer."""
     first = tests[0]
     unit = "" if first.unit == "1" else f" [{first.unit}]"
-    axes.set(xscale="log", xlabel=f"{first.parameter}{unit}", title=first.name)
+    axes.set(xscale="log", xlabel=f"{first.parameter}{unit}")
+    axes.set_title(first.name, y=1.0)
     axes.set(ylabel=f"digits of {quantity_words(first.quantity)}", ylim=(0.0, 17.0))
     axes.axhline(-math.log10(2.0**-53), color="black", linestyle=":", linewidth=0.8)
     for test in tests:
@@ -210,7 +210,6 @@ def _draw_stress_test(axes: Axes, tests: Sequence[StressTest]) -> None:
         _crosses(axes, [(step.value, 0.0) for step in test.steps if step.digits is None], look.colour)
     if first.steps[-1].value < first.steps[0].value:
         axes.invert_xaxis()
-    mark_decades(axes.xaxis)
     axes.legend(loc="lower left")
 
 
@@ -224,9 +223,9 @@ def _stated(verdict: Verdict) -> float:
     return math.hypot(*verdict.uncertainty.values())
 
 
-def _draw_differences(verdicts: Sequence[Verdict]) -> Figure:
+def _draw_differences(verdicts: Sequence[Verdict], axes: Axes) -> None:
     """Difference of two methods over the error that both state; below the diagonal the errors cover it."""
-    drawing, axes = _logarithmic(FRONT, "error stated by both", "relative difference")
+    _logarithmic(axes, "error stated by both", "relative difference")
     largest = SMALLEST
     for methods, same in grouped(verdicts, lambda v: v.methods).items():
         places = [(max(_stated(v), SMALLEST), max(difference(v), SMALLEST)) for v in same]
@@ -236,21 +235,20 @@ def _draw_differences(verdicts: Sequence[Verdict]) -> Figure:
     axes.fill_between(ends, ends, ends[0], color=TINT, zorder=0.5)
     axes.plot(ends, ends, color=GREY, linewidth=1.0)
     axes.set(xlim=ends, ylim=ends)
-    return _finished(drawing, axes)
+    _legend(axes)
 
 
-def _draw_costs(costs: Sequence[CostOfAccuracy]) -> Figure:
+def _draw_costs(costs: Sequence[CostOfAccuracy], axes: Axes) -> None:
     """Error bound over time along the Pareto front of every method, in all studies of cost."""
-    drawing, axes = _logarithmic(FRONT, "median time [s]", "bound of the relative error")
+    _logarithmic(axes, "median time [s]", "bound of the relative error")
     fronts = [pareto_front(points, 0.0) for cost in costs for points in timed_methods(cost).values()]
     for method, points in grouped((p for front in fronts for p in front), lambda p: p.method).items():
         _symbols(axes, map(_place, points), (method,))
-    return _finished(drawing, axes)
+    _legend(axes)
 
 
-def _draw_ends(tests: Sequence[StressTest]) -> Figure:
+def _draw_ends(tests: Sequence[StressTest], axes: Axes) -> None:
     """Share of the completed steps of each stress test."""
-    drawing, (axes,) = panels(1, size=(FRONT[0], max(FRONT[1], 1.0 + 0.24 * len(tests))))
     for row, test in enumerate(tests):
         number = completed(test)
         failed = number < len(test.steps) and test.steps[number].status == Status.FAIL
@@ -261,12 +259,10 @@ def _draw_ends(tests: Sequence[StressTest]) -> Figure:
     axes.set_yticks(range(len(tests)), [f"{test.name}, {display_name(test.method)}" for test in tests])
     axes.set(ylim=(len(tests) - 0.5, -0.5), xlim=(0.0, 1.0), xlabel="share of the steps that were completed")
     axes.grid(visible=False, axis="y")
-    return drawing
 
 
-def _draw_agreement(verdicts: Sequence[Verdict]) -> Figure:
+def _draw_agreement(verdicts: Sequence[Verdict], axes: Axes) -> None:
     """Difference over tolerance (symbol) with the stated error (bar), one verdict per row."""
-    drawing, (axes,) = panels(1, size=(5.0, 0.8 + 0.4 * len(verdicts)))
     shares = [(difference(v) / v.tolerance, _stated(v) / v.tolerance) for v in verdicts]
     least = min((share for pair in shares for share in pair if share > 0.0), default=1.0)
     left = 10.0 ** math.floor(math.log10(max(1e-6, min(least, 0.1))))
@@ -283,21 +279,21 @@ def _draw_agreement(verdicts: Sequence[Verdict]) -> Figure:
     axes.set(xscale="log", xlabel="difference / tolerance", xlim=(left, right), ylim=(len(verdicts) - 0.5, -0.8))
     axes.set_yticks([])
     axes.grid(visible=False, axis="y")
-    mark_decades(axes.xaxis)
-    return drawing
 
 
 def _over_parameter(run: Run, case: CaseText) -> list[Picture]:
     """The answers over the parameter with most values; no picture where no line joins three scenes."""
-    values: dict[str, set[float]] = {}
-    for parameters in case.scenes.values():
-        for name, value in parameters.items():
-            values.setdefault(name, set()).update(_positive(value))
-    parameter = max(values, key=lambda name: len(values[name]), default="")
+    parameters = [pair for of_scene in case.scenes.values() for pair in of_scene.items() if _is_positive(pair[1])]
+    ((parameter, _), *_) = Counter(name for name, _ in dict.fromkeys(parameters)).most_common() or [("", 0)]
     solved = [answer for answer in run.answers.of_case(case.name) if answer.solved]
     quantity = next((name for name in SHOWN_QUANTITIES if any(name in a.quantities for a in solved)), "")
     answers = [answer for answer in solved if quantity in answer.quantities]
-    curves = _curves(answers, case, parameter, quantity)
+    curves: dict[tuple[str, str], list[Place]] = {}
+    for answer in answers:
+        others = dict(case.scenes.get(answer.scene, {}))
+        x, y = others.pop(parameter, ""), abs(answer.quantities[quantity].values[-1])
+        if _is_positive(x) and _is_positive(y):
+            curves.setdefault((_group(answer.scene, others), answer.method), []).append((float(x), y))
     if max(map(len, curves.values()), default=0) < 3:
         return []
     groups = sorted(dict.fromkeys(group for group, _ in curves), key=lambda g: -len(curves.get((g, "mdr"), ())))
@@ -305,20 +301,7 @@ def _over_parameter(run: Run, case: CaseText) -> list[Picture]:
     unit, label, words = answers[0].quantities[quantity].unit, _parameter_words(parameter), quantity_words(quantity)
     axis = label + UNITS_OF_PARAMETERS.get(parameter, "")
     draw = partial(_draw_over, shown, axis, words + f" [{unit}]" * (unit != "1"))
-    return [Picture(file_name(case.name, "answers"), f"{words.capitalize()} over {label}", draw)]
-
-
-def _curves(
-    answers: Iterable[Answer], case: CaseText, parameter: str, quantity: str
-) -> dict[tuple[str, str], list[Place]]:
-    """Parameter and last value of the quantity, by group of scenes that differ in the parameter alone, and method."""
-    curves: dict[tuple[str, str], list[Place]] = {}
-    for answer in answers:
-        others = dict(case.scenes.get(answer.scene, {}))
-        for x in _positive(others.pop(parameter, "")):
-            for y in _positive(abs(answer.quantities[quantity].values[-1])):
-                curves.setdefault((_group(answer.scene, others), answer.method), []).append((x, y))
-    return curves
+    return [Picture(file_name(case.name, "answers"), f"{words.capitalize()} over {label}", (7.0, 4.2), draw)]
 
 
 def _group(scene: str, others: Mapping[str, object]) -> str:
@@ -332,20 +315,19 @@ def _parameter_words(name: str) -> str:
     return quantity_words(name.replace("_over_", "/"))
 
 
-def _positive(value: object) -> tuple[float, ...]:
-    """The value alone if it is a number above zero, which a logarithmic axis can show."""
-    is_number = isinstance(value, int | float) and not isinstance(value, bool) and value > 0
-    return (float(value),) if is_number else ()  # type: ignore[arg-type]
+def _is_positive(value: object) -> TypeGuard[float]:
+    """Whether the value is a number above zero, which a logarithmic axis can show."""
+    return isinstance(value, int | float) and not isinstance(value, bool) and value > 0
 
 
-def _draw_over(curves: Mapping[tuple[str, str], list[Place]], x_label: str, y_label: str) -> Figure:
+def _draw_over(curves: Mapping[tuple[str, str], list[Place]], x_label: str, y_label: str, axes: Axes) -> None:
     """Lines of MDR, named at their ends, and symbols of the other methods."""
-    drawing, axes = _logarithmic((7.0, 4.2), x_label, y_label)
+    _logarithmic(axes, x_label, y_label)
     ends: list[tuple[float, float, str]] = []
     for (group, method), places in curves.items():
-        look, (x, y) = look_of(method), zip(*sorted(places), strict=True)
+        look, (x, y), label = look_of(method), zip(*sorted(places), strict=True), display_name(method)
         style, size = ("-", 3.0) if method == "mdr" else ("none", 6.0)
-        axes.plot(x, y, look.marker, color=look.colour, ls=style, lw=0.9, mfc="none", ms=size, label=method)
+        axes.plot(x, y, look.marker, color=look.colour, ls=style, lw=0.9, mfc="none", ms=size, label=label)
         if method == "mdr" and group:
             ends.append((math.log10(y[-1]), x[-1], group))
     low, high = (math.log10(end) for end in axes.get_ylim())
@@ -354,7 +336,4 @@ def _draw_over(curves: Mapping[tuple[str, str], list[Place]], x_label: str, y_la
         row = max(row + 0.045 * (high - low), y_end)  # names stand apart from one another
         offset: Any = {"textcoords": ("offset points", "data"), "va": "center", "fontsize": 7.0}
         axes.annotate(name, (x_end, 10.0**y_end), (12, 10.0**row), **offset)
-    mark_decades(axes.xaxis, axes.yaxis)
-    handles = {str(line.get_label()): line for line in axes.lines}
-    drawing.legend(handles.values(), map(display_name, handles), loc="outside lower center", ncols=4)
-    return drawing
+    _legend(axes, columns=4)

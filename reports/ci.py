@@ -3,7 +3,7 @@
 import html
 import re
 import xml.etree.ElementTree as ET
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Mapping
 
 from cases.answers import Answer
 from cases.runs import Run
@@ -35,7 +35,17 @@ BROKEN = (Status.INVALID, Status.TIMEOUT, Status.INCOMPARABLE)
 # Statuses that neither pass nor fail.
 OPEN = (Status.SKIP, Status.XFAIL, Status.INCONCLUSIVE)
 
-HEADS = ("verdict", "case", "claim", "method", "scenes", "relative error", "error / tolerance", "what was seen")
+# Text of a finding in each column of the summary, by its head.
+COLUMNS: Mapping[str, Callable[[Finding], str]] = {
+    "verdict": lambda finding: finding.word,
+    "case": lambda finding: finding.case,
+    "claim": lambda finding: finding.claim,
+    "method": lambda finding: who(finding.methods, " against "),
+    "scenes": lambda finding: finding.where,
+    "relative error": lambda finding: finding.measured,
+    "error / tolerance": lambda finding: small(finding.fraction) if finding.fraction else "",
+    "what was seen": lambda finding: finding.message,
+}
 
 
 def summary_text(run: Run, *, largest: int = LARGEST) -> str:
@@ -52,7 +62,7 @@ def summary_text(run: Run, *, largest: int = LARGEST) -> str:
     rows = findings(run)
     if not rows:
         return text + "Every check ran and passed.\n"
-    text += markdown_table(HEADS, ())
+    text += markdown_table(COLUMNS, ())
     for number, row in enumerate(map(_row, rows)):
         if len((text + row).encode()) > largest - 200:
             return text + f"\n{len(rows) - number} further rows are on the page of the report.\n"
@@ -62,23 +72,8 @@ def summary_text(run: Run, *, largest: int = LARGEST) -> str:
 
 def _row(finding: Finding) -> str:
     """Row of a finding in Markdown."""
-    word = _escaped(finding.word)
-    fraction = small(finding.fraction) if finding.fraction else ""
-    cells = (
-        finding.case,
-        finding.claim,
-        who(finding.methods, " against "),
-        finding.where,
-        _measured(finding),
-        fraction,
-    )
-    others = " | ".join(map(_escaped, (*cells, finding.message)))
-    return f"| {f'**{word}**' if finding.tone == 'bad' else word} | {others} |\n"
-
-
-def _measured(finding: Finding) -> str:
-    """Errors over all scenes in words, or the measured error of the only scene."""
-    return finding.size or (observed_text(finding.worst) if finding.worst else "")
+    word, *others = (_escaped(text(finding)) for text in COLUMNS.values())
+    return f"| {f'**{word}**' if finding.tone == 'bad' else word} | {' | '.join(others)} |\n"
 
 
 def _escaped(text: str) -> str:

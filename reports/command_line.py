@@ -1,7 +1,8 @@
 """`contact-verify`: verification runs, reports, gates, and single answers with error estimates, from the shell.
 
-Each command is declared by a function of its name: the docstring is its help, the body its arguments. The module that
-carries it out is imported when the command is called, so that help and errors come at once.
+Each command is declared by a function of its name: the docstring is its help and that of its options, the body the
+types of their values. The module that carries it out is imported when the command is called, so that help and errors
+come at once.
 """
 
 import argparse
@@ -9,9 +10,11 @@ import codecs
 import gc
 import inspect
 import io
+import json
+import re
 import sys
 import traceback
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import partial
 from importlib import import_module
 from importlib.metadata import version
@@ -52,7 +55,18 @@ GONE: Final = {
 SUPERSCRIPTS: Final = "⁰¹²³⁴⁵⁶⁷⁸⁹⁻"
 # Letters that reports use, for terminals whose encoding lacks them.
 IN_ASCII: Final = str.maketrans(f"{SUPERSCRIPTS}−–µδτ", "0123456789---udt") | {ord("±"): "+-"}
-# Adds one argument to a parser, as `argparse.ArgumentParser.add_argument` does.
+# An option of a docstring with its help, which may go on in indented lines.
+OPTION: Final = re.compile(r"^    (\S+): (.*(?:\n {8}.*)*)", re.MULTILINE)
+# Help of the options of several commands.
+SHARED: Final = {
+    "CASE": "Cases by name; all if none.",
+    "--method": "Only this method. Repeatable.",
+    "--baseline": "Folder of the accepted numbers (default: baselines).",
+    "--strict": "End with exit code 6 if a verdict stays open.",
+    "--quiet": "Print only the verdict and errors.",
+    "--version": "Print the version and stop.",
+}
+# Adds one argument to a parser, as `argparse.ArgumentParser.add_argument` does, with its help.
 Add = Callable[..., Any]
 
 
@@ -78,7 +92,7 @@ class _Text(argparse.Action):
     """An option that prints a text and ends the command."""
 
     def __init__(self, option_strings: list[str], dest: str, *, text: Callable[[], str], help: str) -> None:
-        super().__init__(option_strings, dest, nargs=0, help=help)
+        super().__init__(option_strings, argparse.SUPPRESS, nargs=0, help=help)
         self._text = text
 
     def __call__(self, parser: argparse.ArgumentParser, *_: Any) -> None:
@@ -96,9 +110,7 @@ def _example() -> str:
 
 
 def _schema() -> str:
-    import json  # noqa: PLC0415 - help does not wait for it
-
-    from contact.files.scene_file import scene_schema  # noqa: PLC0415 - as above
+    from contact.files.scene_file import scene_schema  # noqa: PLC0415 - help does not wait for it
 
     return json.dumps(scene_schema(), indent=1, sort_keys=True)
 
@@ -118,64 +130,74 @@ def _solve(add: Add) -> None:
     An installed package registers a method of its own by the entry point contact_verification.methods.
 
     Editors check a scene that begins with `#:schema FILE`, with FILE from contact-verify solve --schema > FILE.
+
+    Options:
+        SCENE: Scene in TOML: tables layer, indenter, loading and effects.
+        --method: mdr (the default), mdr_table, fem, bem, integral_equation, or a registered one: see above.
+        --accuracy: Relative accuracy of radius, depth, force and stiffness, of critical numbers, or of restitution and
+            peaks: tries methods from cheap to fine, and refuses an answer that states a larger error.
+        --pressure-accuracy: Relative accuracy of the contact pressure, besides --accuracy.
+        --uncertain: Uncertain inputs, "thickness=3%, poissons_ratio=0.48..0.5, thickness~youngs_modulus=0.8": standard
+            deviations, ranges, correlations.
+        --samples: Random scenes for --uncertain, 0 (the default): two scenes per uncertain input.
+        --over: Vary one number: "thickness=1um..10um:20", then ":log" for equal factors.
+        --advise: List effects that change the answer by more than --accuracy (default: 1 %).
+        --against: Solve by a second method too, show the differences.
+        --write: Also write the answer: FILE.csv, .h5, .svg, .png or .pdf. inside.svg (.png, .pdf) draws the stressed
+            layer; FILE.vtu and FILE.xdmf hold it for ParaView (--method fem). Repeatable.
+        --example: Print a scene and stop.
+        --schema: Print the JSON Schema of scenes and stop.
     """
-    add("scene_file", metavar="SCENE", type=Path, help="Scene in TOML: tables layer, indenter, loading and effects.")
-    methods = "mdr (the default), mdr_table, fem, bem, integral_equation, or a registered one: see above."
-    add("--method", default="", help=methods)
-    reached = (
-        "Relative accuracy of radius, depth, force and stiffness, of critical numbers, or of restitution and peaks"
-    )
-    refused = "tries methods from cheap to fine, and refuses an answer that states a larger error."
-    add("--accuracy", type=float, help=f"{reached}: {refused}")
-    add("--pressure-accuracy", type=float, help="Relative accuracy of the contact pressure, besides --accuracy.")
-    inputs = '"thickness=3%%, poissons_ratio=0.48..0.5, thickness~youngs_modulus=0.8"'
-    kinds = "standard deviations, ranges, correlations."
-    add("--uncertain", default="", metavar="INPUTS", help=f"Uncertain inputs, {inputs}: {kinds}")
-    samples = "Random scenes for --uncertain, 0 (the default): two scenes per uncertain input."
-    add("--samples", type=int, default=0, help=samples)
-    values = 'Vary one number: "thickness=1um..10um:20", then ":log" for equal factors.'
-    add("--over", default="", metavar="RANGE", help=values)
-    effects = "List effects that change the answer by more than --accuracy (default: 1 %%)."
-    add("--advise", action="store_true", help=effects)
-    add("--against", default="", metavar="METHOD", help="Solve by a second method too, show the differences.")
-    formats = (
-        "Also write the answer: FILE.csv, .h5, .svg, .png or .pdf. inside.svg (.png, .pdf) draws the stressed layer"
-    )
-    meshes = "FILE.vtu and FILE.xdmf hold it for ParaView (--method fem). Repeatable."
-    _files(add, f"{formats}; {meshes}")
-    _text(add, "--example", _example, "Print a scene and stop.")
-    _text(add, "--schema", _schema, "Print the JSON Schema of scenes and stop.")
+    add("scene_file", metavar="SCENE", type=Path)
+    add("--method", default="")
+    add("--accuracy", type=float)
+    add("--pressure-accuracy", type=float)
+    add("--uncertain", default="", metavar="INPUTS")
+    add("--samples", type=int, default=0)
+    add("--over", default="", metavar="RANGE")
+    add("--advise", action="store_true")
+    add("--against", default="", metavar="METHOD")
+    _files(add)
+    add("--example", action=_Text, text=_example)
+    add("--schema", action=_Text, text=_schema)
 
 
 def _fit(add: Add) -> None:
     """Find Young's modulus from a force curve or from all curves of a map, or relaxation moduli over time.
 
     Every number has an interval. Prints what Hertz, Dimitriadis and other formulas would have found on the same curve.
+
+    Options:
+        CURVE: Table with columns of depth (or height) and force (or deflection), and time for scenes that relax; or a
+            microscope's file (.jpk-force, .h5, .tab, .ibw, .csv of AFM Workshop).
+        SCENE: Scene in TOML, as printed by contact-verify solve --example. Layer, tip and effects are used. The modulus
+            that is fitted and the depths of the loading are not, though a scene must name them.
+        --fit: Moduli to fit: youngs_modulus; of stacks layer[0].youngs_modulus, base.youngs_modulus; of scenes that
+            relax moduli,times (or moduli, which keeps the times).
+        --with: What else is fitted: contact_point,baseline,tilt (all, the default), thickness, work_of_adhesion.
+        --units: Units of columns whose heads have none, in the order of the columns: "nm,nN".
+        --spring-constant: Spring constant of the cantilever, "0.05 N/m", for columns of height and deflection.
+        --sensitivity: Sensitivity of the deflection, "50 nm/V".
+        --until: Fit the curve up to this depth, force or share of the largest force: 300nm, 2nN, 60%.
+        --map: Fit all curves: a force curve in each column after the depths, or curves numbered by a column.
+        --uncertain: Uncertain inputs, "radius=5%, thickness=4e-6..6e-6". Their effect is added to the intervals.
+        --curve: Which curve of a microscope's file, from 0 (the default).
+        --confidence: Confidence of intervals and bands (default: 0.95).
+        --write: Also write FILE.csv, .svg, .png or .pdf. Repeatable.
     """
-    columns = "Table with columns of depth (or height) and force (or deflection), and time for scenes that relax"
-    microscopes = "or a microscope's file (.jpk-force, .h5, .tab, .ibw, .csv of AFM Workshop)."
-    add("file", metavar="CURVE", type=Path, help=f"{columns}; {microscopes}")
-    used = "Scene in TOML, as printed by contact-verify solve --example. Layer, tip and effects are used. The modulus "
-    ignored = "that is fitted and the depths of the loading are not, though a scene must name them."
-    add("scene_file", metavar="SCENE", type=Path, help=used + ignored)
-    moduli = "Moduli to fit: youngs_modulus; of stacks layer[0].youngs_modulus, base.youngs_modulus; of scenes that "
-    add("--fit", default="", help=f"{moduli}relax moduli,times (or moduli, which keeps the times).")
-    also = "What else is fitted: contact_point,baseline,tilt (all, the default), thickness, work_of_adhesion."
-    add("--with", dest="also", default="all", help=also)
-    units = 'Units of columns whose heads have none, in the order of the columns: "nm,nN".'
-    add("--units", default="", help=units)
-    constant = 'Spring constant of the cantilever, "0.05 N/m", for columns of height and deflection.'
-    add("--spring-constant", default="", help=constant)
-    add("--sensitivity", default="", help='Sensitivity of the deflection, "50 nm/V".')
-    until = "Fit the curve up to this depth, force or share of the largest force: 300nm, 2nN, 60%%."
-    add("--until", default="", help=until)
-    every = "Fit all curves: a force curve in each column after the depths, or curves numbered by a column."
-    add("--map", dest="number", action="store_const", const=None, default=0, help=every)
-    uncertain = 'Uncertain inputs, "radius=5%%, thickness=4e-6..6e-6". Their effect is added to the intervals.'
-    add("--uncertain", default="", help=uncertain)
-    add("--curve", dest="number", type=int, default=0, help="Which curve of a microscope's file, from 0 (the default).")
-    add("--confidence", type=float, default=0.95, help="Confidence of intervals and bands (default: 0.95).")
-    _files(add, "Also write FILE.csv, .svg, .png or .pdf. Repeatable.")
+    add("file", metavar="CURVE", type=Path)
+    add("scene_file", metavar="SCENE", type=Path)
+    add("--fit", default="")
+    add("--with", dest="also", default="all")
+    add("--units", default="")
+    add("--spring-constant", default="")
+    add("--sensitivity", default="")
+    add("--until", default="")
+    add("--map", dest="number", action="store_const", const=None, default=0)
+    add("--uncertain", default="")
+    add("--curve", dest="number", type=int, default=0)
+    add("--confidence", type=float, default=0.95)
+    _files(add)
 
 
 def _run(add: Add) -> None:
@@ -184,29 +206,34 @@ def _run(add: Add) -> None:
     A method of an installed package, named alone, is compared with mdr. With --only stability, CASE names stress tests.
 
     Ctrl-C leaves a valid partial report. The same command with --resume completes it.
+
+    Options:
+        --suite: Only cases of this suite.
+        --against: Compare each --method with this one, and nothing else. Repeatable.
+        --setting: Setting of a method of an installed package: name=value, method.name=value, or a TOML file with a
+            table per method (a table in it, of the name of a scene, is for that scene). Repeatable.
+        --jobs: Solutions at a time (default: 2); timings always run alone.
+        --out: Folder of the run: answers, report.html, figures (default: build/verification).
+        --resume: Keep finished solutions of an earlier run in OUT.
+        --executor: processes (the default), serial, or a Dask scheduler (tcp://host:port).
+        --time-limit: Seconds per solution, 0: no limit; 300 for methods of installed packages.
+        --timing: Measure what accuracy costs in time (the default).
+        --only: cost: only timings, coarse to fine. stability: only stress tests.
+        --list: List the cases and stop; show a single CASE in full.
     """
-    _cases(add)
-    add("--suite", default="", choices=("ci", "nightly", "referees"), help="Only cases of this suite.")
+    add("names", metavar="CASE", nargs="*")
+    add("--suite", default="", choices=("ci", "nightly", "referees"))
     _methods(add)
-    others = "Compare each --method with this one, and nothing else. Repeatable."
-    add("--against", dest="others", action="append", default=[], metavar="METHOD", help=others)
-    named = "Setting of a method of an installed package: name=value, method.name=value, or a TOML file with a table "
-    scenes = "per method (a table in it, of the name of a scene, is for that scene). Repeatable."
-    add("--setting", dest="settings", action="append", default=[], metavar="NAME=VALUE", help=named + scenes)
-    add("--jobs", type=int, default=2, help="Solutions at a time (default: 2); timings always run alone.")
-    folder = f"Folder of the run: answers, report.html, figures (default: {OUT})."
-    add("--out", type=Path, default=OUT, help=folder)
-    add("--resume", action="store_true", help="Keep finished solutions of an earlier run in OUT.")
-    places = "processes (the default), serial, or a Dask scheduler (tcp://host:port)."
-    add("--executor", default="processes", help=places)
-    limit = "Seconds per solution, 0: no limit; 300 for methods of installed packages."
-    add("--time-limit", type=_count, help=limit)
-    timing = "Measure what accuracy costs in time (the default)."
-    add("--timing", action=argparse.BooleanOptionalAction, default=True, help=timing)
-    parts = "cost: only timings, coarse to fine. stability: only stress tests."
-    add("--only", default="", choices=("cost", "stability"), help=parts)
-    listed = "List the cases and stop; show a single CASE in full."
-    add("--list", dest="listed", action="store_true", help=listed)
+    add("--against", dest="others", action="append", default=[], metavar="METHOD")
+    add("--setting", dest="settings", action="append", default=[], metavar="NAME=VALUE")
+    add("--jobs", type=int, default=2)
+    add("--out", type=Path, default=OUT)
+    add("--resume", action="store_true")
+    add("--executor", default="processes")
+    add("--time-limit", type=_count)
+    add("--timing", action=argparse.BooleanOptionalAction, default=True)
+    add("--only", default="", choices=("cost", "stability"))
+    add("--list", dest="listed", action="store_true")
     _verdicts(add)
 
 
@@ -216,9 +243,11 @@ def _gate(add: Add) -> None:
     Numbers that changed beyond their tolerance, are missing or are new fail.
 
     The methods of the run are compared unless --method names some. contact-verify report then draws the pages.
+
+    Options:
+        RUN: Folder of a finished run (default: build/verification).
     """
-    folder = f"Folder of a finished run (default: {OUT})."
-    add("directory", metavar="RUN", type=Path, nargs="?", default=OUT, help=folder)
+    add("directory", metavar="RUN", type=Path, nargs="?", default=OUT)
     _baselines(add)
     _methods(add)
     _verdicts(add)
@@ -232,48 +261,51 @@ def _accept(add: Add) -> None:
     This takes about twice as long as the run.
 
     Refused: numbers that are not finite, uncommitted changes, failing claims of closed forms or orders of convergence.
+
+    Options:
+        --reason: Why these numbers are right; it is kept beside them.
+        --run: Folder of the finished run they come from (default: build/verification).
+        --write: Write; without it only show what would change.
+        --loosen: Let tolerances grow or records be withdrawn.
+        --jobs: Repetitions at a time (default: 2).
     """
-    _cases(add)
-    add("--reason", required=True, help="Why these numbers are right; it is kept beside them.")
-    folder = f"Folder of the finished run they come from (default: {OUT})."
-    add("--run", dest="directory", type=Path, default=OUT, help=folder)
+    add("names", metavar="CASE", nargs="*")
+    add("--reason", required=True)
+    add("--run", dest="directory", type=Path, default=OUT)
     _baselines(add)
-    add("--write", action="store_true", help="Write; without it only show what would change.")
-    add("--loosen", action="store_true", help="Let tolerances grow or records be withdrawn.")
-    add("--jobs", type=int, default=2, help="Repetitions at a time (default: 2).")
+    add("--write", action="store_true")
+    add("--loosen", action="store_true")
+    add("--jobs", type=int, default=2)
 
 
 def _report(add: Add) -> None:
-    """Draw the pages of a finished run again; with two runs, compare the second with the first."""
-    add("directory", metavar="RUN", type=Path, help="Folder of a finished run.")
-    add("other", metavar="OTHER", type=Path, nargs="?", help="A second run to compare with the first.")
-    add("--single-file", action="store_true", help="All cases on one page.")
+    """Draw the pages of a finished run again; with two runs, compare the second with the first.
+
+    Options:
+        RUN: Folder of a finished run.
+        OTHER: A second run to compare with the first.
+        --single-file: All cases on one page.
+    """
+    add("directory", metavar="RUN", type=Path)
+    add("other", metavar="OTHER", type=Path, nargs="?")
+    add("--single-file", action="store_true")
 
 
-def _text(add: Add, name: str, text: Callable[[], str], help_text: str) -> None:
-    add(name, action=_Text, text=text, dest=argparse.SUPPRESS, help=help_text)
-
-
-def _files(add: Add, text: str) -> None:
-    add("--write", "-w", dest="outputs", action="append", default=[], type=Path, metavar="FILE", help=text)
-
-
-def _cases(add: Add) -> None:
-    add("names", metavar="CASE", nargs="*", help="Cases by name; all if none.")
+def _files(add: Add) -> None:
+    add("--write", "-w", dest="outputs", action="append", default=[], type=Path, metavar="FILE")
 
 
 def _methods(add: Add) -> None:
-    add("--method", dest="methods", action="append", default=[], help="Only this method. Repeatable.")
+    add("--method", dest="methods", action="append", default=[])
 
 
 def _baselines(add: Add) -> None:
-    folder = "Folder of the accepted numbers (default: baselines)."
-    add("--baseline", dest="baselines", type=Path, default=Path("baselines"), help=folder)
+    add("--baseline", dest="baselines", type=Path, default=Path("baselines"))
 
 
 def _verdicts(add: Add) -> None:
-    add("--strict", action="store_true", help="End with exit code 6 if a verdict stays open.")
-    add("--quiet", "-q", action="store_true", help="Print only the verdict and errors.")
+    add("--strict", action="store_true")
+    add("--quiet", "-q", action="store_true")
 
 
 # Declaration, and module and function that carry the command out.
@@ -291,15 +323,22 @@ _new_parser = partial(Parser, epilog=EXIT_CODES, allow_abbrev=False, formatter_c
 def command_parser(name: str) -> Parser:
     """The parser of a command, with its help."""
     declare = COMMANDS[name][0]
-    parser = _new_parser(prog=f"contact-verify {name}", description=inspect.getdoc(declare))
-    declare(parser.add_argument)
+    description, _, options = (inspect.getdoc(declare) or "").partition("\n\nOptions:\n")
+    parser = _new_parser(prog=f"contact-verify {name}", description=description)
+    declare(partial(_add, parser, SHARED | dict(OPTION.findall(options))))
     return parser
+
+
+def _add(parser: Parser, helps: Mapping[str, str], *names: str, **details: Any) -> None:
+    """Add an argument to the parser, with the help that stands under its name or metavariable."""
+    text = helps[names[0] if names[0].startswith("-") else details["metavar"]]
+    parser.add_argument(*names, help=" ".join(text.split()).replace("%", "%%"), **details)
 
 
 def _all_commands() -> Parser:
     """The parser of a command line without a command, which lists the commands."""
     parser = _new_parser(prog="contact-verify", description=SUMMARY)
-    _text(parser.add_argument, "--version", _version, "Print the version and stop.")
+    _add(parser, SHARED, "--version", action=_Text, text=_version)
     commands = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)
     for name, (declare, *_) in COMMANDS.items():
         commands.add_parser(name, help=(inspect.getdoc(declare) or "").partition("\n")[0])
@@ -367,16 +406,15 @@ def carry_out(arguments: list[str]) -> int:
 
 def _ended_by(error: Exception) -> int:
     """Exit code of a command that ended with an error; prints what the user can do about it."""
-    from contact import ContactError, InvalidInput, NotConvergedError, UnsupportedSceneError  # noqa: PLC0415
-    from contact.records.extras import missing_extra  # noqa: PLC0415
+    from contact.records import errors, extras  # noqa: PLC0415 - help does not wait for them
 
-    if isinstance(error, InvalidInput | UnsupportedSceneError):
+    if isinstance(error, errors.InvalidInput | errors.UnsupportedSceneError):
         return _complain(str(error), USAGE)
-    if isinstance(error, NotConvergedError):
+    if isinstance(error, errors.NotConvergedError):
         return _complain(f"no answer: {error}", 1)
-    if isinstance(error, ContactError):
+    if isinstance(error, errors.ContactError):
         return _complain(str(error), INTERNAL_ERROR)
-    if package := missing_extra(error):
+    if package := extras.missing_extra(error):
         return _complain(package, USAGE)
     if isinstance(error, OSError) and error.strerror:
         return _complain(f"{error.filename or 'a file'}: {error.strerror}; name another place, or make room", USAGE)
@@ -387,9 +425,6 @@ def _ended_by(error: Exception) -> int:
 def _complain(message: str, code: int, before: str = "") -> int:
     """Write a message without characters that a terminal obeys to standard error, and return the exit code."""
     text = f"{before}contact-verify: {message}\n"
-    if not text.replace("\n", "").isprintable():
-        from contact.records.errors import printable  # noqa: PLC0415 - complaints about options come at once
-
-        text = printable(text, keep="\n")
-    sys.stderr.write(text)
+    shown = (c if c == "\n" or c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text)
+    sys.stderr.write("".join(shown))
     return code

@@ -5,7 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from cases.answers import Answer
+from cases.answers import Answer, Values
+from cases.rules import Judgement, nothing_compared
 from cases.runs import Run
 from cases.verdicts import Kind, Origin, Status, Verdict, Why
 from reports.findings import WORST_FIRST
@@ -49,51 +50,44 @@ def changed_numbers(first: Run, second: Run) -> list[Verdict]:
 
 
 def _compared(old: Answer | None, new: Answer | None) -> Iterator[Verdict]:
-    """One verdict per quantity: at the step where it changed most, over its scale."""
+    """One verdict per quantity of an answer of both runs, or a single one for an answer of one run."""
+    answers = [answer for answer in (old, new) if answer is not None]
     if old is None or new is None:
-        if answer := old or new:
-            yield _verdict(answer, answer, "answer", Status.INCOMPARABLE, "only one of the runs has it")
-        return
-    for name in dict.fromkeys([*old.quantities, *new.quantities]):
-        a, b = old.quantities.get(name), new.quantities.get(name)
-        if a is None or b is None or len(a.values) != len(b.values) or a.unit != b.unit:
-            yield _verdict(old, new, name, Status.INCOMPARABLE, "missing, or of another length or unit")
-        elif a.values and not a.at:
-            changes = (np.array(b.values) - np.array(a.values)) / a.scale
-            step = int(np.argmax(np.abs(changes)))
-            change = float(changes[step])
-            stated = float(np.hypot(a.error[step], b.error[step])) / a.scale if a.error and b.error else None
-            beyond = Status.INCONCLUSIVE if stated is None else Status.DIFF
-            status = beyond if abs(change) > (stated or 0.0) else Status.PASS
-            message = f"{b.values[step]:.17g} {b.unit}, was {a.values[step]:.17g}"
-            yield _verdict(old, new, name, status, message, change=change, stated=stated)
+        changes = {"answer": (nothing_compared(Status.INCOMPARABLE, "only one of the runs has it"), 0.0)}
+    else:
+        names = dict.fromkeys([*old.quantities, *new.quantities])
+        pairs = {name: (old.quantities.get(name), new.quantities.get(name)) for name in names}
+        changes = {name: change for name, pair in pairs.items() if (change := _change(*pair))}
+    for name, (judged, stated) in changes.items():
+        yield Verdict(
+            case=answers[0].case,
+            claim=f"{quantity_words(name)} of both runs",
+            kind=Kind.REGRESSION,
+            scene=answers[0].scene,
+            methods=tuple(dict.fromkeys(answer.method for answer in answers)),
+            quantity=name,
+            tolerance=stated or 5e-324,
+            why=WHY,
+            **vars(judged),
+        )
 
 
-def _verdict(
-    old: Answer,
-    new: Answer,
-    quantity: str,
-    status: Status,
-    message: str,
-    *,
-    change: float | None = None,
-    stated: float | None = None,
-) -> Verdict:
-    """Verdict on a quantity of two runs from its change and stated error, both over its scale."""
-    return Verdict(
-        case=old.case,
-        claim=f"{quantity_words(quantity)} of both runs",
-        kind=Kind.REGRESSION,
-        scene=old.scene,
-        methods=tuple(dict.fromkeys((old.method, new.method))),
-        quantity=quantity,
-        status=status,
-        error=change,
-        tolerance=stated or 5e-324,
-        fraction=abs(change) / stated if change is not None and stated else None,
-        why=WHY,
-        message=message,
-    )
+def _change(a: Values | None, b: Values | None) -> tuple[Judgement, float] | None:
+    """Judgement of the largest change and the error stated there, both over the scale; None for fields at points."""
+    if a is None or b is None or len(a.values) != len(b.values) or a.unit != b.unit:
+        return nothing_compared(Status.INCOMPARABLE, "missing, or of another length or unit"), 0.0
+    if not a.values or a.at:
+        return None
+    changes = (np.array(b.values) - np.array(a.values)) / a.scale
+    step = int(np.argmax(np.abs(changes)))
+    change, message = float(changes[step]), f"{b.values[step]:.17g} {b.unit}, was {a.values[step]:.17g}"
+    if not (a.error and b.error):
+        status = Status.INCONCLUSIVE if change else Status.PASS
+        return Judgement(status=status, error=change, message=message), 0.0
+    stated = float(np.hypot(a.error[step], b.error[step])) / a.scale
+    fraction = abs(change) / stated if stated else None
+    status = Status.DIFF if abs(change) > stated else Status.PASS
+    return Judgement(status=status, error=change, fraction=fraction, message=message), stated
 
 
 def headline(claims: list[Verdict], numbers: list[Verdict]) -> tuple[str, str]:

@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from contact import InvalidInput
+from contact.files.whole import write_whole
 from reports.terminal import console, progress_bar
 
 if TYPE_CHECKING:
@@ -36,8 +37,6 @@ Writers = Mapping[str, Callable[[Path], object]]
 
 def csv_writer(table: Callable[[], str]) -> Writers:
     """The writer of a table in CSV, by its ending."""
-    from contact.files.whole import write_whole  # noqa: PLC0415 - storage only where a file is written
-
     return {".csv": lambda path: write_whole(path, table())}
 
 
@@ -56,7 +55,6 @@ def write_outputs(paths: Sequence[Path], writers: Writers) -> None:
 
 def write_picture(path: Path, draw: Callable[[], "Figure"], *, key: str) -> None:
     """Draw a figure in the style of all figures and write it in the format of the ending of `path`."""
-    from contact.files.whole import write_whole  # noqa: PLC0415 - as below
     from reports.style import figure_bytes, figure_style  # noqa: PLC0415 - Matplotlib only where it is asked for
 
     with figure_style():

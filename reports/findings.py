@@ -8,6 +8,7 @@ import re
 from collections import Counter
 from collections.abc import Callable, Collection, Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from statistics import median
 from typing import Any, TypeVar
 
@@ -158,6 +159,11 @@ class Finding:
         return self.scenes[0] if self.total == 1 else f"{len(self.scenes)} of {self.total} scenes"
 
     @property
+    def measured(self) -> str:
+        """Errors over all scenes in words, or the measured error of the only scene."""
+        return self.size or (observed_text(self.worst) if self.worst else "")
+
+    @property
     def sentence(self) -> str:
         """One line: claim, where, how large."""
         size = f", {self.size}" if self.size else ""
@@ -167,24 +173,28 @@ class Finding:
 def findings(run: Run, verdicts: Collection[Verdict] | None = None) -> list[Finding]:
     """The findings that did not pass, worst first, of the whole run or of the given verdicts alone."""
     answers = _unanswered(run) if verdicts is None else []
-    result = [_of_answers(same) for same in grouped(answers, _reason).values()]
+    result = []
+    for (status, reason, *_), unanswered in grouped(answers, _reason).items():
+        claim = "not modelled" if status is Status.SKIP else "no answer"
+        result.append(_finding(unanswered, claim, reason, [answer.method for answer in unanswered]))
     chosen = run.judged.verdicts if verdicts is None else verdicts
     for same in grouped((v for v in chosen if v.status is not Status.SKIP), _claim).values():
-        by_status = grouped((v for v in same if v.status is not Status.PASS), lambda v: v.status)
-        result += [_of_verdicts(alike, len(same)) for alike in by_status.values()]
+        for alike in grouped((v for v in same if v.status is not Status.PASS), lambda v: v.status).values():
+            worst = min(alike, key=severity)
+            errors = [error for v in alike if (error := relative_error(v)) is not None]
+            sizes = {"size": size_text(errors) if len(alike) > 1 else "", "fraction": worst.fraction or 0.0}
+            more = {"word": word_of(worst), "total": len(same), "worst": worst, **sizes}
+            result.append(_finding(alike, worst.claim, worst.message, worst.methods, **more))
     # Each reason of a skip is shown once: scenes that a method does not model are not compared either.
     messages = {finding.message for finding in result}
-    skipped = grouped((v for v in chosen if v.status is Status.SKIP), _skip_reason)
-    result += [
-        _finding(same, "not compared", reason, methods=dict.fromkeys(method for v in same for method in v.methods))
-        for reason, same in skipped.items()
-        if reason not in messages
-    ]
+    for reason, skipped in grouped((v for v in chosen if v.status is Status.SKIP), _skip_reason).items():
+        if reason not in messages:
+            result.append(_finding(skipped, "not compared", reason, [method for v in skipped for method in v.methods]))
     return sorted(result, key=lambda finding: (WORST_FIRST.index(finding.status), -finding.fraction))
 
 
 def _finding(
-    same: Sequence[Verdict | Answer], claim: str, message: str, *, methods: Iterable[str], **more: Any
+    same: Sequence[Verdict | Answer], claim: str, message: str, methods: Iterable[str], **more: Any
 ) -> Finding:
     """The finding of verdicts or answers with the same status."""
     cases = list(dict.fromkeys(record.case for record in same))
@@ -192,7 +202,7 @@ def _finding(
         status=same[0].status,
         case=cases[0] if len(cases) == 1 else f"{len(cases)} cases",
         claim=claim,
-        methods=tuple(methods),
+        methods=tuple(dict.fromkeys(methods)),
         scenes=tuple(record.scene for record in same),
         message=in_words(message),
         **{"word": same[0].status.value, "total": len(same)} | more,
@@ -205,12 +215,20 @@ def _claim(verdict: Verdict) -> tuple[str, ...]:
     return *claim, verdict.quantity, *verdict.methods
 
 
-def _of_verdicts(same: Sequence[Verdict], total: int) -> Finding:
-    """Finding of verdicts with the same status, out of ``total`` scenes of the claim."""
-    worst = min(same, key=severity)
-    errors = [error for v in same if (error := relative_error(v)) is not None]
-    sizes = {"size": size_text(errors) if len(same) > 1 else "", "fraction": worst.fraction or 0.0, "worst": worst}
-    return _finding(same, worst.claim, worst.message, methods=worst.methods, word=word_of(worst), total=total, **sizes)
+def _reason(answer: Answer) -> tuple[Status, str, str, str]:
+    """Key that answers of one finding share: status and reason; broken ones also case and method."""
+    is_skip = answer.status is Status.SKIP
+    return answer.status, answer.reason, "" if is_skip else answer.case, "" if is_skip else answer.method
+
+
+def _skip_reason(verdict: Verdict) -> str:
+    """Why a verdict was skipped, without the method's name before it."""
+    method, _, reason = verdict.message.partition(": ")
+    return reason if method in verdict.methods else verdict.message
+
+
+def _unanswered(run: Run) -> list[Answer]:
+    return [answer for answer in run.answers if not answer.variant and answer.status is not Status.PASS]
 
 
 def size_text(errors: Sequence[float]) -> str:
@@ -220,27 +238,6 @@ def size_text(errors: Sequence[float]) -> str:
     if max(errors) - min(errors) <= 2 * ALIKE * abs(median(errors)):
         return f"{signed(median(errors))} each"
     return f"{signed(min(errors))} to {signed(max(errors))}"
-
-
-def _unanswered(run: Run) -> list[Answer]:
-    return [answer for answer in run.answers if not answer.variant and answer.status is not Status.PASS]
-
-
-def _reason(answer: Answer) -> tuple[str, ...]:
-    """Key that answers of one finding share: status and reason; broken ones also method and case."""
-    place = () if answer.status is Status.SKIP else (answer.case, answer.method)
-    return answer.status.value, answer.reason, *place
-
-
-def _of_answers(same: Sequence[Answer]) -> Finding:
-    claim = "not modelled" if same[0].status is Status.SKIP else "no answer"
-    return _finding(same, claim, same[0].reason, methods=dict.fromkeys(answer.method for answer in same))
-
-
-def _skip_reason(verdict: Verdict) -> str:
-    """Why a verdict was skipped, without the method's name before it."""
-    method, _, reason = verdict.message.partition(": ")
-    return reason if method in verdict.methods else verdict.message
 
 
 def counts(run: Run) -> tuple[tuple[Status, int], ...]:
@@ -284,11 +281,6 @@ def _unjudged(run: Run) -> list[str]:
     ]
 
 
-def nothing_ran(run: Run) -> bool:
-    """Whether a run has neither a check that was carried out nor a measurement."""
-    return not run.judged.costs and all(status is Status.SKIP for status in run.statuses)
-
-
 def baseline_sentence(run: Run) -> str:
     """Sentence with the number of accepted numbers that changed."""
     compared = [v for v in run.judged.verdicts if v.kind is Kind.REGRESSION]
@@ -310,40 +302,30 @@ def causes(run: Run) -> list[str]:
     sentences = []
     for method in dict.fromkeys(label for v in judged for label in v.methods):
         by_quantity = grouped((v for v in judged if method in v.methods), lambda v: v.quantity)
-        wrong = {name: _contradicted(method, verdicts) for name, verdicts in by_quantity.items()}
         right = [name for name, verdicts in by_quantity.items() if all(v.status is Status.PASS for v in verdicts)]
-        sentences += [_cause(method, name, errors, right) for name, errors in wrong.items() if errors]
+        for name, verdicts in by_quantity.items():
+            partners = grouped(verdicts, partial(_partner, method))
+            errors = {partner: _failing_errors(method, same) for partner, same in partners.items()}
+            if all(errors.values()) and (len(errors) > 1 or any(v.kind is Kind.EXACT for v in verdicts)):
+                sentences.append(_cause(method, name, errors, right))
     return sentences
 
 
-# Signed relative errors by comparison partner.
-Errors = dict[str, list[float]]
-
-
-def _contradicted(method: str, verdicts: Sequence[Verdict]) -> Errors:
-    """Signed failing errors of the method by partner; empty unless all partners, two or an exact one, contradict it."""
-    partners = grouped(verdicts, lambda v: _partner(method, v))
-    failing: Errors = {}
-    for partner, same in partners.items():
-        failed = [v for v in same if v.status is Status.FAIL]
-        signs = [-1.0 if v.kind is Kind.AGREEMENT and v.methods[0] != method else 1.0 for v in failed]
-        errors = [
-            sign * error for sign, v in zip(signs, failed, strict=True) if (error := relative_error(v)) is not None
-        ]
-        if not errors:
-            return {}
-        failing[partner] = errors
-    exact = any(v.kind is Kind.EXACT for v in verdicts)
-    return failing if exact or len(failing) > 1 else {}
+def _failing_errors(method: str, verdicts: Sequence[Verdict]) -> list[float]:
+    """Signed relative errors of the method where it fails; of a difference the sign is that of the other method."""
+    failed = [v for v in verdicts if v.status is Status.FAIL and relative_error(v) is not None]
+    signs = (-1.0 if v.kind is Kind.AGREEMENT and v.methods[0] != method else 1.0 for v in failed)
+    return [sign * (relative_error(v) or 0.0) for sign, v in zip(signs, failed, strict=True)]
 
 
 def _partner(method: str, verdict: Verdict) -> str:
+    """Other method or kind of reference that the method is compared with."""
     if verdict.kind is Kind.EXACT:
         return verdict.why.origin.value
     return next((display_name(other) for other in verdict.methods if other != method), "itself")
 
 
-def _cause(method: str, quantity: str, errors: Errors, right: Sequence[str]) -> str:
+def _cause(method: str, quantity: str, errors: Mapping[str, Sequence[float]], right: Sequence[str]) -> str:
     """Sentence about a wrong quantity of a method: partners, errors, a common factor, and where to look."""
     all_errors = [error for same in errors.values() for error in same]
     *others, last = errors

@@ -55,9 +55,7 @@ def write_report(run: Run, directory: Path, *, single_file: bool = False) -> Pat
     with figure_style():
         pictures = {case.name: _placed(of_case(run, case), directory) for case in cases}
         answered = zip(QUESTIONS, (_agreement(run), _cost(run), _breakdown(run)), front(run), strict=True)
-        questions = [
-            (question, words, _placed([picture] if picture else [], directory)) for question, words, picture in answered
-        ]
+        questions = [(question, words, _placed(drawn, directory)) for question, words, drawn in answered]
     judged = grouped(run.judged.verdicts, lambda verdict: verdict.case)
     common = {"run": run, "pictures": pictures, "names": set(pictures), "judged_of": judged}
     for case in () if single_file else cases:

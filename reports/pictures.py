@@ -22,6 +22,7 @@ from contact import (
 from contact.records.validation import FloatArray
 from reports.answer import GIVEN
 from reports.answer_plot import draw
+from reports.inside import draw_inside  # noqa: F401 - drawn like the others, by its name
 from reports.style import mark_decades, panels
 from reports.words import scaled_column
 

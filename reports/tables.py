@@ -26,6 +26,8 @@ from reports.words import (
 
 # Accuracies that tables of costs show.
 SHOWN = (1e-2, 1e-4, 1e-6, 1e-8)
+# Method whose times are compared with those of the others.
+FAST = "mdr"
 # Accuracies at which a page says whether an effect may be left out.
 DROPPED_AT = (1e-1, 1e-2, 1e-4)
 
@@ -159,14 +161,14 @@ def timed_methods(cost: CostOfAccuracy) -> dict[str, list[Point]]:
     return grouped((point for point in cost.points if point.bound), lambda point: point.method)
 
 
-def shortest_times(run: Run, fast: str = "mdr") -> Table | None:
-    """T*(tau) of every timed scene, quantity and method, and how much faster the fast method is."""
+def shortest_times(run: Run) -> Table | None:
+    """T*(tau) of every timed scene, quantity and method, and how much faster MDR is."""
     rows = []
     for cost in run.judged.costs:
         points = timed_methods(cost)
         for method, timed in points.items():
             times = (_shortest(timed, tau) for tau in SHOWN)
-            faster = _speed_up(points.get(fast, []), timed) if method != fast else ""
+            faster = _speed_up(points.get(FAST, []), timed) if method != FAST else ""
             rows.append((cost.case, quantity_words(cost.quantity), display_name(method), *times, faster))
     if not rows:
         return None
@@ -175,7 +177,7 @@ def shortest_times(run: Run, fast: str = "mdr") -> Table | None:
         note="Shortest measured time T* with bound U (error plus error of the reference) within the accuracy; nothing "
         "is interpolated. In brackets, the first solution with the same setting, which prepares flat-punch data or "
         "meshes that later ones reuse. Where an accuracy was not reached, the best U.",
-        heads=("case", "quantity", "method", *map(percent, SHOWN), f"{display_name(fast)} is faster"),
+        heads=("case", "quantity", "method", *map(percent, SHOWN), f"{display_name(FAST)} is faster"),
         rows=tuple(rows),
         words=3,
     )
@@ -292,7 +294,7 @@ def stress_tests(tests: Sequence[StressTest]) -> Table | None:
             "method": lambda test: display_name(test.method),
             "parameter": lambda test: test.parameter,
             "end": end_of,
-            "why it stopped": _why_stopped,
+            "why it stopped": lambda test: next((step.reason for step in test.steps[completed(test) :]), ""),
             "fewest digits": fewest_digits,
             "residual": lambda test: small(max((r for s in test.steps for r in s.residuals.values()), default=0.0)),
         },
@@ -301,11 +303,6 @@ def stress_tests(tests: Sequence[StressTest]) -> Table | None:
         "of mechanics there, independent answers and stated errors included.",
         words=5,
     )
-
-
-def _why_stopped(test: StressTest) -> str:
-    number = completed(test)
-    return test.steps[number].reason if number < len(test.steps) else ""
 
 
 def effects(parts: Sequence[Effect]) -> Table | None:

@@ -8,6 +8,7 @@ from threading import Timer
 from typing import Any
 
 from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 from rich.table import Table as RichTable
 from rich.text import Text
 
@@ -74,8 +75,6 @@ def progress_bar(what: str, on: Terminal | None = None, *, hidden: bool = False)
     if hidden or not terminal.is_terminal:
         yield lambda *_: None
         return
-    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn  # noqa: PLC0415
-
     columns = TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn(), TimeRemainingColumn()
     bar = Progress(*columns, console=terminal, transient=True)
     task = bar.add_task(what, total=None)

@@ -1,20 +1,17 @@
-"""Arrays of an answer with their stated errors. Non-finite numbers are refused."""
+"""Quantities of answers with symbols and units, and stated errors. Non-finite numbers are refused."""
 
 from __future__ import annotations
 
-import typing
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import Annotated, Any, ClassVar, TypeAlias
+from typing import Annotated, Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from contact.answer.one_thread import one_thread
-from contact.answer.stages import Cost, StageRecord
-from contact.records.errors import InvalidInput, NotConvergedError
+from contact.records.errors import NotConvergedError
 from contact.records.validation import FloatArray
-from contact.scene.scene import Scene
 
 Setting: TypeAlias = bool | int | float | str | None
 SYMBOLS: dict[str, str] = {}
@@ -81,86 +78,6 @@ class StatedErrors(Mapping[str, FloatArray]):
     def __reduce__(self) -> tuple[type[StatedErrors], tuple[dict[str, FloatArray], str]]:
         """Pickle the computed values, since functions cannot be pickled."""
         return StatedErrors, (dict(self), self._method)
-
-
-@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class Evidence:
-    """Numbers of an answer with scene, method, settings, stated errors and cost.
-
-    Subclasses annotate their arrays and numbers with a `Quantity`.
-    """
-
-    ARRAYS: ClassVar[tuple[str, ...]] = ()
-    """Fields with one value per state, shape (n,)."""
-    SCALARS: ClassVar[tuple[str, ...]] = ()
-    """Fields with one value per answer."""
-
-    scene: Scene
-    method: str
-    settings: Mapping[str, Setting]
-    error_estimate: Mapping[str, FloatArray]
-    cost: Cost
-    stages: tuple[StageRecord, ...] = ()
-    notes: tuple[str, ...] = ()
-
-    def __init_subclass__(cls) -> None:
-        """Register the annotated arrays and numbers of the subclass with their symbols and units."""
-        for name, hint in cls.__annotations__.items():
-            if isinstance(quantity := (*getattr(hint, "__metadata__", ()), None)[0], Quantity):
-                UNITS[name] = quantity.unit
-                if typing.get_args(hint)[0] is float:
-                    cls.SCALARS += (name,)
-                else:
-                    cls.ARRAYS += (name,)
-                    SYMBOLS[name] = quantity.symbol
-
-    def __post_init__(self) -> None:
-        """Freeze the arrays; refuse non-finite numbers and unequal lengths."""
-        for name in self.ARRAYS:
-            object.__setattr__(self, name, finite(name, getattr(self, name), self.method))
-        lengths = {name: len(getattr(self, name)) for name in self.ARRAYS}
-        if len(set(lengths.values())) > 1:
-            raise InvalidInput(f"{type(self).__name__}: all arrays need one length, got {lengths}")
-        for name in self.SCALARS:
-            finite(name, getattr(self, name), self.method)
-        object.__setattr__(self, "error_estimate", StatedErrors(self.error_estimate, self.method))
-
-    def __len__(self) -> int:
-        """Number of states."""
-        return len(getattr(self, self.ARRAYS[0]))
-
-    def scale(self, quantity: str) -> FloatArray:
-        """Magnitude to which a relative error of this quantity refers, shape (n,): the largest |q| along the path.
-
-        The scale of a residual in `error_estimate`, which is no quantity of the answer, is one.
-        """
-        values = self._magnitude(quantity)
-        return np.full(values.shape, values.max(initial=0.0))
-
-    def _magnitude(self, quantity: str) -> FloatArray:
-        """|q|, shape (n,); one, shape (1,), if the answer has no quantity of this name."""
-        return np.abs(np.atleast_1d(np.asarray(getattr(self, quantity, 1.0), dtype=np.float64)))
-
-    def uncertainty(self, quantity: str) -> FloatArray:
-        """Absolute stated error of a quantity in its SI unit, shape (n,).
-
-        Raises:
-            InvalidInput: If the method states no error for this quantity.
-        """
-        if quantity not in self.error_estimate:
-            known = ", ".join(sorted(self.error_estimate)) or "none"
-            raise InvalidInput(f"{self.method} states no error of {quantity!r}; it does for: {known}")
-        return self.error_estimate[quantity] * self.scale(quantity)
-
-    def refuse_step(self, step: int) -> None:
-        """Refuse an index of a state that the answer does not have.
-
-        Raises:
-            InvalidInput: If the index is no whole number, or outside the states.
-        """
-        is_whole = isinstance(step, int | np.integer) and not isinstance(step, bool)
-        if not (is_whole and -len(self) <= step < len(self)):
-            raise InvalidInput(f"step = {step}: this path has steps 0 to {len(self) - 1}")
 
 
 def finite(name: str, values: ArrayLike, method: str) -> FloatArray:

@@ -177,9 +177,14 @@ class Inside:
             raise InvalidInput(f"largest({what!r}): choose 'von_mises' or 'interface_shear'")
         faces, a, thickness = self._faces, self.contact_radius, self.scene.layer.thickness
         if what == "von_mises":
-            self._refuse_infinite_maximum()
+            edges = self._edges
+            if edges and (edges[-1] == a or self.scene.layer.surface.poissons_ratio < 0.5):
+                raise InvalidInput(
+                    f'largest("von_mises"): it is infinite at the sharp edge r = {edges[-1]:g} m of the surface; use '
+                    "at(radius, depth) at points of interest"
+                )
             # Below a sharp edge of the incompressible surface only von Mises stresses are finite.
-            top, deepest = _BELOW_EDGES * a if self._edges else 0.0, min(thickness, 4.0 * a)
+            top, deepest = _BELOW_EDGES * a if edges else 0.0, min(thickness, 4.0 * a)
             inner = [d for d in faces if top < d < deepest]
             depths = [*np.linspace(top, deepest, _SAMPLES), *inner, *(d * (1.0 + _BELOW) for d in inner)]
             return _largest(np.linspace(0.0, 1.5 * a, _SAMPLES), depths, lambda r, z: self.fields.at(r, z).von_mises)
@@ -207,15 +212,6 @@ class Inside:
         edges = [*tip, *(kink for kink in indenter.kinks if kink < a)]
         adheres = adhesion is not None and adhesion.work_of_adhesion > 0.0
         return [*edges, a] if isinstance(indenter, FlatPunch) or adheres or self.singular_edge else edges
-
-    def _refuse_infinite_maximum(self) -> None:
-        """Refuse a contact at a sharp edge of which the von Mises stress is infinite."""
-        edges = self._edges
-        if edges and (edges[-1] == self.contact_radius or self.scene.layer.surface.poissons_ratio < 0.5):
-            raise InvalidInput(
-                f'largest("von_mises"): it is infinite at the sharp edge r = {edges[-1]:g} m of the surface; use '
-                "at(radius, depth) at points of interest"
-            )
 
 
 _FIELDS = [field.name for field in fields(InsideFields) if field.name != "error_estimate"]

@@ -11,6 +11,8 @@ from functools import cache
 from threading import Lock
 from typing import Any
 
+from threadpoolctl import ThreadpoolController  # type: ignore[import-untyped]  # ships no types
+
 
 class OneThread(ContextDecorator):
     """Context and decorator: every loaded BLAS computes on one thread until the last context is left.
@@ -46,8 +48,6 @@ class OneThread(ContextDecorator):
 @cache
 def _loaded_libraries(with_scipy: bool) -> tuple[Any, ...]:
     """The BLAS libraries of this process, determined once before and once after SciPy has loaded its own."""
-    from threadpoolctl import ThreadpoolController  # type: ignore[import-untyped]  # noqa: PLC0415 - ships no types
-
     return tuple(ThreadpoolController().select(user_api="blas").lib_controllers)
 
 

@@ -1,7 +1,6 @@
 """The kinds of answers: equilibria, a detachment, a history in time, an impact."""
 
 import dataclasses
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -24,7 +23,7 @@ from contact.answer.evidence import (
 )
 from contact.answer.inside import Inside, InteriorFields, KnownContact
 from contact.answer.one_thread import one_thread
-from contact.answer.solution import Solution
+from contact.answer.solution import SampledFields, Solution
 from contact.records.errors import InvalidInput, UnsupportedSceneError
 from contact.records.validation import FloatArray
 from contact.scene.effects import Adhesion
@@ -59,39 +58,6 @@ class InstantFields(Protocol):
 
     def inside(self, step: int) -> InteriorFields:
         """Fields at an instant of contact; their `singular_edge` is True if the pressure at the edge is infinite."""
-
-
-@dataclass(frozen=True)
-class SampledFields:
-    """Surface fields at stored radii; other radii are refused, since interpolation would have an unknown error.
-
-    Attributes:
-        radius: Stored radii r [m], shape (m,) or (n, m): m radii for each of n steps, increasing.
-        pressures: Pressure p [Pa], shape (n, m).
-        displacements: Surface displacement w [m], shape (n, m).
-    """
-
-    radius: FloatArray
-    pressures: FloatArray
-    displacements: FloatArray
-
-    def pressure(self, radius: FloatArray, step: int) -> FloatArray:
-        """Pressure p [Pa] at stored radii [m]."""
-        return self._at(self.pressures, radius, step)
-
-    def surface_displacement(self, radius: FloatArray, step: int) -> FloatArray:
-        """Surface displacement w [m] at stored radii [m]."""
-        return self._at(self.displacements, radius, step)
-
-    def _at(self, values: FloatArray, radius: FloatArray, step: int) -> FloatArray:
-        """Entries of ``values`` (n, m) of one step at stored radii."""
-        stored = np.broadcast_to(self.radius, values.shape)[step]
-        places = np.minimum(np.searchsorted(stored, radius), stored.size - 1)
-        missing = radius[stored[places] != radius]
-        if missing.size:
-            reason = f"not among the {stored.size} stored radii; solve the scene again"
-            raise InvalidInput(f"radius = {missing[0]:.17g}: {reason}")
-        return np.asarray(values[step, places])
 
 
 @one_thread
@@ -133,13 +99,6 @@ class ContactPath(Solution):
     """
 
     OFFERS: ClassVar[tuple[str, ...]] = ("pressure(radius, step)", "surface_displacement(radius, step)")
-    ACCURACY_OF: ClassVar[tuple[str, ...]] = (
-        "contact_radius",
-        "indentation_depth",
-        "normal_force",
-        "contact_stiffness",
-    )
-
     contact_radius: Radii
     indentation_depth: Depths
     normal_force: Forces
@@ -243,14 +202,6 @@ class ContactPath(Solution):
         stored = SampledFields(r, pressures, displacements)
         return super(ContactPath, dataclasses.replace(self, fields=stored)).save(path)
 
-    def _tree(self) -> dict[str, Any]:
-        stored = {"fields": vars(self.fields)} if isinstance(self.fields, SampledFields) else {}
-        return super()._tree() | stored
-
-    @classmethod
-    def _further(cls, tree: Mapping[str, Any]) -> dict[str, Any]:
-        return {"fields": SampledFields(**tree["fields"])} if "fields" in tree else {}
-
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class FrictionPath(ContactPath):
@@ -288,8 +239,6 @@ class ForcePath(Solution):
         normal_force: Normal force F_N [N], shape (n,).
         contact_stiffness: Stiffness dF/d(delta) [N/m], shape (n,).
     """
-
-    ACCURACY_OF: ClassVar[tuple[str, ...]] = ("indentation_depth", "normal_force", "contact_stiffness")
 
     indentation_depth: Depths
     normal_force: Forces
@@ -337,6 +286,7 @@ class DetachmentPath(Solution):
     """
 
     CURVE_ALONE: ClassVar[bool] = True
+    RECORDS: ClassVar[Mapping[str, type[Any]]] = {"critical_points": CriticalPoint}
     OFFERS: ClassVar[tuple[str, ...]] = ("critical_points", "stable_displacement_control", "stable_force_control")
 
     contact_radius: Radii
@@ -349,17 +299,6 @@ class DetachmentPath(Solution):
     pull_off_contact_radius: Length
     force_at_loss: Force
     critical_points: tuple[CriticalPoint, ...] = ()
-
-    def _tree(self) -> dict[str, Any]:
-        points = [dataclasses.asdict(point) for point in self.critical_points]
-        return super()._tree() | {"critical_points": json.dumps(points)}
-
-    @classmethod
-    def _further(cls, tree: Mapping[str, Any]) -> dict[str, Any]:
-        return {"critical_points": tuple(CriticalPoint(**point) for point in json.loads(tree["critical_points"]))}
-
-
-DetachmentPath.ACCURACY_OF = (*DetachmentPath.ARRAYS, *DetachmentPath.SCALARS)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)

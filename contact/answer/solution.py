@@ -12,11 +12,11 @@ from dataclasses import dataclass
 from html import escape
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar, Final, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Final, Self, get_args
 
 import numpy as np
 
-from contact.answer.evidence import UNITS, Evidence, Setting, StatedErrors
+from contact.answer.evidence import SYMBOLS, UNITS, Quantity, Setting, StatedErrors, finite
 from contact.answer.inside import Inside
 from contact.answer.stages import Cost, StageRecord
 from contact.files.scene_file import scene_from_mapping, scene_to_mapping
@@ -43,9 +43,42 @@ _SCHEMA: Final = "contact-verification/solution/2"
 _READABLE: Final = (_SCHEMA, "contact-verification/solution/1")
 
 
+@dataclass(frozen=True)
+class SampledFields:
+    """Surface fields at stored radii; other radii are refused, since interpolation would have an unknown error.
+
+    Attributes:
+        radius: Stored radii r [m], shape (m,) or (n, m): m radii for each of n steps, increasing.
+        pressures: Pressure p [Pa], shape (n, m).
+        displacements: Surface displacement w [m], shape (n, m).
+    """
+
+    radius: FloatArray
+    pressures: FloatArray
+    displacements: FloatArray
+
+    def pressure(self, radius: FloatArray, step: int) -> FloatArray:
+        """Pressure p [Pa] at stored radii [m]."""
+        return self._at(self.pressures, radius, step)
+
+    def surface_displacement(self, radius: FloatArray, step: int) -> FloatArray:
+        """Surface displacement w [m] at stored radii [m]."""
+        return self._at(self.displacements, radius, step)
+
+    def _at(self, values: FloatArray, radius: FloatArray, step: int) -> FloatArray:
+        """Entries of ``values`` (n, m) of one step at stored radii."""
+        stored = np.broadcast_to(self.radius, values.shape)[step]
+        places = np.minimum(np.searchsorted(stored, radius), stored.size - 1)
+        missing = radius[stored[places] != radius]
+        if missing.size:
+            reason = f"not among the {stored.size} stored radii; solve the scene again"
+            raise InvalidInput(f"radius = {missing[0]:.17g}: {reason}")
+        return np.asarray(values[step, places])
+
+
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class Solution(Evidence):
-    """Base of every answer.
+class Solution:
+    """Base of every answer. Subclasses annotate their arrays and numbers with a `Quantity`.
 
     Attributes:
         scene: The problem that was solved.
@@ -57,12 +90,86 @@ class Solution(Evidence):
         notes: Limits of validity and accuracy, one sentence each.
     """
 
+    ARRAYS: ClassVar[tuple[str, ...]] = ()
+    """Fields with one value per state, shape (n,)."""
+    SCALARS: ClassVar[tuple[str, ...]] = ()
+    """Fields with one value per answer."""
+    RECORDS: ClassVar[Mapping[str, type[Any]]] = {}
+    """Fields with any number of records, by name with the class of the records."""
     CURVE_ALONE: ClassVar[bool] = False
     """Whether the method chooses the states: they are drawn as a line without points."""
     OFFERS: ClassVar[tuple[str, ...]] = ()
     """Further methods and fields of the answer in its `repr`."""
     ACCURACY_OF: ClassVar[tuple[str, ...]] = ()
-    """Quantities to which a required accuracy applies."""
+    """Quantities to which a required accuracy applies; by default all arrays and numbers of a kind of answer."""
+
+    scene: Scene
+    method: str
+    settings: Mapping[str, Setting]
+    error_estimate: Mapping[str, FloatArray]
+    cost: Cost
+    stages: tuple[StageRecord, ...] = ()
+    notes: tuple[str, ...] = ()
+
+    def __init_subclass__(cls) -> None:
+        """Register the annotated arrays and numbers of the subclass with their symbols and units."""
+        for name, hint in cls.__annotations__.items():
+            if isinstance(quantity := (*getattr(hint, "__metadata__", ()), None)[0], Quantity):
+                UNITS[name] = quantity.unit
+                if get_args(hint)[0] is float:
+                    cls.SCALARS += (name,)
+                else:
+                    cls.ARRAYS += (name,)
+                    SYMBOLS[name] = quantity.symbol
+        cls.ACCURACY_OF = cls.ACCURACY_OF or (*cls.ARRAYS, *cls.SCALARS)
+
+    def __post_init__(self) -> None:
+        """Freeze the arrays; refuse non-finite numbers and unequal lengths."""
+        for name in self.ARRAYS:
+            object.__setattr__(self, name, finite(name, getattr(self, name), self.method))
+        lengths = {name: len(getattr(self, name)) for name in self.ARRAYS}
+        if len(set(lengths.values())) > 1:
+            raise InvalidInput(f"{type(self).__name__}: all arrays need one length, got {lengths}")
+        for name in self.SCALARS:
+            finite(name, getattr(self, name), self.method)
+        object.__setattr__(self, "error_estimate", StatedErrors(self.error_estimate, self.method))
+
+    def __len__(self) -> int:
+        """Number of states."""
+        return len(getattr(self, self.ARRAYS[0]))
+
+    def scale(self, quantity: str) -> FloatArray:
+        """Magnitude to which a relative error of this quantity refers, shape (n,): the largest |q| along the path.
+
+        The scale of a residual in `error_estimate`, which is no quantity of the answer, is one.
+        """
+        values = self._magnitude(quantity)
+        return np.full(values.shape, values.max(initial=0.0))
+
+    def _magnitude(self, quantity: str) -> FloatArray:
+        """|q|, shape (n,); one, shape (1,), if the answer has no quantity of this name."""
+        return np.abs(np.atleast_1d(np.asarray(getattr(self, quantity, 1.0), dtype=np.float64)))
+
+    def uncertainty(self, quantity: str) -> FloatArray:
+        """Absolute stated error of a quantity in its SI unit, shape (n,).
+
+        Raises:
+            InvalidInput: If the method states no error for this quantity.
+        """
+        if quantity not in self.error_estimate:
+            known = ", ".join(sorted(self.error_estimate)) or "none"
+            raise InvalidInput(f"{self.method} states no error of {quantity!r}; it does for: {known}")
+        return self.error_estimate[quantity] * self.scale(quantity)
+
+    def refuse_step(self, step: int) -> None:
+        """Refuse an index of a state that the answer does not have.
+
+        Raises:
+            InvalidInput: If the index is no whole number, or outside the states.
+        """
+        is_whole = isinstance(step, int | np.integer) and not isinstance(step, bool)
+        if not (is_whole and -len(self) <= step < len(self)):
+            raise InvalidInput(f"step = {step}: this path has steps 0 to {len(self) - 1}")
 
     def inside(self, step: int = 0) -> Inside:
         """Fields inside the layer at one step; answers with such fields override it.
@@ -194,8 +301,8 @@ class Solution(Evidence):
         texts = {
             "scene": scene_to_mapping(self.scene),
             "cost": dataclasses.asdict(self.cost),
-            "stages": [dataclasses.asdict(stage) for stage in self.stages],
             "notes": self.notes,
+            **{name: [dataclasses.asdict(record) for record in getattr(self, name)] for name in self._records()},
         }
         return {
             "schema": _SCHEMA,
@@ -205,6 +312,7 @@ class Solution(Evidence):
             "error_estimate": dict(self.error_estimate),
             "arrays": {name: value for name, value in vars(self).items() if isinstance(value, np.ndarray | float)},
             **{name: json.dumps(text) for name, text in texts.items()},
+            **({"fields": vars(fields)} if isinstance(fields := getattr(self, "fields", None), SampledFields) else {}),
         }
 
     @classmethod
@@ -243,16 +351,16 @@ class Solution(Evidence):
             settings=tree["settings"],
             error_estimate=tree["error_estimate"],
             cost=Cost(**json.loads(tree["cost"])),
-            stages=tuple(StageRecord(**stage) for stage in json.loads(tree["stages"])),
             notes=tuple(json.loads(tree["notes"])),
+            **{name: tuple(made(**r) for r in json.loads(tree[name])) for name, made in kind._records().items()},
             **tree["arrays"],
-            **kind._further(tree),
+            **({"fields": SampledFields(**tree["fields"])} if "fields" in tree else {}),
         )
 
     @classmethod
-    def _further(cls, tree: Mapping[str, Any]) -> dict[str, Any]:
-        """Fields of this kind of answer that are no arrays, from the entries of its file."""
-        return {}
+    def _records(cls) -> dict[str, type[Any]]:
+        """Fields that hold records, the stages among them, with the classes of the records."""
+        return {"stages": StageRecord, **cls.RECORDS}
 
 
 def _subclasses(cls: type[Any]) -> list[type[Any]]:

@@ -10,6 +10,8 @@ from pydantic_core import PydanticCustomError
 
 # Largest number of characters of an offending value in a message: about one line of a terminal.
 SHOWN = 80
+# Categories of characters that move the cursor, change the direction of reading, or are no characters at all.
+ACTING = frozenset({"Cc", "Cf", "Co", "Cs", "Zl", "Zp"})
 # Type of a validation error with one line per part of a value.
 OF_PARTS = "of_parts"
 
@@ -18,13 +20,8 @@ def printable(text: str, *, keep: str = "") -> str:
     r"""The text with control, format and surrogate characters as escapes, such as ``\x1b``; `keep` names exceptions."""
     if text.isprintable():
         return text
-    return "".join(c if c in keep or not _acts(c) else c.encode("unicode_escape").decode("ascii") for c in text)
-
-
-def _acts(character: str) -> bool:
-    """Whether a character moves the cursor, changes the direction of reading, or is no character at all."""
-    category = unicodedata.category(character)
-    return category in ("Zl", "Zp") or (category.startswith("C") and category != "Cn")
+    acts = (c not in keep and unicodedata.category(c) in ACTING for c in text)
+    return "".join(ascii(c)[1:-1] if act else c for c, act in zip(text, acts, strict=True))
 
 
 def shown(value: object) -> str:

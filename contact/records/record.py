@@ -307,8 +307,7 @@ def _lines(place: str, detail: dict[str, Any], *, in_file: bool, is_whole: bool)
     message = detail["msg"].removeprefix("Value error, ")
     if kind == "dataclass_type" or (kind == "is_instance_of" and in_file):
         message = f"must be a table of named values; write [{place}]"
-    if kind == "tuple_type":
-        message = "must be a list"
+    message = {"tuple_type": "must be a list", "bool_type": "must be true or false"}.get(kind, message)
     whole = (is_whole and in_file) or isinstance(value, ArgsKwargs | Record)
     return [f"{place}: {message}" if whole else f"{place} = {shown(value)}: {message}"]
 

@@ -8,6 +8,7 @@ import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 from decimal import Decimal
+from types import ModuleType
 from typing import TYPE_CHECKING, Any, Final
 
 from contact.records.errors import InvalidInput, shown
@@ -82,19 +83,18 @@ def factor_of(written: str, unit: str) -> Decimal:
     import pint  # noqa: PLC0415
 
     try:
-        return Decimal(_registry().Quantity(Decimal(1), written).to(unit).magnitude)
+        return Decimal(_registry(pint).Quantity(Decimal(1), written).to(unit).magnitude)
     except pint.UndefinedUnitError:
         raise InvalidInput(f"the unit {shown(written)} is not known, {remedy}") from None
     except (pint.PintError, ValueError, ArithmeticError, TypeError):
         raise InvalidInput(remedy) from None
 
 
-@functools.lru_cache(maxsize=1)
-def _registry() -> UnitRegistry[Decimal]:
+@functools.cache
+def _registry(pint: ModuleType) -> UnitRegistry[Decimal]:
     """Units of pint with decimal numbers, so that 5 um is the double closest to 5e-6."""
-    import pint  # noqa: PLC0415  # see `factor_of`
-
-    return pint.UnitRegistry(non_int_type=Decimal)
+    registry: UnitRegistry[Decimal] = pint.UnitRegistry(non_int_type=Decimal)
+    return registry
 
 
 def prefix_for(values: Iterable[float]) -> tuple[float, str]:

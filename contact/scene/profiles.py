@@ -123,10 +123,7 @@ class Sloped(Profile):
 class Pointed(Profile):
     """A profile without a flat end."""
 
-    @property
-    def flat_radius(self) -> float:
-        """Radius [m] of the flat end, which is zero."""
-        return 0.0
+    flat_radius = 0.0
 
 
 class FlatPunch(Profile):

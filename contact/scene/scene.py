@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Annotated, Any, Generic, Self, TypeAlias, overload
 
 import numpy as np
-from pydantic import AfterValidator, BeforeValidator, field_validator, model_validator
+from pydantic import AfterValidator, BeforeValidator, StrictBool, field_validator, model_validator
 from typing_extensions import TypeVar
 
 from contact.records.record import OneOf, Record
@@ -29,13 +29,6 @@ L = TypeVar("L", bound=Loading)
 LoadingT_co = TypeVar("LoadingT_co", bound=Loading, default=Loading, covariant=True)
 # Type of the layer; `Scene` without parameters has a `Layer`.
 LayerT_co = TypeVar("LayerT_co", bound=ElasticLayer, default=Layer, covariant=True)
-
-
-def _truth(value: object) -> object:
-    """The value, if it is True or False; else a ValueError."""
-    if not isinstance(value, bool):
-        raise ValueError("must be true or false")
-    return value
 
 
 def _listed(effects: Any) -> Any:
@@ -74,7 +67,7 @@ class Scene(Record, Generic[LoadingT_co, LayerT_co]):
         indenter: Annotated[Profile, OneOf(*PROFILES, *SHAPES)]
         loading: Annotated[Loading, OneOf(*LOADINGS)]
         effects: Annotated[tuple[Annotated[Effect, OneOf(*EFFECTS)], ...], BeforeValidator(_listed)] = ()
-    beyond_small_strains: Annotated[bool, BeforeValidator(_truth)] = False
+    beyond_small_strains: StrictBool = False
 
     def effect(self, kind: type[E]) -> E | None:
         """The effect of this kind, or None."""

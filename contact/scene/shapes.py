@@ -137,15 +137,7 @@ class EllipticParaboloid(Raised):
     first_radius: PositiveLength
     second_radius: PositiveLength
 
-    @property
-    def symmetry(self) -> int:
-        """Two equal halves."""
-        return 2
-
-    @property
-    def orders(self) -> tuple[int, ...]:
-        """The single order of cos(2 phi)."""
-        return (2,)
+    symmetry, orders = 2, (2,)
 
     @property
     def mean(self) -> Paraboloid:
@@ -240,10 +232,7 @@ class Averaged(Pointed):
         """Breakpoints of the shape [m]."""
         return self.shape.breakpoints
 
-    @property
-    def is_convex(self) -> bool:
-        """True, since the profile is convex in every direction."""
-        return True
+    is_convex = True  # as in every direction
 
 
 class Harmonic(Record):
@@ -384,10 +373,7 @@ class EllipticPunch(Flat):
     first_half_axis: PositiveLength
     second_half_axis: PositiveLength
 
-    @property
-    def symmetry(self) -> int:
-        """Two equal halves."""
-        return 2
+    symmetry = 2
 
     def outline(self, angle: ArrayLike) -> FloatArray:
         """Outline a(phi) = A B/sqrt(B^2 cos^2(phi) + A^2 sin^2(phi)) [m]."""

@@ -5,7 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from cases.answers import Answer, Table
+from cases.answers import Table
 from cases.case import Case
 from cases.declare.registry import load_cases, select
 from cases.foreign import with_registered
@@ -65,11 +65,7 @@ def _gated(run: Run, baselines: Path, methods: Collection[str]) -> Run:
     unwatched = {(case.name, *place) for case in load_cases().values() for place in case.nightly_only()}
     if run.judged.suite == "nightly":
         unwatched -= {(a.case, a.scene, a.method) for baseline in accepted for a in baseline.answers}
-
-    def watched(answer: Answer) -> bool:
-        return (answer.case, answer.scene, answer.method) not in unwatched
-
-    return gate(run, accepted, methods=methods, watched=watched)
+    return gate(run, accepted, methods=methods, watched=lambda a: (a.case, a.scene, a.method) not in unwatched)
 
 
 def accept_cases(*, names: list[str], directory: Path, baselines: Path, **options: Any) -> None:

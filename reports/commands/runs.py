@@ -2,7 +2,7 @@
 
 import dataclasses
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -25,11 +25,11 @@ from contact.records.extras import missing_extra
 from reports import comparison
 from reports.book import claim_table, method_table, scene_table
 from reports.ci import annotation_lines, junit_text, summary_text
-from reports.findings import causes, findings, headline, nothing_ran, tone_of, who
+from reports.findings import causes, findings, headline, tone_of, who
 from reports.progress import run_progress
 from reports.tables import matrix_table, shortest_times, stress_tests
 from reports.terminal import STYLES, console, progress_bar, show_table
-from reports.words import Table, display_name
+from reports.words import tabulated
 
 # Method with which methods of installed packages are compared when no other one is named.
 REFERENCE = "mdr"
@@ -69,11 +69,9 @@ def run(
     if listed:
         return list_cases(names, suite)
     run_options = RunOptions(suite=suite, methods=tuple(dict.fromkeys((*methods, *others))), **options)
-    if only == "stability":
-        return stress(names, methods, run_options, quiet=quiet)
-    if only == "cost":
-        return cost(names, run_options, methods=methods, settings=settings, quiet=quiet)
     values = read_settings(settings, methods)
+    if only:
+        return measure(only, names, methods, values, run_options, quiet=quiet)
     cases = [with_settings(case, values) for case in _cases(names, methods, others, suite)]
     result = _solved(cases, dataclasses.replace(run_options, executor=by_name(executor)), quiet=quiet)
     show_verdict(result, page_of(run_options.out), quiet=quiet)
@@ -137,20 +135,18 @@ def list_cases(names: list[str], suite: str) -> int:
     with progress_bar("checking cases"):
         tasks = len(plan(cases))
     claims = sum(len(case.claims) for case in cases)
-    table = Table(
-        title="",
-        note=f"{len(cases)} cases, {claims} claims, {tasks} solutions: all valid. run --list CASE shows one in full.",
-        heads=("case", "suites", "methods", "scenes", "claims", "question"),
-        rows=tuple(_line(case) for case in cases),
-        words=6,
-    )
-    show_table(table, on=console())
+    columns: dict[str, Callable[[Case], str]] = {
+        "case": lambda case: case.name,
+        "suites": lambda case: ", ".join(case.suites),
+        "methods": lambda case: who((use.label for use in case.methods), ", "),
+        "scenes": lambda case: f"{len(case.scenes)}",
+        "claims": lambda case: f"{len(case.claims)}",
+        "question": lambda case: case.question,
+    }
+    note = f"{len(cases)} cases, {claims} claims, {tasks} solutions: all valid. run --list CASE shows one in full."
+    if (table := tabulated(cases, columns, title="", note=note, words=6)) is not None:
+        show_table(table, on=console())
     return ExitCode.PASSED
-
-
-def _line(case: Case) -> tuple[str, ...]:
-    methods = ", ".join(display_name(use.label) for use in case.methods)
-    return case.name, ", ".join(case.suites), methods, f"{len(case.scenes)}", f"{len(case.claims)}", case.question
 
 
 def _show_case(case: Case) -> None:
@@ -166,8 +162,28 @@ def _show_case(case: Case) -> None:
             terminal.print()
 
 
-def cost(names: list[str], options: RunOptions, *, methods: list[str], settings: list[str], quiet: bool) -> int:
-    """Carry out the studies of cost of cases, of these methods if any are named; return 1 if a reference broke down.
+def measure(
+    only: str, names: list[str], methods: list[str], settings: Settings, options: RunOptions, *, quiet: bool
+) -> int:
+    """Carry out the studies of cost of cases ("cost") or stress tests ("stability"), and print their table.
+
+    Returns:
+        The exit code, 1 if a reference of a study broke down or a stress test failed.
+    """
+    times = only == "cost"
+    cases = _timed(names, methods, settings, options.suite) if times else [_stress_tests(names, methods)]
+    result = _solved(cases, dataclasses.replace(options, only_costs=times), quiet=quiet)
+    if (table := shortest_times(result) if times else stress_tests(result.judged.stress_tests)) is not None:
+        show_table(table, on=console())
+    console().print(f"report: {page_of(options.out)}")
+    if not times:
+        return exit_code(result.statuses)
+    missing = {case.name for case in result.judged.cases} - {cost.case for cost in result.judged.costs}
+    return ExitCode.GATE_FAILED if missing or Status.INVALID in result.statuses else ExitCode.PASSED
+
+
+def _timed(names: list[str], methods: list[str], settings: Settings, suite: str) -> list[Case]:
+    """The cases with the studies that time these methods, all if none is named.
 
     A setting of an installed package's method that is a list has one value per timed setting.
 
@@ -176,31 +192,19 @@ def cost(names: list[str], options: RunOptions, *, methods: list[str], settings:
     """
     for method in methods:
         check_known(method)
-    chosen = select(load_cases(), names=names, suite=options.suite)
-    values = read_settings(settings, methods)
-    timed = [case for case in (_of_methods(case, methods, values) for case in chosen) if case.costs]
-    if methods and not timed:
-        raise InvalidInput(f"{', '.join(case.name for case in chosen)}: nothing times {' or '.join(methods)} there")
-    result = _solved(timed, dataclasses.replace(options, only_costs=True), quiet=quiet)
-    terminal = console()
-    if (table := shortest_times(result)) is not None:
-        show_table(table, on=terminal)
-    terminal.print(f"report: {options.out / 'report.html'}")
-    missing = {case.name for case in result.judged.cases} - {cost.case for cost in result.judged.costs}
-    return ExitCode.GATE_FAILED if missing or any(s is Status.INVALID for s in result.statuses) else 0
+    cases = list(select(load_cases(), names=names, suite=suite))
+    if methods:
+        uses = [use for name in registered() if name in methods for use in ladder(name, settings.get(name, {}))]
+        studies = [[s for cost in case.costs if (s := cost.of_methods(methods, uses)).ladder] for case in cases]
+        pairs = zip(cases, studies, strict=True)
+        cases = [dataclasses.replace(case, claims=tuple(own), restricted=True) for case, own in pairs]
+    if methods and not any(case.costs for case in cases):
+        raise InvalidInput(f"{', '.join(case.name for case in cases)}: nothing times {' or '.join(methods)} there")
+    return [case for case in cases if case.costs]
 
 
-def _of_methods(case: Case, methods: list[str], settings: Settings) -> Case:
-    """The case with the studies that time these methods, those of installed packages with these settings."""
-    if not methods:
-        return case
-    uses = [use for name in registered() if name in methods for use in ladder(name, settings.get(name, {}))]
-    studies = (study.of_methods(methods, uses) for study in case.costs)
-    return dataclasses.replace(case, claims=tuple(study for study in studies if study.ladder), restricted=True)
-
-
-def stress(names: list[str], methods: list[str], options: RunOptions, *, quiet: bool) -> int:
-    """Carry out stress tests (all if none is named) by these methods, MDR if none is named; 1 if one failed.
+def _stress_tests(names: list[str], methods: list[str]) -> Case:
+    """The stress tests of these names (all if none is named) by these methods, MDR if none is named.
 
     Raises:
         InvalidInput: If no test has such a name.
@@ -209,12 +213,7 @@ def stress(names: list[str], methods: list[str], options: RunOptions, *, quiet: 
     chosen = tuple(test for test in case.claims if not names or any(name in test.name for name in names))
     if not chosen:
         raise InvalidInput(f"no stress test {names[0]!r}; there are {', '.join(test.name for test in case.claims)}")
-    result = _solved([dataclasses.replace(case, claims=chosen)], options, quiet=quiet)
-    terminal = console()
-    if (table := stress_tests(result.judged.stress_tests)) is not None:
-        show_table(table, on=terminal)
-    terminal.print(f"report: {page_of(options.out)}")
-    return exit_code(result.statuses)
+    return dataclasses.replace(case, claims=chosen)
 
 
 def report(directory: Path, other: Path | None = None, *, single_file: bool = False) -> int:
@@ -232,7 +231,9 @@ def report(directory: Path, other: Path | None = None, *, single_file: bool = Fa
 
 
 def _code(*runs: Run) -> ExitCode:
-    return ExitCode.NOTHING_RAN if any(map(nothing_ran, runs)) else ExitCode.PASSED
+    """NOTHING_RAN if a run has neither a check that was carried out nor a measurement, else PASSED."""
+    empty = (not run.judged.costs and all(status is Status.SKIP for status in run.statuses) for run in runs)
+    return ExitCode.NOTHING_RAN if any(empty) else ExitCode.PASSED
 
 
 def write_pages(run: Run, directory: Path, *, single_file: bool = False) -> None:

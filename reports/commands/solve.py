@@ -6,9 +6,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from cases.accuracy import solve as solve_to_accuracy
 from cases.declare.guarded_method import build_guarded
 from cases.declare.methods import load
 from cases.declare.uncertain_inputs import read_inputs
+from cases.sweep import read_range, sweep
+from cases.validity import validity_lines
 from contact import (
     ContactPath,
     InvalidInput,
@@ -137,14 +140,8 @@ def _answer(scene: Scene, request: Request) -> Solution:
 
 def _solved(scene: Scene, request: Request) -> tuple[Solution, list[tuple[str, str]]]:
     """The answer and facts about it; with an accuracy and no method, methods are tried from cheap to fine."""
-    if request.accuracy is None:
-        return request.solver().solve(scene), []
-    if request.method:
-        solution = request.solver().solve(scene)
-        _require_accuracy(solution, request.accuracy, request.pressure_accuracy)
-        return with_accuracy_note(solution, request.accuracy, request.pressure_accuracy), []
-    from cases.accuracy import solve as solve_to_accuracy  # noqa: PLC0415 - loaded only for an accuracy
-
+    if request.accuracy is None or request.method:
+        return _accurate(request.solver().solve(scene), request), []
     reached = solve_to_accuracy(scene, accuracy=request.accuracy, pressure_accuracy=request.pressure_accuracy)
     stated = f"stated error {small(reached.stated_error)}, asked for {small(request.accuracy)}, by {reached.method}"
     return reached.answer, [("achieved", stated)]
@@ -158,8 +155,6 @@ def _show_answer(solution: Solution) -> None:
 
 def _notes(solution: Solution) -> list[tuple[str, str]]:
     """Notes on the effect of a smoothed tip, and on the validity of the theory."""
-    from cases.validity import validity_lines  # noqa: PLC0415 - MDR is loaded only for notes
-
     notes: list[tuple[str, str]] = []
     indenter = solution.scene.indenter
     if isinstance(indenter, Tabulated) and indenter.smoothing and isinstance(solution, ContactPath):
@@ -169,16 +164,22 @@ def _notes(solution: Solution) -> list[tuple[str, str]]:
     return notes + [("validity", line) for line in validity_lines(solution.scene, solution)]
 
 
-def _require_accuracy(solution: Solution, accuracy: float, pressure_accuracy: float | None) -> None:
-    """Refuse an answer that states a larger error than the accuracy, or none at all."""
-    too_large = shortfalls(solution, accuracy, pressure_accuracy)
-    if too_large:
+def _accurate(solution: Solution, request: Request) -> Solution:
+    """The answer with a note on quantities less accurate than asked for, if the request has an accuracy.
+
+    Raises:
+        NotConvergedError: If the answer states a larger error of its numbers or its pressure, or none at all.
+    """
+    if request.accuracy is None:
+        return solution
+    if too_large := shortfalls(solution, request.accuracy, request.pressure_accuracy):
         worst = max(too_large, key=lambda name: too_large[name])
-        wanted = pressure_accuracy if worst == "pressure" else accuracy
+        wanted = request.pressure_accuracy if worst == "pressure" else request.accuracy
         raise NotConvergedError(
             f"{solution.method} estimates the relative error of {worst.replace('_', ' ')} at {too_large[worst]:.1e}, "
             f"asked for {wanted:.1e}; name another method with --method, or ask for less"
         )
+    return with_accuracy_note(solution, request.accuracy, request.pressure_accuracy)
 
 
 def _uncertain(scene: Scene, scene_file: Path, request: Request) -> Solution:
@@ -188,11 +189,10 @@ def _uncertain(scene: Scene, scene_file: Path, request: Request) -> Solution:
     inputs = read_inputs(request.uncertain, scene, with_units=uses_units(scene_file))
     with progress_bar("solving"):
         propagated = propagate(scene, inputs, method=request.solver(), samples=request.samples)
-    if request.accuracy is not None:
-        _require_accuracy(propagated.answer, request.accuracy, request.pressure_accuracy)
-    _show_answer(propagated.answer)
+    answer = _accurate(propagated.answer, request)
+    _show_answer(answer)
     show_table(propagated_table(propagated), on=console())
-    return propagated.answer
+    return answer
 
 
 def _advise(scene: Scene, request: Request) -> None:
@@ -211,8 +211,6 @@ def _sweep(scene: Scene, scene_file: Path, request: Request) -> None:
     Raises:
         InvalidInput: If every value is refused.
     """
-    from cases.sweep import read_range, sweep  # noqa: PLC0415 - loaded only for this option
-
     swept = read_range(request.over, scene, with_units=uses_units(scene_file))
     with progress_bar("solving") as progress:
         result = sweep(scene, swept, request.solver(), progress)
@@ -248,10 +246,8 @@ def _writers(solution: Solution) -> Writers:
     def picture(path: Path) -> None:
         """Draw the fields inside where the name says so, else the answer."""
         if path.stem.startswith(INSIDE):
-            from reports.inside import draw_inside  # noqa: PLC0415 - as above
-
             other = _answer_or_none(OTHER_METHOD.get(solution.method, "fem"), solution.scene)
-            return write_picture(path, lambda: draw_inside(solution, other), key=INSIDE)
+            return write_picture(path, lambda: _pictures().draw_inside(solution, other), key=INSIDE)
         # Other methods than MDR would take longer for states between than for the answer.
         finer = _pictures().between(solution.scene) if solution.method == "mdr" else None
         curve = None if finer is None else _answer_or_none("mdr", finer)
