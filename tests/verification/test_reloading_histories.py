@@ -98,6 +98,16 @@ def test_a_layer_pressed_again_and_again():
     assert allowed < 4e-4
 
 
+def test_without_a_force_the_surface_recovers_as_its_middle_spring_does():
+    """A free spring, L u + w . e = 0 and e' = u' - e/tau, has two modes: depths at equal steps obey a recurrence."""
+    weights, times = np.array([0.4, 0.4]), np.array([0.3, 3.0])
+    loading = ForceHistory(time=[0.0, 1.0, 1.5, 1.8, 2.1, 2.4], force=[0.0, 0.2, 0.0, 0.0, 0.0, 0.0])
+    scene = reloaded((0.5, 0.5), times, TIME, long_term=0.2)
+    u = Mdr(accuracy=1e-4).solve(scene.replace(loading=loading)).indentation_depth[2:]
+    first, second = np.exp(0.3 * np.linalg.eigvals(np.ones((2, 1)) * weights / times - np.diag(1.0 / times)))
+    np.testing.assert_allclose(u[2:], (first + second) * u[1:-1] - first * second * u[:-2], rtol=1e-9)
+
+
 SPECTRUM = PronySeries(
     long_term_shear_modulus=0.2 * MODULUS,
     shear_moduli=np.array([0.1, 0.4, 0.3]) * MODULUS,
