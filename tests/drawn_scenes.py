@@ -1,27 +1,8 @@
-"""Scenes that showed a defect, by the two numbers that seeded them; `drawn_scenes.json` holds what was drawn."""
-
-import json
-from functools import cache
-from pathlib import Path
+"""Measured profiles that fall here and there, drawn at random."""
 
 import numpy as np
 
-from contact import AnyScene, Tabulated, scene_from_mapping
-
-
-@cache
-def _stored() -> dict[str, dict[str, object]]:
-    return json.loads(Path(__file__).with_suffix(".json").read_text(encoding="utf-8"))  # type: ignore[no-any-return]
-
-
-def scene_of(seed: int, number: int, *_: object, **__: object) -> AnyScene:
-    """The scene of a seed and a number; family and range of a/h, which went into it, are told for the reader."""
-    return scene_from_mapping(_stored()[f"{seed} {number}"])
-
-
-def random_scenes(seed: int, count: int, *_: object) -> list[AnyScene]:
-    """A list whose last entry is the scene of the seed and the number before ``count``."""
-    return [scene_of(seed, count - 1)] * count
+from contact import Tabulated
 
 
 def falling_table(draw: np.random.Generator, size: float) -> tuple[Tabulated, float]:

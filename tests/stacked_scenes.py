@@ -10,18 +10,13 @@ from contact import (
     ContactRadii,
     ElasticBase,
     ElasticLayer,
-    ExponentialDepth,
     FlatPunch,
-    GradedLayer,
     IndentationDepths,
     LayerStack,
-    LinearDepth,
     Paraboloid,
-    PowerLawDepth,
     Profile,
     Scene,
     Sublayer,
-    TabulatedDepth,
     TruncatedCone,
 )
 
@@ -61,31 +56,6 @@ def stiff_on_soft(rng: np.random.Generator) -> LayerStack:
         return LayerStack(sublayers=(film,), support=ElasticBase(youngs_modulus=1.0, poissons_ratio=nu))
     soft = Sublayer(thickness=1 - thickness, youngs_modulus=1.0, poissons_ratio=nu)
     return LayerStack(sublayers=(film, soft), interfaces=("bonded",))
-
-
-GRADED = (
-    GradedLayer(thickness=1.0, youngs_modulus=ExponentialDepth(surface=1.0, base=4.0), poissons_ratio=0.3),
-    GradedLayer(
-        thickness=1.0, youngs_modulus=ExponentialDepth(surface=1.0, base=0.2), poissons_ratio=0.5, support="unbonded"
-    ),
-    GradedLayer(thickness=1.0, youngs_modulus=LinearDepth(surface=1.0, base=10.0), poissons_ratio=0.45),
-    GradedLayer(
-        thickness=1.0,
-        youngs_modulus=PowerLawDepth(surface=1.0, reference_depth=0.1, exponent=0.5),
-        poissons_ratio=0.2,
-        support=ElasticBase(youngs_modulus=2.0, poissons_ratio=0.3),
-    ),
-    GradedLayer(
-        thickness=1.0,
-        youngs_modulus=TabulatedDepth(depths=[0.0, 0.3, 0.6, 1.0], values=[1.0, 3.0, 2.0, 5.0]),
-        poissons_ratio=0.3,
-    ),
-    GradedLayer(
-        thickness=1.0,
-        youngs_modulus=LinearDepth(surface=1.0, base=3.0),
-        poissons_ratio=TabulatedDepth(depths=[0.0, 0.5, 1.0], values=[0.3, 0.45, 0.5]),
-    ),
-)
 
 
 def scene(layer: ElasticLayer, kind: str, radius: float) -> Scene[Any, Any]:

@@ -102,22 +102,6 @@ def test_kinks_and_bends_on_a_uniform_table_are_those_of_one_layer(indenter):
     np.testing.assert_allclose(other.pressure(inside, 0), one.pressure(inside, 0), rtol=1e-7)
 
 
-@pytest.fixture(scope="module")
-def on_many_nodes():
-    return solved(EXPONENTIAL, CONE, ContactRadii([0.6, 1.0]), nodes=20)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("nodes", [10, 12])
-def test_fewer_nodes_stay_within_the_stated_errors(nodes, on_many_nodes):
-    """Flat ends on a layer with a logarithm."""
-    coarse = solved(EXPONENTIAL, CONE, ContactRadii([0.6, 1.0]), nodes=nodes)
-    for quantity in QUANTITIES[1:]:
-        change = np.abs(getattr(coarse, quantity) / getattr(on_many_nodes, quantity) - 1)
-        assert np.all(change <= coarse.error_estimate[quantity] + on_many_nodes.error_estimate[quantity]), quantity
-        assert np.all(coarse.error_estimate[quantity] < 1e-8), quantity
-
-
 def test_wide_contacts_are_refused_with_the_limit():
     with pytest.raises(UnsupportedSceneError, match=r"a/h = 20: .* ratios up to 16"):
         solved(EXPONENTIAL, PARABOLOID, ContactRadii([20.0]))

@@ -52,11 +52,6 @@ def test_random_stacks_against_extended_precision():
     assert worst_error(120, 11) < 1e-12
 
 
-@pytest.mark.slow
-def test_a_thousand_random_stacks_against_extended_precision():
-    assert worst_error(1000, 7) < 1e-12
-
-
 def long_waves(stack):
     """chi/k at k = 0 on a rigid base: uniaxial strain, and what groups of layers yield that slide sideways.
 

@@ -75,16 +75,6 @@ def test_stated_errors_cover_pull_offs(indenter):
         assert abs(value - truth) <= path.error_estimate[name] * abs(truth), name
 
 
-def test_a_punch_under_a_force_states_the_error_of_its_displacement():
-    """The depth of a punch under a force is uncertain by the stiffness."""
-    path, exact = (
-        Mdr(**settings).solve(scene_of(FlatPunch(radius=2e-3), NormalForces([0.3])))
-        for settings in ({"flat_punch": SMALL}, {})
-    )
-    error = abs(path.surface_displacement(1e-3) - exact.surface_displacement(1e-3)) / exact.indentation_depth
-    assert 0.0 < error <= path.error_estimate["surface_displacement"]
-
-
 @pytest.mark.first(1)
 @pytest.mark.parametrize("settings", [{"cells": 64}, {"ratios": 16}, {"radii": 12}])
 def test_an_error_of_each_size_of_a_table_is_stated(settings):

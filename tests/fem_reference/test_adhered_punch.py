@@ -1,4 +1,4 @@
-"""The adhered flat punch by finite elements: the second method and closed forms within stated errors, refusals."""
+"""The adhered flat punch by finite elements: MDR within stated errors, requested accuracies and refusals."""
 
 import math
 
@@ -79,21 +79,6 @@ def test_two_methods_agree_within_stated_errors(nu, support, ratio):
     assert of_shear < elements.error_estimate["tangential_traction"][0] < 2e-3
 
 
-@pytest.mark.first(1)
-@pytest.mark.parametrize("nu", [0.0, pytest.param(0.3, marks=pytest.mark.slow), 0.5])
-def test_half_space(nu):
-    """Mossakovskii: F = 4 G a delta ln(3 - 4 nu)/(1 - 2 nu), at nu = 1/2 the frictionless 8 G a delta.
-
-    Both ends of the range; the middle is slow.
-    """
-    body = Layer.half_space(youngs_modulus=3.0, poissons_ratio=nu)
-    path = Fem().solve(punch(body))
-    factor = 2.0 if nu == 0.5 else math.log(3.0 - 4.0 * nu) / (1.0 - 2.0 * nu)
-    stated = float(path.error_estimate["normal_force"][0])
-    assert path.normal_force[0] == pytest.approx(4.0 * body.shear_modulus * 1e-3 * factor, rel=stated, abs=0.0)
-    assert stated < 5e-5
-
-
 def test_surface_inside_the_contact_stays_where_it_touched():
     path = Fem(order=3).solve(punch(layer(0.3), 2.0))
     r = np.array([0.0, 0.7, 1.9])
@@ -122,13 +107,6 @@ def test_an_accuracy_is_kept():
     path = Fem(accuracy=1e-5).solve(scene)
     assert path.error_estimate["normal_force"][0] <= 1e-5
     assert path.normal_force == pytest.approx(Mdr().solve(scene).normal_force, rel=1e-5, abs=0.0)
-
-
-@pytest.mark.first(1)
-@pytest.mark.parametrize(("nu", "support"), [(0.0, "unbonded"), (0.3, "bonded"), (0.5, "bonded"), (0.5, "unbonded")])
-def test_stick_is_never_softer_than_free_slip(nu, support):
-    stuck, free = (Fem(order=3).solve(punch(layer(nu, support), 1.5, effects=e)) for e in (STICK, ()))
-    assert stuck.contact_stiffness[0] > free.contact_stiffness[0]
 
 
 @pytest.mark.parametrize(

@@ -51,14 +51,6 @@ def test_fingerprint_is_reproduced_and_tells_meshes_apart(mesh):
     assert again.fingerprint == mesh.fingerprint != other.fingerprint
 
 
-def test_cells_grow_faster_near_graded_points():
-    """Two thirds of the triangles that cells of one growth make (1,277); far away they are no larger."""
-    fine = layer_mesh(1.0, 4.0, ((0.0, 1e-7), (1.0, 1e-8))).mesh
-    assert fine.t.shape[1] < 855
-    far = fine.p[:, fine.t][:, :, np.hypot(fine.p[0, fine.t] - 1, fine.p[1, fine.t]).min(axis=0) > 1]
-    assert np.hypot(*(far - np.roll(far, 1, axis=1))).max() < 1.0
-
-
 def test_strip_has_cells_of_one_size():
     strip = layer_mesh(1.0, 4.0, ((2.0, 0.1),), strip=2.0).mesh
     r, z = strip.p

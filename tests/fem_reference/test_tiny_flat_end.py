@@ -15,7 +15,6 @@ from contact import (
     Scene,
     Tabulated,
     TruncatedCone,
-    TruncatedParaboloid,
     UnsupportedSceneError,
 )
 from fem_reference import Fem
@@ -47,13 +46,6 @@ def test_a_tiny_flat_end_is_no_ring(flat_radius, loading):
         assert np.all(
             np.abs(getattr(fem, name) - getattr(mdr, name)) <= fem.uncertainty(name) + 1e-12 * abs(getattr(mdr, name))
         )
-
-
-def test_a_worn_paraboloid_with_a_tiny_flat_end_is_no_ring():
-    indenter = TruncatedParaboloid(flat_radius=1e-7, radius_of_curvature=0.1)
-    scene = Scene(layer=LAYER, indenter=indenter, loading=IndentationDepths(values=[1e-5]))
-    fem, mdr = Fem(accuracy=1e-3).solve(scene), Mdr().solve(scene)
-    assert np.abs(fem.normal_force - mdr.normal_force) <= fem.uncertainty("normal_force")
 
 
 def test_a_ring_is_told_by_its_place():

@@ -71,16 +71,6 @@ def test_contact_that_barely_passes_a_flat_end_is_found(flat):
         assert found.normal_force[0] == pytest.approx(at_radius.normal_force[0], rel=1e-4, abs=0.0)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("ratio", [0.5, 1.0, 2.0])
-@pytest.mark.parametrize("kind", ["paraboloid", "cone"])
-def test_default_settings_reach_1e_5_in_force_and_1e_4_in_radius(ratio, kind):
-    profile, depth, force = exact(ratio, kind)
-    path = Fem().solve(Scene(layer=LAYER, indenter=profile, loading=IndentationDepths([depth])))
-    assert path.normal_force[0] == pytest.approx(force, rel=1e-5, abs=0.0)
-    assert path.contact_radius[0] == pytest.approx(ratio * 1e-3, rel=1e-5, abs=0.0)
-
-
 def test_ring_contact_is_refused():
     rings = Tabulated(radii=[0, 0.4e-3, 0.8e-3, 2e-3], heights=[0, -2e-5, 2e-5, 1e-3])
     with pytest.raises(UnsupportedSceneError, match="no single circle"):

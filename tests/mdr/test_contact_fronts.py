@@ -1,4 +1,4 @@
-"""Where the front of a contact stands in time: on surfaces that recover, at breakpoints, and without any step."""
+"""Histories and impacts with closed forms: liquids, flat punches under a force, and punches that a dashpot stops."""
 
 import math
 
@@ -7,7 +7,6 @@ import pytest
 
 from bem.kernels.moduli import relaxation_of
 from contact import (
-    DepthHistory,
     FlatPunch,
     ForceHistory,
     Impact,
@@ -16,7 +15,6 @@ from contact import (
     Paraboloid,
     PronySeries,
     Scene,
-    TruncatedCone,
 )
 from mdr import Mdr
 from mdr.history.spring_law import SpringLaw
@@ -24,32 +22,6 @@ from mdr.history.spring_law import SpringLaw
 HALF_SPACE = Layer.half_space(youngs_modulus=3.0, poissons_ratio=0.5)
 SOLID = PronySeries(long_term_shear_modulus=0.3, shear_moduli=[0.2, 0.5], relaxation_times=[2.0, 0.05])
 TIMES = [0.0, 0.6, 1.0, 1.4]
-
-
-def test_a_surface_that_recovers_up_to_a_resting_indenter():
-    """The front comes back while the depth rests: 2e-4 off and 1.3e-5 stated, 5e-9 now.
-
-    Springs just touched carry forces that bend within a hair's breadth, the gap outside closes smoothly.
-    """
-    scene = Scene(
-        layer=Layer.incompressible(thickness=1.0, shear_modulus=1.0 / 3.0),
-        indenter=TruncatedCone(flat_radius=0.9122946867543653, slope=0.1),
-        loading=DepthHistory(
-            time=[0.0, 0.3095, 1.1925, 2.1344, 2.8070, 3.2381],
-            depth=[0.06155, 0.06943, 0.02429, 0.0469, 0.02244, 0.02244],
-        ),
-        effects=(
-            PronySeries(
-                long_term_shear_modulus=0.045353926,
-                shear_moduli=[0.036737171, 0.2512422361],
-                relaxation_times=[19.61279732, 0.02793820],
-            ),
-        ),
-    )
-    found, finer = Mdr().solve(scene), Mdr(accuracy=1e-11).solve(scene)
-    apart = np.abs(found.contact_radius - finer.contact_radius)
-    assert np.all(apart <= found.uncertainty("contact_radius") + finer.uncertainty("contact_radius"))
-    assert np.all(found.error_estimate["contact_radius"] < 1e-7)
 
 
 def test_a_liquid_under_a_falling_force_creeps_on_in_closed_form():
@@ -69,27 +41,6 @@ def test_a_liquid_under_a_falling_force_creeps_on_in_closed_form():
     np.testing.assert_allclose(answer.indentation_depth, expected, rtol=1e-12)
     np.testing.assert_allclose(answer.contact_radius, np.sqrt(10.0 * expected), rtol=1e-12)
     assert np.all(answer.error_estimate["indentation_depth"] < 1e-12)
-
-
-@pytest.mark.slow
-def test_after_a_fall_steps_only_where_the_contact_has_been_larger():
-    """The depth is exact again once the contact is larger than ever; before, it is less than F_e would make it."""
-    scene = Scene(
-        layer=HALF_SPACE,
-        indenter=Paraboloid(radius_of_curvature=10.0),
-        loading=ForceHistory(time=[0.0, 0.5, 1.0, 1.5, 2.0], force=[0.0, 0.02, 0.005, 0.03, 0.01]),
-        effects=(SOLID,),
-    )
-    answer, law = Mdr(accuracy=1e-7).solve(scene), SpringLaw.of(relaxation_of(scene))
-    load = law.elastic_force(scene.loading.time, scene.loading.force)
-    expected = (load * 0.75 / (4.0 * math.sqrt(10.0))) ** (2.0 / 3.0)
-    known = np.array([True, True, False, True, False])
-    np.testing.assert_allclose(answer.indentation_depth[known], expected[known], rtol=1e-12)
-    assert np.all(answer.indentation_depth[~known] < 0.999 * expected[~known])
-    for name in ("indentation_depth", "contact_radius"):
-        error = answer.error_estimate[name]
-        assert np.all(error[known] < 1e-12)
-        assert np.all(error[~known] > 1e-12)
 
 
 def test_a_flat_punch_needs_no_steps_whatever_the_force_does():

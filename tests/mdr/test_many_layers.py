@@ -62,58 +62,6 @@ def test_together_is_alone(indenter, loading, nu, support):
         np.testing.assert_allclose(together, [getattr(alone, name)[0] for name in NAMES], rtol=2e-13, atol=0.0)
 
 
-def test_a_thousand_truncated_cones_under_one_force():
-    """Every hundredth radius is that of its scene alone."""
-    alike = [
-        Scene(
-            layer=Layer(thickness=float(h), youngs_modulus=9e5, poissons_ratio=0.4),
-            indenter=TruncatedCone(flat_radius=5e-4, slope=0.2),
-            loading=NormalForces([0.2]),
-            beyond_small_strains=True,
-        )
-        for h in np.geomspace(1e-4, 1e-2, 1000)
-    ]
-    together = equilibria(alike, PUNCH).contact_radius[::100]
-    alone = [Mdr(flat_punch=PUNCH).solve(scene).contact_radius[0] for scene in alike[::100]]
-    np.testing.assert_allclose(together, alone, rtol=2e-13, atol=0.0)
-
-
-def test_a_contact_that_has_hardly_left_its_flat_end():
-    """Values count relative to how far it has grown."""
-    indenter = INDENTERS[0]
-    alike = [
-        Scene(
-            layer=Layer(thickness=3e-4 * 1.2**n, youngs_modulus=1e6, poissons_ratio=0.45),
-            indenter=indenter,
-            loading=IndentationDepths([1e-10]),
-        )
-        for n in range(5)
-    ]
-    together = equilibria(alike, PUNCH)
-    alone = [Mdr(flat_punch=PUNCH).solve(scene) for scene in alike]
-    np.testing.assert_allclose(together.normal_force, [path.normal_force[0] for path in alone], rtol=2e-13)
-
-
-def test_contacts_that_are_too_wide_are_left_out():
-    """Beyond a/h = 1000 the answer of the scene alone says why there is none."""
-    indenter = INDENTERS[2]
-    mixed = scenes(indenter, LOADINGS[0], poissons_ratio=0.45)
-    thin = mixed[0].replace(layer=Layer(thickness=5e-7, youngs_modulus=1e6, poissons_ratio=0.45))
-    found = equilibria_on_layers([thin, *mixed], USUAL)
-    assert np.isnan(found[:, 0]).all()
-    assert np.isfinite(found[:, 1:]).all()
-
-
-def test_a_truncated_cone_on_thin_layers_is_not_left_over():
-    """Its excess is more than three times that on a half-space: at first such scenes were solved one by one."""
-    scene = Scene(
-        layer=Layer(thickness=2e-4, youngs_modulus=1e6, poissons_ratio=0.45),
-        indenter=TruncatedCone(flat_radius=5e-4, slope=0.1),
-        loading=IndentationDepths([5e-5]),
-    )
-    assert np.isfinite(equilibria_on_layers([scene] * 4, USUAL)).all()
-
-
 def test_beyond_the_indenter_is_refused():
     beyond = scenes(INDENTERS[4], lambda share: IndentationDepths([1e-2]), poissons_ratio=0.45)
     with pytest.raises(InvalidInput, match="indenter ends"):

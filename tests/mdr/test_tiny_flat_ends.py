@@ -1,4 +1,4 @@
-"""Contacts of all sizes on one path: beside a flat end or a bend far smaller than the largest, each keeps its bar."""
+"""Contacts of all sizes on one path: each keeps its stated error, far above a flat end or a bend and close to it."""
 
 from __future__ import annotations
 
@@ -21,7 +21,6 @@ from contact import (
     TruncatedParaboloid,
 )
 from mdr import Mdr
-from tests.referees.second_opinion import second_opinion
 
 BODIES = {
     "layer": Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.3, support="bonded"),
@@ -43,19 +42,18 @@ def indenter(kind: str, b: float) -> Profile:
 @pytest.mark.first(4)
 @pytest.mark.parametrize("body", BODIES)
 @pytest.mark.parametrize("kind", ["cone", "paraboloid", "spheroconical", "table"])
-@pytest.mark.parametrize("nodes", [12, pytest.param(20, marks=pytest.mark.slow)])
-def test_a_path_from_the_tip_to_the_thickness_keeps_its_bars(kind: str, body: str, nodes: int) -> None:
+def test_a_path_from_the_tip_to_the_thickness_keeps_its_stated_errors(kind: str, body: str) -> None:
     """Depth and force at radii from b to h, for b/h from 1e-8 to 0.1, against one equation for each radius."""
-    for b in (1e-8, 3e-6, 1e-4, 0.1):
+    for b in (1e-8, 1e-4, 0.1):
         radii = np.geomspace(1.01 * b, 1.0, 7)
         scene = Scene(layer=BODIES[body], indenter=indenter(kind, b), loading=ContactRadii(values=radii))
-        path = Mdr(flat_punch=IntegralEquation(nodes=nodes)).solve(scene)
+        path = Mdr(flat_punch=IntegralEquation(nodes=12)).solve(scene)
         assert isinstance(path, ContactPath)
-        other = second_opinion(path)
+        directly = IntegralEquationMethod(nodes=24).solve(scene)
         for name in ("indentation_depth", "normal_force"):
-            error = np.abs(getattr(path, name) / other.values[name] - 1.0)
-            assert np.all(error <= path.error_estimate[name] + other.uncertainty), (b, name)
-            # Bars of use: the flat-punch data allow 1e-7 on 12 nodes.
+            error = np.abs(getattr(path, name) / getattr(directly, name) - 1.0)
+            assert np.all(error <= path.error_estimate[name] + directly.error_estimate[name]), (b, name)
+            # The flat-punch data allow 1e-7 on 12 nodes.
             assert path.error_estimate[name].max() < 1e-6, (b, name)
 
 

@@ -59,13 +59,6 @@ def test_stability_reverses_twice_near_nu_0365():
     assert not stable[~between & ~pinned].any()
 
 
-@pytest.mark.parametrize("nu", [0.36, 0.0])
-def test_below_nu_0361_detachment_is_always_abrupt(nu):
-    path = solve(layer(nu), FlatPunch(radius=8.0))
-    assert path.pull_off_contact_radius == pytest.approx(8.0, rel=1e-12, abs=0.0)
-    assert not criticals(path, "displacement", "pull-off")
-
-
 @pytest.mark.parametrize("slope", [0.1, 0.7])
 def test_adhesive_cone(slope):
     """Maugis 2000: g = pi/2 tan a, so both instabilities follow by hand."""
@@ -166,25 +159,6 @@ def test_second_maximum_of_the_pressure_is_announced_from_a_h_0788_on():
     assert "cavitation" in note
     assert not solve(layer(0.3), FlatPunch(radius=4.0)).notes
     assert not solve(layer(0.5, support="unbonded"), FlatPunch(radius=4.0)).notes
-
-
-def test_no_work_of_adhesion_is_no_adhesion():
-    scene = Scene(layer=layer(0.45), indenter=PROFILES[0], loading=IndentationDepths([0.01, 0.1]))
-    bare, listed = Mdr().solve(scene), Mdr().solve(scene.replace(effects=(Adhesion(work_of_adhesion=0.0),)))
-    np.testing.assert_array_equal(listed.normal_force, bare.normal_force)
-    with pytest.raises(InvalidInput, match="initial_contact_radius"):
-        solve(layer(0.45), PROFILES[0], Detachment(), work=0.0)
-    faint = solve(layer(0.45), PROFILES[0], IndentationDepths([0.01, 0.1]), work=1e-30)
-    np.testing.assert_allclose(faint.normal_force, bare.normal_force, rtol=1e-12)
-
-
-def test_results_do_not_know_their_units():
-    si = solve(layer(0.5, thickness=1e-3), Sphere(radius=5e-3), work=1e-6)
-    mm = solve(
-        Layer(thickness=1.0, youngs_modulus=0.75e-6, poissons_ratio=0.5), Sphere(radius=5.0), work=1e-9
-    )  # mm, N: 1 Pa = 1e-6 N/mm^2, 1 J/m^2 = 1e-3 N/mm
-    assert mm.pull_off_force == pytest.approx(si.pull_off_force, rel=1e-12, abs=0.0)
-    assert mm.pull_off_depth == pytest.approx(1e3 * si.pull_off_depth, rel=1e-12, abs=0.0)
 
 
 @pytest.mark.parametrize("base", [HALF_SPACE, layer(0.45)], ids=["half-space", "layer"])

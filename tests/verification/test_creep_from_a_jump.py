@@ -61,19 +61,8 @@ def within(answer, quantity, exact):
     return bool(np.all(error <= answer.uncertainty(quantity) + 1e-13 * exact.max()))
 
 
-every = [
-    pytest.mark.parametrize("name", RELAXATIONS),
-    pytest.mark.parametrize("ramp", [0.0, 1.0], ids=["jump", "ramp"]),
-]
-
-
-def for_every_history(test):
-    for mark in every:
-        test = mark(test)
-    return test
-
-
-@for_every_history
+@pytest.mark.parametrize("name", RELAXATIONS)
+@pytest.mark.parametrize("ramp", [0.0, 1.0], ids=["jump", "ramp"])
 def test_depth_of_a_flat_punch_under_a_force(name, ramp):
     force = np.where(ramp <= TIMES, FORCE, FORCE * TIMES)
     answer = solved(PUNCH, name, ForceHistory(time=TIMES, force=force))
@@ -84,7 +73,8 @@ def test_depth_of_a_flat_punch_under_a_force(name, ramp):
     assert within(answer, "indentation_depth", np.array(risen) / PUNCH_FORCE)
 
 
-@for_every_history
+@pytest.mark.parametrize("name", RELAXATIONS)
+@pytest.mark.parametrize("ramp", [0.0, 1.0], ids=["jump", "ramp"])
 def test_force_of_a_flat_punch_under_a_depth(name, ramp):
     depth = np.where(ramp <= TIMES, DEPTH, DEPTH * TIMES)
     answer = solved(PUNCH, name, DepthHistory(time=TIMES, depth=depth))
@@ -97,39 +87,9 @@ def test_force_of_a_flat_punch_under_a_depth(name, ramp):
     assert within(answer, "normal_force", PUNCH_FORCE * DEPTH * (np.array(risen) + dashpot))
 
 
-def test_a_kelvin_voigt_half_space_creeps_from_depth_zero_under_a_paraboloid():
-    answer = solved(BALL, "kelvin_voigt", ForceHistory(time=TIMES, force=np.full(5, FORCE)))
-    assert within(answer, "indentation_depth", (FORCE * creep("kelvin_voigt", TIMES) / BALL_FORCE) ** (2 / 3))
-
-
-@pytest.mark.slow
-def test_released_after_a_first_jump_the_depth_is_that_of_a_fast_ramp():
-    force = FORCE * np.array([1.0, 1.0, 0.3, 0.3])
-    time = np.array([0.0, 1.0, 1.5, 3.0])
-    jump = solved(BALL, "kelvin_voigt", ForceHistory(time=time, force=force))
-    fast = solved(
-        BALL,
-        "kelvin_voigt",
-        ForceHistory(time=np.concatenate([[0.0, 1e-7], time[1:]]), force=np.concatenate([[0.0], force])),
-    )
-    stated = jump.uncertainty("indentation_depth")[1:] + fast.uncertainty("indentation_depth")[2:]
-    # The ramp delays the force by half of its 1e-7 s.
-    assert np.all(np.abs(jump.indentation_depth[1:] - fast.indentation_depth[2:]) <= stated + 1e-7 * DEPTH)
-
-
-@pytest.mark.parametrize(
-    "cycles", [0, pytest.param(16, marks=pytest.mark.slow)], ids=["a straight line", "a sine of many segments"]
-)
-def test_kelvin_voigt_under_many_depths_that_begin_above_zero(cycles):
-    if cycles:
-        time = np.linspace(0.0, 1.0, 128 * 20 + 1)
-        bends = np.linspace(0.0, 1.0, 129)
-        depth = DEPTH * np.interp(time, bends, 0.6 + 0.4 * np.sin(2 * np.pi * cycles / 16 * bends))
-    else:
-        time = np.linspace(0.0, 1.0, 16)
-        depth = DEPTH * (0.1 + time)
+def test_kelvin_voigt_under_many_depths_that_begin_above_zero():
+    time = np.linspace(0.0, 1.0, 16)
+    depth = DEPTH * (0.1 + time)
     answer = solved(BALL, "kelvin_voigt", DepthHistory(time=time, depth=depth))
-    assert np.all(np.isfinite(answer.normal_force))
-    if not cycles:
-        exact = G * BALL_FORCE * depth**1.5 + G * TAU * 8 * np.sqrt(1e-3 * depth) * DEPTH
-        assert within(answer, "normal_force", np.append(answer.normal_force[0], exact[1:]))
+    exact = G * BALL_FORCE * depth**1.5 + G * TAU * 8 * np.sqrt(1e-3 * depth) * DEPTH
+    assert within(answer, "normal_force", np.append(answer.normal_force[0], exact[1:]))

@@ -92,26 +92,6 @@ def test_the_second_order_of_an_ellipse_is_exact():
         assert path.normal_force[0] == pytest.approx(hertz(tip, DEPTH)[0], rel=0.5 * eps**4, abs=0.0)
 
 
-@BOTH
-@pytest.mark.parametrize("half_axis", [1.1, 1.2])
-def test_an_elliptic_punch_has_its_closed_form(method, half_axis):
-    """k_N = pi E* A/K(e), p = F/(2 pi A B)/sqrt(1 - x^2/A^2 - y^2/B^2)."""
-    exact = np.pi * half_axis / ellipk(1.0 - half_axis**-2)
-    path = solved(method, HALF_SPACE, EllipticPunch(first_half_axis=half_axis, second_half_axis=1.0))
-    assert abs(path.contact_stiffness[0] - exact) < path.uncertainty("contact_stiffness")[0] < 2e-3 * exact
-    share, angle = np.array([0.0, 0.3, 0.6]), np.array([0.0, 0.7, 1.5])
-    pressure = path.normal_force[0] / (2.0 * np.pi * half_axis) / np.sqrt(1.0 - share**2)
-    np.testing.assert_allclose(path.pressure(share * path.outline(angle), 0, angle), pressure, rtol=1e-2)
-
-
-@BOTH
-def test_a_square_punch_has_the_capacity_of_a_square(method):
-    """k_N = pi E* C with the capacity C = 0.73358 of a square of side 2."""
-    path = solved(method, HALF_SPACE, PolygonalPunch(inscribed_radius=1.0))
-    assert path.contact_stiffness[0] == pytest.approx(2.304606, rel=3e-3, abs=0.0)
-    assert abs(path.contact_stiffness[0] - 2.304606) < path.uncertainty("contact_stiffness")[0]
-
-
 @pytest.mark.parametrize("nu", [0.3, 0.5])
 def test_a_square_punch_on_a_layer_is_that_of_cells(nu):
     punch = PolygonalPunch(inscribed_radius=1.0)
@@ -139,17 +119,6 @@ def test_a_circle_is_a_circle():
             np.testing.assert_allclose(getattr(path, name), getattr(round_, name), rtol=1e-12)
 
 
-@pytest.mark.parametrize("ratio", [25.0, 50.0, 100.0])
-def test_a_thin_incompressible_layer_obeys_poissons_equation(ratio):
-    """k_N = (pi E/(4 h^3)) A^3 B^3/(A^2 + B^2); layers approach the ratio to the circle with the first order of h/a."""
-    punch = EllipticPunch(first_half_axis=1.1, second_half_axis=0.9)
-    path, round_ = (solved(MDR, layer(ratio), one) for one in (punch, punch.mean))
-    limit = 2.0 * (1.1 * 0.9) ** 3 / (1.1**2 + 0.9**2) / punch.mean.radius**4
-    found = path.contact_stiffness[0] / round_.contact_stiffness[0]
-    assert found == pytest.approx(limit, rel=0.08 / ratio, abs=0.0)
-    assert found != pytest.approx(limit, rel=0.06 / ratio, abs=0.0)
-
-
 @pytest.mark.first(1)
 @BOTH
 @pytest.mark.parametrize("indenter", [Pyramid(slope=0.1), PolygonalPunch(inscribed_radius=0.3)])
@@ -170,28 +139,6 @@ def test_the_stiffness_is_the_derivative_of_the_force(body):
     path = solved(MDR, body, Pyramid(slope=0.1, tip_radius=0.5), IndentationDepths(depth))
     numeric = (path.normal_force[2] - path.normal_force[0]) / (depth[2] - depth[0])
     assert path.contact_stiffness[1] == pytest.approx(numeric, rel=1e-6, abs=0.0)
-
-
-@pytest.mark.slow
-def test_many_depths_are_those_of_few():
-    """Long paths interpolate the harmonics over the contact radius."""
-    depths = np.geomspace(1e-3, 0.1, 60)
-    tip = Pyramid(slope=0.1, tip_radius=0.5)
-    path, few = (solved(MDR, layer(2.0), tip, IndentationDepths(some)) for some in (depths, depths[[7, 33]]))
-    for name in ContactPath.ARRAYS:
-        np.testing.assert_allclose(getattr(path, name)[[7, 33]], getattr(few, name), rtol=2e-7)
-
-
-@pytest.mark.slow
-def test_the_whole_grid_is_that_of_a_quadrant():
-    """An order that is odd by name only: n = 3 without a share needs the whole grid."""
-    profile = Paraboloid(radius_of_curvature=1.0)
-    even, odd = Harmonics(profile=profile, terms={2: 0.2}), Harmonics(profile=profile, terms={2: 0.2, 3: 0.0})
-    path, whole = (solved(Bem(points=96), layer(0.1, 0.3), one) for one in (even, odd))
-    for name in ContactPath.ARRAYS:
-        np.testing.assert_allclose(
-            getattr(whole, name), getattr(path, name), rtol=1e-6 if "radius" not in name else 1e-3
-        )
 
 
 def test_a_pyramid_is_stiffer_than_its_equivalent_cone():

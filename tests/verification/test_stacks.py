@@ -1,4 +1,4 @@
-"""Contacts on layer stacks: published digits, the separate integral equation, limits, tension, batches and time."""
+"""Contacts on layer stacks: tension, several contacts, batches and time."""
 
 from __future__ import annotations
 
@@ -18,7 +18,6 @@ from contact import (
     Impact,
     IndentationDepths,
     InvalidInput,
-    Layer,
     LayerStack,
     LinearDepth,
     NormalForces,
@@ -26,7 +25,6 @@ from contact import (
     Scene,
     StandardSolid,
     Sublayer,
-    Tabulated,
     TabulatedDepth,
     TruncatedCone,
     UnsupportedSceneError,
@@ -35,8 +33,6 @@ from fem_reference import Fem
 from mdr import Mdr
 from mdr.admissible import PullingContact
 from mdr.batches import equilibria
-from mdr.radius_search import RadiusSearch, SeveralContacts
-from mdr.spring_bed import Springs
 
 PARABOLOID = Paraboloid(radius_of_curvature=1.0)
 
@@ -54,81 +50,6 @@ def film(ratio, nu=0.3, thickness=1.0):
 
 def solve(layer, indenter, loading, **parts):
     return Mdr().solve(Scene(layer=layer, indenter=indenter, loading=loading, **parts))
-
-
-# Solved in Fourier space by Legendre-Galerkin, h_total = 1, R = 1, a = 1 (THEORY_STACKS, section 7).
-PUBLISHED = [
-    (stack((0.5, 1.0, 0.3), (0.5, 10.0, 0.3)), 4.029072582822, 0.582871322414, 2.373099580873),
-    (stack((0.5, 10.0, 0.3), (0.5, 1.0, 0.3)), 0.650379832415, 0.892382241985, 0.657189735505),
-    (film(0.1), 0.208798673980, 2.302830217806, 0.792316748517),
-]
-
-
-STACKS = {
-    "soft on stiff": PUBLISHED[0][0],
-    "stiff on soft": PUBLISHED[1][0],
-    "film on a half-space": film(0.5),
-    "slipping": stack(
-        (0.3, 1.0, 0.5), (0.2, 10.0, 0.4), (0.5, 3.0, 0.5), interfaces=("unbonded", "bonded"), support="unbonded"
-    ),
-    "hardly any modulus at the top": stack(
-        (0.1, 1e-4, 0.5), (1.0, 1.0, 0.3), support=ElasticBase(youngs_modulus=1e2, poissons_ratio=0.0)
-    ),
-    "a sheet of great modulus": stack((0.1, 1e4, 0.3), (1.0, 1.0, 0.5)),
-}
-CONTACTS = {
-    "paraboloid": (PARABOLOID, ContactRadii([0.4, 1.0])),
-    "truncated cone": (TruncatedCone(flat_radius=0.3, slope=0.1), ContactRadii([0.4])),
-    "flat punch": (FlatPunch(radius=0.5), IndentationDepths([0.01])),
-    "cone, depth": (Cone(slope=0.2), IndentationDepths([0.05])),
-    "paraboloid, force": (PARABOLOID, NormalForces([0.02])),
-    "measured": (Tabulated(radii=[0.0, 0.2, 0.5, 1.0], heights=[0.0, 0.01, 0.07, 0.31]), ContactRadii([0.6])),
-}
-PULLING = {("a sheet of great modulus", name) for name in ("truncated cone", "flat punch", "measured")}
-
-
-@pytest.mark.first(6)
-@pytest.mark.parametrize(
-    ("name", "contact"),
-    [*((name, "truncated cone") for name in STACKS), *(("slipping", c) for c in CONTACTS if c != "truncated cone")],
-)
-def test_the_separate_integral_equation_agrees(name, contact):
-    layer, (indenter, loading) = STACKS[name], CONTACTS[contact]
-    scene = Scene(layer=layer, indenter=indenter, loading=loading)
-    if (name, contact) in PULLING:
-        with pytest.raises(UnsupportedSceneError, match=r"would pull at r =|no single circle"):
-            Mdr().solve(scene)
-        return
-    ours, other = Mdr().solve(scene), IntegralEquationMethod().solve(scene)
-    for quantity in ("contact_radius", "indentation_depth", "normal_force", "contact_stiffness"):
-        np.testing.assert_allclose(getattr(ours, quantity), getattr(other, quantity), rtol=1e-11)
-    a = float(ours.contact_radius[-1])
-    step = len(ours) - 1
-    inside, outside = a * np.array([0.1, 0.5, 0.9, 0.98]), a * np.array([1.01, 1.5, 4.0])
-    expected = other.pressure(inside, step)
-    np.testing.assert_allclose(ours.pressure(inside, step), expected, rtol=0, atol=1e-10 * abs(expected).max())
-    np.testing.assert_allclose(
-        ours.surface_displacement(outside, step),
-        other.surface_displacement(outside, step),
-        rtol=0,
-        atol=1e-11 * ours.indentation_depth[step],
-    )
-
-
-@pytest.mark.parametrize("support", ["bonded", "unbonded"])
-def test_equal_sublayers_are_one_layer(support):
-    one = Layer(thickness=1.0, youngs_modulus=2.0, poissons_ratio=0.4, support=support)
-    cut = stack((0.2, 2.0, 0.4), (0.5, 2.0, 0.4), (0.3, 2.0, 0.4), support=support)
-    for indenter in (PARABOLOID, TruncatedCone(flat_radius=0.5, slope=0.1)):
-        whole, parts = (solve(layer, indenter, ContactRadii([0.6, 2.0])) for layer in (one, cut))
-        np.testing.assert_allclose(parts.normal_force, whole.normal_force, rtol=1e-12)
-        np.testing.assert_allclose(parts.indentation_depth, whole.indentation_depth, rtol=1e-12)
-
-
-def test_a_film_of_the_bases_own_material_is_a_half_space():
-    half_space = Layer.half_space(youngs_modulus=1.0, poissons_ratio=0.3)
-    whole, part = (solve(layer, PARABOLOID, ContactRadii([0.3, 3.0])) for layer in (half_space, film(1.0)))
-    np.testing.assert_allclose(part.normal_force, whole.normal_force, rtol=1e-12)
 
 
 def test_a_contact_too_wide_for_its_first_sublayer_is_refused_with_both_lengths():
@@ -156,12 +77,6 @@ def test_a_truncated_cone_pulls_on_a_stiff_film_under_every_loading(loading):
     with pytest.raises(PullingContact):
         solve(film(0.1), cone, loading)
     assert solve(film(0.5), cone, loading).normal_force[0] > 0.0
-
-
-@pytest.mark.parametrize("ratio", [0.2, 1e-4])
-@pytest.mark.parametrize("radius", [0.3, 10.0])
-def test_a_paraboloid_never_pulls(ratio, radius):
-    assert solve(film(ratio), PARABOLOID, ContactRadii([radius])).normal_force[0] > 0.0
 
 
 @pytest.mark.parametrize("method", [Mdr(), IntegralEquationMethod(), Bem(points=96)], ids=lambda method: method.name)
@@ -220,19 +135,6 @@ def test_batches_over_thickness_and_modulus_share_one_solution():
 SOLID = (StandardSolid(long_term_shear_modulus=0.25, maxwell_shear_modulus=0.75, viscosity=0.5),)
 
 
-def test_layers_that_relax_alike_are_modelled():
-    parts = stack((0.4, 3.0, 0.5), (0.6, 3.0, 0.5))
-    whole = Layer.incompressible(thickness=1.0, shear_modulus=1.0)
-    history = DepthHistory(time=[0.0, 1.0, 2.0], depth=[0.0, 0.1, 0.02])
-    for loading in (history, Impact(mass=0.1, velocity=0.05)):
-        one, cut = (solve(layer, PARABOLOID, loading, effects=SOLID) for layer in (whole, parts))
-        peak = np.abs(one.normal_force).max()
-        if isinstance(loading, DepthHistory):
-            np.testing.assert_allclose(cut.normal_force, one.normal_force, rtol=0, atol=1e-7 * peak)
-        else:
-            assert cut.coefficient_of_restitution == pytest.approx(one.coefficient_of_restitution, rel=1e-8, abs=0.0)
-
-
 def test_different_moduli_with_one_relaxation_function_relax_as_it_does():
     """By correspondence the force at rest is the elastic one times G(t)/G(0), whatever the moduli's ratios are."""
     layer = stack((0.4, 3.0, 0.5), (0.3, 0.3, 0.5), (0.3, 30.0, 0.5))
@@ -278,22 +180,6 @@ def test_a_small_contact_on_a_bending_film_is_refused_where_it_is_touched_beside
     with pytest.raises(UnsupportedSceneError, match=r"would touch at r = 0\.[34]\d* m"):
         solve(layer, Cone(slope=0.1), IndentationDepths([depth]))
     assert solve(layer, Cone(slope=0.1), IndentationDepths([0.0494])).contact_radius[0] < 0.016
-
-
-@pytest.mark.slow
-def test_wide_contacts_beyond_a_falling_profile_are_answered_where_they_press():
-    """The separate integral equation knows no profile g at all."""
-    radius, layer = 5.0, stack((0.2, 100.0, 0.2), (0.8, 1.0, 0.49))
-    indenter = TruncatedCone(flat_radius=2.3, slope=0.1)
-    with pytest.raises(SeveralContacts):
-        RadiusSearch(Springs.of(layer, indenter), may_fall=True).refuse_falls(radius)
-    direct = IntegralEquationMethod().solve(Scene(layer=layer, indenter=indenter, loading=ContactRadii([radius])))
-    depth, force = direct.indentation_depth, direct.normal_force
-    for loading in (IndentationDepths(depth), NormalForces(force), ContactRadii([radius])):
-        path = solve(layer, indenter, loading)
-        np.testing.assert_allclose(path.contact_radius, radius, rtol=1e-9)
-        np.testing.assert_allclose(path.normal_force, force, rtol=1e-9)
-        np.testing.assert_allclose(path.indentation_depth, depth, rtol=1e-9)
 
 
 def test_radii_on_the_falling_stretch_are_refused():

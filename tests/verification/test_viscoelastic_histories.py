@@ -1,13 +1,10 @@
-"""Prescribed depth and force histories against closed forms, the impact solver and a brute-force bed of springs."""
+"""Prescribed depth histories against closed forms, and refusals."""
 
 import numpy as np
 import pytest
-from scipy.interpolate import CubicSpline
 from scipy.special import hyp1f1
 
-from cases.declare.methods import build
 from contact import (
-    Cone,
     ContactRadii,
     DepthHistory,
     FlatPunch,
@@ -26,7 +23,7 @@ from contact import (
 )
 from mdr import Mdr
 from tests.bed import bed_of
-from tests.mdr.viscoelastic_scenes import GLASSY_BRANCH, LONG_TERM, RELAXATION_TIME, figure_12, incompressible
+from tests.mdr.viscoelastic_scenes import GLASSY_BRANCH, LONG_TERM, RELAXATION_TIME, incompressible
 
 TOTAL = GLASSY_BRANCH + LONG_TERM
 CURVATURE = 0.01
@@ -73,29 +70,6 @@ def test_ramps_of_tips_that_are_not_smooth(exponent):
     assert answer.error_estimate["normal_force"][-1] < 1e-11
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("indenter", "model", "tolerance"),
-    [
-        (Cone(slope=0.1), STANDARD, 1e-6),
-        (Paraboloid(radius_of_curvature=CURVATURE), KELVIN_VOIGT, 1e-3),
-    ],
-)
-def test_a_release_states_its_error(indenter, model, tolerance):
-    """Where the force goes to zero the depth is a root of it, and substeps of one size lose their order."""
-    release = Scene(
-        layer=incompressible(np.inf, TOTAL),
-        indenter=indenter,
-        loading=ForceHistory(time=[0.0, 1e-3, 2e-3, 4e-3], force=[0.0, 1.0, 1.0, 0.0]),
-        effects=(model,),
-    )
-    coarse, fine = Mdr(accuracy=1e-7).solve(release), Mdr(accuracy=1e-8).solve(release)
-    error = np.abs(coarse.indentation_depth - fine.indentation_depth)
-    assert np.all(error <= coarse.uncertainty("indentation_depth") + fine.uncertainty("indentation_depth"))
-    assert error.max() <= tolerance * fine.indentation_depth.max()
-    assert coarse.contact_radius[-1] == 0.0
-
-
 @pytest.mark.parametrize("frequency", [160.0])
 def test_flat_punch_oscillates_with_the_complex_modulus(frequency):
     """F = k_N/G_0 Im[G*(omega) exp(i omega t)] about a relaxed mean, once transients have died."""
@@ -114,55 +88,6 @@ def test_flat_punch_oscillates_with_the_complex_modulus(frequency):
     last = slice(-256, None)
     expected = stiffness * (1e-5 * LONG_TERM + 1e-6 * np.imag(modulus * np.exp(1j * omega * sway[last])))
     np.testing.assert_allclose(answer.normal_force[last], expected, atol=2e-4 * stiffness * 1e-6 * TOTAL)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("thickness", [np.inf, 1e-3])
-def test_an_impact_played_back_as_a_history(thickness):
-    """Depth in, force out; force in, depth out: on loading and on unloading with a receding front."""
-    impact = Mdr(accuracy=1e-11).solve(figure_12(thickness))
-    # Straight lines between the instants of the impact alone err by 1e-3 of the force.
-    share = np.arange(impact.time.size * 4 - 3) / 4
-    time = np.interp(share, np.arange(impact.time.size), impact.time)
-    by_depth = solve(
-        DepthHistory(time=time, depth=CubicSpline(impact.time, impact.indentation_depth)(time)), thickness=thickness
-    )
-    np.testing.assert_allclose(by_depth.normal_force[::4], impact.normal_force, atol=2e-4 * impact.peak_force)
-    inner = impact.contact_radius > 0.1 * impact.peak_contact_radius
-    np.testing.assert_allclose(by_depth.contact_radius[::4][inner], impact.contact_radius[inner], rtol=5e-3)
-
-
-def brute_force(thickness, time, depth, count=160, substeps=400):
-    """Explicit Euler steps of every spring, free ones included: slow, of first order, from Eqs. (51) and (52) alone."""
-    layer = incompressible(thickness, TOTAL)
-    radius = 1.02 * np.sqrt(CURVATURE * depth.max()) * (1.0 if np.isinf(thickness) else 1.5)
-    springs = bed_of(layer, Paraboloid(radius_of_curvature=CURVATURE), Mdr().flat_punch)
-    x = radius * (np.arange(count) + 0.5) / count
-    weight, profile = 2.0 * radius / count * springs.spring_stiffness(x), springs.mdr_profile(x)
-    u, inner, forces = np.zeros(count), np.zeros(count), [0.0]
-    g_inf, g_one = LONG_TERM / TOTAL, GLASSY_BRANCH / TOTAL
-    for k in range(1, time.size):
-        for m in range(substeps):
-            dt = (time[k] - time[k - 1]) / substeps
-            delta = depth[k - 1] + (depth[k] - depth[k - 1]) * (m + 1) / substeps
-            stretched = inner + (delta - profile - u) - inner * dt / RELAXATION_TIME
-            pushed = g_inf * (delta - profile) + g_one * stretched
-            free = g_one * inner * dt / RELAXATION_TIME  # u' (g_inf + g_one) = g_one inner/tau
-            contact = pushed > 0.0  # a free spring that is not reached would be pulled
-            inner = np.where(contact, stretched, inner + free - inner * dt / RELAXATION_TIME)
-            u = np.where(contact, delta - profile, u + free)
-        forces.append(float(weight @ np.where(contact, g_inf * u + g_one * inner, 0.0)))
-    return np.array(forces)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("thickness", [1e-3])
-def test_loading_unloading_and_reloading_before_recovery(thickness):
-    time = np.linspace(0.0, 5e-3, 61)
-    depth = 1e-4 * np.interp(time, [0.0, 1e-3, 1.6e-3, 2.6e-3, 3.2e-3, 5e-3], [0.0, 1.0, 0.75, 1.1, 0.3, 1.2])
-    answer = solve(DepthHistory(time=time, depth=depth), thickness=thickness)
-    expected = brute_force(thickness, time, depth)
-    np.testing.assert_allclose(answer.normal_force, expected, atol=1.5e-2 * expected.max())
 
 
 def test_a_worn_cone_and_its_flat_end():
@@ -206,43 +131,6 @@ def test_a_measured_profile_of_any_size(unit, model):
     error = float(answer.error_estimate["normal_force"][1])
     assert error < 1e-4
     assert answer.normal_force[1] == pytest.approx(expected, rel=error, abs=0.0)
-
-
-def test_a_history_states_the_error_of_its_springs():
-    """On a coarse table 7.8e-5 off where 2.4e-8 was stated at first."""
-    coarse = build("mdr_table", {"cells": 64, "ratios": 60, "radii": 100})
-    scene = Scene(
-        layer=incompressible(1e-3, TOTAL),
-        indenter=Paraboloid(radius_of_curvature=5e-3),
-        loading=DepthHistory(time=[0.0, 1e-3, 2e-3], depth=[0.0, 5e-5, 2e-5]),
-        effects=(STANDARD,),
-    )
-    found, fine = coarse.solve(scene), Mdr().solve(scene)
-    for quantity in ("normal_force", "contact_radius"):
-        difference = np.abs(getattr(found, quantity) - getattr(fine, quantity)).max()
-        stated = float(found.error_estimate[quantity][0])
-        assert difference <= stated * np.abs(getattr(fine, quantity)).max(), quantity
-        assert stated < 0.05, quantity
-
-
-def test_a_front_just_inside_a_breakpoint():
-    """F = F_el + tau v k_N on a ramp of depth. Three springs tell the front, and fewer are left: 0.17 off at first."""
-    radii = np.array([0.0, 0.2, 0.45, 0.6, 0.9, 1.3, 1.5])
-    indenter = Tabulated(radii=radii, heights=0.05 * np.array([0.0, 0.03, 0.2, 0.4, 0.85, 1.8, 2.4]))
-
-    def elastic(loading):
-        return Mdr().solve(Scene(layer=incompressible(np.inf, TOTAL), indenter=indenter, loading=loading))
-
-    inside = radii[1:6, None] - (radii[1:6] - radii[:5])[:, None] * 10.0 ** -np.arange(1.0, 6.0)
-    met = elastic(ContactRadii(np.sort(inside.ravel())))
-    depths = np.concatenate([[0.0], met.indentation_depth])
-    time = 1e-3 * depths
-    answer = solve(DepthHistory(time=time, depth=depths), model=KELVIN_VOIGT, indenter=indenter)
-    # Differences of rounded times are off by 1e-12.
-    expected = met.normal_force + RELAXATION_TIME * np.diff(depths) / np.diff(time) * met.contact_stiffness
-    stated = float(answer.error_estimate["normal_force"][0])
-    assert stated < 1e-8
-    assert np.max(np.abs(answer.normal_force[1:] - expected)) <= stated * expected[-1]
 
 
 def test_what_is_refused():

@@ -1,4 +1,4 @@
-"""What the paper says, and what the methods measure: each statement with the computation that checks it.
+"""What the paper says: each row of `docs/paper.md` with the computation that checks its verdict.
 
 - ``statement``: what a statement is, and its verdict
 - ``flat_punch``, ``profiles``, ``detachment``, ``impacts``, ``slips``: the statements by section of the paper

@@ -25,7 +25,7 @@ from mdr.equilibria import solve_elastic
 from mdr.impact.solver import solve_impact
 from tests.coated_pairs import mean_thickness_error
 from tests.verification.paper.profiles import cone
-from tests.verification.paper.statement import FORMULA, GOOD, SAME, Measured, Statement, deviation, reads, within
+from tests.verification.paper.statement import GOOD, SAME, Statement, deviation, reads, within
 
 # Gauss nodes on the contact, and degree of the polynomial through g at these.
 NODES = 16
@@ -37,7 +37,7 @@ PROFILES: dict[str, Profile] = {
 }
 
 
-def displacement_by_punches(one: Layer, place: float) -> Measured:
+def displacement_by_punches(one: Layer, place: float) -> float:
     """Eq. (13) at r = place a, a = h: flat punches put on top of each other, over the solved displacement."""
     ball = Paraboloid(radius_of_curvature=CURVATURE)
     nodes, weights = leggauss(NODES)
@@ -48,7 +48,7 @@ def displacement_by_punches(one: Layer, place: float) -> Measured:
     slope = Chebyshev.fit(x, depth[:-1], NODES - 1, domain=[0.0, 1.0]).deriv()(x)
     beside = np.array([_beside_punch(one, float(radius), place) for radius in x])
     summed = float(np.sum(weights / 2 * slope * beside))
-    return deviation(summed, float(path.surface_displacement([place], NODES)[0]), 1e-8)
+    return deviation(summed, float(path.surface_displacement([place], NODES)[0]))
 
 
 def _beside_punch(one: Layer, radius: float, place: float) -> float:
@@ -57,22 +57,21 @@ def _beside_punch(one: Layer, radius: float, place: float) -> float:
     return float(path.surface_displacement([place], 0)[0]) / 1e-3
 
 
-def thin_depth(profile: Profile) -> Measured:
+def thin_depth(profile: Profile) -> float:
     """Eq. (20)'s profile, the mean height over the contact, over the depth at a/h = 100, nu = 1/2."""
     path = pressed(layer(0.5), profile, 100.0)
     limit = float(thin_profile(layer(0.5), profile, np.array([100.0]))[0])
-    error = float(path.error_estimate["indentation_depth"][0])
-    return deviation(limit, float(path.indentation_depth[0]), error)
+    return deviation(limit, float(path.indentation_depth[0]))
 
 
-def unequal_radii() -> Measured:
+def unequal_radii() -> float:
     """Force of bodies with radii R and 2 R over that of two with R at one contact radius; curvatures 3/(2 R), 2/R."""
     radius, h = 1e-2, 1e-3
     first, second = (solve_elastic(pair(radius, n * radius, (h, h), h), SOURCE, {}) for n in (2.0, 1.0))
-    return deviation(float(first.normal_force[0] / second.normal_force[0]), 0.75, 1e-9)
+    return deviation(float(first.normal_force[0] / second.normal_force[0]), 0.75)
 
 
-def mean_thickness(poissons_ratio: float, ratio: float) -> Measured:
+def mean_thickness(poissons_ratio: float, ratio: float) -> float:
     """Force of Eq. (25) over that of coatings of 0.9 h and 1.1 h as they are."""
     bodies = CoatedPair(
         first_radius=1e-2,
@@ -84,30 +83,29 @@ def mean_thickness(poissons_ratio: float, ratio: float) -> Measured:
         support="bonded",
         loading=ContactRadii([ratio * 1e-3]),
     )
-    return Measured(float(mean_thickness_error(bodies, ratio * 1e-3).normal_force[0]), 1e-9, in_percent=True)
+    return float(mean_thickness_error(bodies, ratio * 1e-3).normal_force[0])
 
 
-def thin_pressure(ratio: float) -> Measured:
+def thin_pressure(ratio: float) -> float:
     """Eq. (39) in the middle over the solved pressure, nu = 1/2, b/a = 0.5."""
     one = layer(0.5)
     path = pressed(one, cone(ratio), ratio)
     solved = float(path.pressure(np.array([0.0]))[0])
-    error = float(path.error_estimate["pressure"][0])
-    return deviation(float(thin_cone_pressure(one, cone(ratio), ratio, np.array([0.0]))[0]), solved, error)
+    return deviation(float(thin_cone_pressure(one, cone(ratio), ratio, np.array([0.0]))[0]), solved)
 
 
-def impact_number() -> Measured:
+def impact_number() -> float:
     """chi_HS of the data of Fig. 12, Eq. (53)."""
     viscosity = MAXWELL_MODULUS * RELAXATION_TIME
     inner = RADIUS_OF_CURVATURE * VELOCITY / (MASS**2 * LONG_TERM_MODULUS**3)
-    return Measured(viscosity * inner**0.2, 1e-5)
+    return viscosity * inner**0.2
 
 
-def same_thin_impact(support: str) -> Measured:
+def same_thin_impact(support: str) -> float:
     """Restitution with twice the thickness at one chi_TL, Eq. (54), over the original one; a/h is about 80."""
     pairs = {"bonded": 2.0**1.5, "unbonded": 2.0}
     runs = [_thin_impact(support, thickness, speed) for thickness, speed in ((1.0, 1.0), (2.0, pairs[support]))]
-    return deviation(runs[1], runs[0], 1e-7)
+    return deviation(runs[1], runs[0])
 
 
 def _thin_impact(support: str, thickness: float, speed: float) -> float:
@@ -138,10 +136,7 @@ def _superposition() -> Iterator[Statement]:
     for one in (UNBONDED, layer(0.5)):
         for place in (1.2, 2.0):
             yield Statement(
-                "Eq. (13)",
                 f"{name_of(one)}, r = {place:g} a: displacements outside follow from flat punches",
-                "equal",
-                "superposition over the solved displacement, a = h",
                 partial(displacement_by_punches, one, place),
                 within(1e-6),
             )
@@ -151,10 +146,7 @@ def _thin_profiles() -> Iterator[Statement]:
     """Eq. (20): thin layers by the closed form."""
     for name, profile in PROFILES.items():
         yield Statement(
-            "Eq. (20)",
             f"{name}: the closed-form MDR of bonded incompressible thin layers",
-            "(2/x^2) int f r dr",
-            "its depth over the depth at a/h = 100",
             partial(thin_depth, profile),
             within(GOOD),
         )
@@ -162,20 +154,10 @@ def _thin_profiles() -> Iterator[Statement]:
 
 def _pairs() -> Iterator[Statement]:
     """Eqs. (23) and (25): two bodies, two coatings."""
-    yield Statement(
-        "Eq. (23)",
-        "bodies of radii R and 2 R: curvatures add",
-        "3/4 of the force of two with R",
-        "force over this",
-        unequal_radii,
-        within(1e-9),
-    )
+    yield Statement("bodies of radii R and 2 R: curvatures add", unequal_radii, within(1e-9))
     for nu, ratio in ((0.3, 0.5), (0.3, 5.0), (0.5, 0.5), (0.5, 5.0)):
         yield Statement(
-            "Eq. (25)",
             f"nu = {nu:g}, a/h = {ratio:g}: coatings of 0.9 h and 1.1 h are well replaced by h",
-            "good",
-            "force over that of the two as they are",
             partial(mean_thickness, nu, ratio),
             within(GOOD),
         )
@@ -185,32 +167,16 @@ def _thin_pressures() -> Iterator[Statement]:
     """Eq. (39): pressures on thin layers."""
     for ratio in (20.0, 100.0):
         yield Statement(
-            "Eq. (39)",
-            f"the asymptotic pressure of a truncated cone, a/h = {ratio:g}",
-            "Eq. (39)",
-            "in the middle, over the solved pressure",
-            partial(thin_pressure, ratio),
-            within(GOOD),
+            f"the asymptotic pressure of a truncated cone, a/h = {ratio:g}", partial(thin_pressure, ratio), within(GOOD)
         )
 
 
 def _impacts() -> Iterator[Statement]:
     """Eqs. (53) and (54): numbers of impacts."""
-    yield Statement(
-        "Eq. (53)",
-        "chi_HS of the data of Fig. 12",
-        "2.65",
-        "chi_HS",
-        impact_number,
-        reads(2.65, 0.005),
-        FORMULA,
-    )
+    yield Statement("chi_HS of the data of Fig. 12", impact_number, reads(2.65, 0.005))
     for support in ("unbonded", "bonded"):
         yield Statement(
-            "Eq. (54)",
             f"{support}: chi_TL and G_inf/G_1 define impacts on thin layers",
-            "defining",
-            "restitution on twice the thickness at one chi_TL over the original",
             partial(same_thin_impact, support),
             within(SAME),
         )
@@ -219,18 +185,12 @@ def _impacts() -> Iterator[Statement]:
 def _likeness() -> Iterator[Statement]:
     """Section 3.2: unbonded layers and bonded ones with nu = 0."""
     yield Statement(
-        "Section 3.2",
         "unbonded and bonded with nu = 0 give almost the same, wherever they differ most",
-        "almost the same",
-        "largest difference of the stiffness",
-        lambda: Measured(largest_difference()[1], 1e-8, in_percent=True),
+        lambda: largest_difference()[1],
         within(SAME),
     )
     yield Statement(
-        "Section 3.2",
         "unbonded and bonded with nu = 0: the difference is largest here",
-        "not said",
-        "a/h",
-        lambda: Measured(largest_difference()[0], 5e-3),
+        lambda: largest_difference()[0],
         lambda value: value > 0.0,
     )

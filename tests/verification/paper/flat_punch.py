@@ -13,69 +13,62 @@ from docs.gallery.figure_03 import thin_layer_stiffness
 from docs.gallery.figure_04 import second_maximum
 from docs.gallery.figure_05 import exponent
 from tests.layer_kernel import compliance_kernel
-from tests.verification.paper.statement import FORMULA, GOOD, SAME, Measured, Statement, above, deviation, reads, within
+from tests.verification.paper.statement import GOOD, SAME, Statement, above, deviation, reads, within
 
 LAYERS = (UNBONDED, *(layer(nu) for nu in (0.0, 0.3, 0.4, 0.45, 0.5)))
 NEAREST = 1e-3
 
 
-def stiffness(one: Layer, ratio: float) -> tuple[float, float]:
-    """kbar and its relative error."""
-    data, at = punch(one), np.array(ratio)
-    return float(data.normalized_contact_stiffness(at)), float(data.relative_error(at))
+def stiffness(one: Layer, ratio: float) -> float:
+    """kbar."""
+    return float(punch(one).normalized_contact_stiffness(np.array(ratio)))
 
 
-def off_half_space(one: Layer, ratio: float) -> Measured:
+def off_half_space(one: Layer, ratio: float) -> float:
     """Stiffness over that of the half-space."""
-    value, error = stiffness(one, ratio)
-    return deviation(value, 1.0, error)
+    return deviation(stiffness(one, ratio), 1.0)
 
 
-def off_thin_layer(one: Layer, ratio: float) -> Measured:
+def off_thin_layer(one: Layer, ratio: float) -> float:
     """The thin layer's stiffness over the exact one."""
-    value, error = stiffness(one, ratio)
-    return deviation(float(thin_layer_stiffness(one, np.array(ratio))), value, error)
+    return deviation(float(thin_layer_stiffness(one, np.array(ratio))), stiffness(one, ratio))
 
 
-def unbonded_over_bonded(ratio: float) -> Measured:
+def unbonded_over_bonded(ratio: float) -> float:
     """Unbonded stiffness over that of the bonded layer with nu = 0."""
-    (loose, first), (bonded, second) = stiffness(UNBONDED, ratio), stiffness(layer(0.0), ratio)
-    return deviation(loose, bonded, first + second)
+    return deviation(stiffness(UNBONDED, ratio), stiffness(layer(0.0), ratio))
 
 
-def kernel_limit(support: str, nu: float, q: float, limit: float) -> Measured:
+def kernel_limit(support: str, nu: float, q: float, limit: float) -> float:
     """chi over its limit."""
     value = float(compliance_kernel(q, "unbonded" if support == "unbonded" else "bonded", nu))
-    return deviation(value, limit, 1e-15)
+    return deviation(value, limit)
 
 
-def exponent_at(one: Layer, ratio: float) -> Measured:
+def exponent_at(one: Layer, ratio: float) -> float:
     """m of Eq. (34)."""
-    value, error = exponent(one, np.array([ratio]))
-    return Measured(float(value[0]), error * (1 + float(value[0])))
+    return float(exponent(one, np.array([ratio]))[0][0])
 
 
-def hayes(label: str) -> Measured:
+def hayes(label: str) -> float:
     """Largest deviation of the table that Fig. 3 shows."""
     data = punch(layer(float(label.removeprefix("bonded nu="))))
     ours = data.normalized_contact_stiffness(np.array(HAYES_RATIOS))
     off = np.array([HAYES[label][ratio] for ratio in HAYES_RATIOS]) / ours - 1
-    return Measured(float(off[np.argmax(abs(off))]), 5e-4, in_percent=True)
+    return float(off[np.argmax(abs(off))])
 
 
-def pressure(ratio: float, place: float) -> Measured:
+def pressure(ratio: float, place: float) -> float:
     """p/p_mean of a flat punch on the bonded incompressible layer; the smooth factor at the edge itself."""
-    data, at = punch(layer(0.5)), np.array(ratio)
     root = np.sqrt(1 - place**2) if place < 1 else 1.0
-    value = float(data.smooth_pressure(np.array([place]), np.array([ratio]))[0]) / root
-    return Measured(value, value * float(data.relative_error(at)))
+    return float(punch(layer(0.5)).smooth_pressure(np.array([place]), np.array([ratio]))[0]) / root
 
 
-def growth(one: Layer) -> Measured:
+def growth(one: Layer) -> float:
     """Smallest change of ln kbar per change of ln(a/h) on 400 ratios from 0.001 to 100."""
     ratios = np.geomspace(1e-3, 100.0, 400)
     values = punch(one).normalized_contact_stiffness(ratios)
-    return Measured(float(np.min(np.diff(np.log(values)) / np.diff(np.log(ratios)))), 1e-8)
+    return float(np.min(np.diff(np.log(values)) / np.diff(np.log(ratios))))
 
 
 def statements() -> Iterator[Statement]:
@@ -88,29 +81,21 @@ def statements() -> Iterator[Statement]:
 
 def kernel_limits() -> Iterator[Statement]:
     """The kernel between thin layer and half-space."""
-    for support, nu, limit, name in (
-        ("unbonded", 0.3, 5e-4, "q/2"),
-        ("bonded", 0.3, 4e-4 / (2 * 0.49), "q (1 - 2 nu)/(2 (1 - nu)^2)"),
-        ("bonded", 0.45, 1e-4 / (2 * 0.55**2), "q (1 - 2 nu)/(2 (1 - nu)^2)"),
-        ("bonded", 0.5, 2e-9 / 3, "(2/3) q^3"),
+    for support, nu, limit in (
+        ("unbonded", 0.3, 5e-4),
+        ("bonded", 0.3, 4e-4 / (2 * 0.49)),
+        ("bonded", 0.45, 1e-4 / (2 * 0.55**2)),
+        ("bonded", 0.5, 2e-9 / 3),
     ):
         yield Statement(
-            "Eqs. (29), (31)",
             f"{support}, nu = {nu:g}: the kernel leads to the thin layer of Section 2.1",
-            name,
-            "chi at q = 0.001 over this",
             partial(kernel_limit, support, nu, NEAREST, limit),
             within(2e-3),
-            FORMULA,
         )
         yield Statement(
-            "Eqs. (29), (31)",
             f"{support}, nu = {nu:g}: the kernel leads to the half-space",
-            "1",
-            "chi at q = 20",
             partial(kernel_limit, support, nu, 20.0, 1.0),
             within(1e-12),
-            FORMULA,
         )
 
 
@@ -118,36 +103,24 @@ def limits_of_stiffness() -> Iterator[Statement]:
     """Where half-space and thin layer are good approximations."""
     for one in LAYERS:
         yield Statement(
-            "Section 3.2",
             f"{name_of(one)}: for a/h < 0.1 the half-space is a good approximation",
-            "a/h < 0.1",
-            "stiffness at a/h = 0.1 over the half-space",
             partial(off_half_space, one, 0.1),
             within(GOOD),
         )
     for one in LAYERS:
         yield Statement(
-            "Section 3.2",
             f"{name_of(one)}: for a/h > 50 the thin layer is a good approximation",
-            "a/h > 50",
-            "Table 1 at a/h = 50 over the stiffness",
             partial(off_thin_layer, one, 50.0),
             within(GOOD),
         )
     yield Statement(
-        "Section 3.2",
         "bonded (nearly) incompressible layers approach slower",
-        "slower",
-        "nu = 0.5: Table 1 at a/h = 100 over the stiffness, beyond the 2 % that nu = 0.3 needs no more",
         partial(off_thin_layer, layer(0.5), 100.0),
         lambda value: abs(value) > 0.02,
     )
     for ratio in (0.1, 0.2, 0.5, 1.0, 2.0, 5.0):
         yield Statement(
-            "Section 3.2",
             f"a/h = {ratio:g}: unbonded and bonded with nu = 0 give almost the same",
-            "almost exactly",
-            "unbonded over bonded stiffness",
             partial(unbonded_over_bonded, ratio),
             within(SAME),
         )
@@ -157,21 +130,13 @@ def growth_of_stiffness() -> Iterator[Statement]:
     """Stiffness against confinement, other authors and its exponent."""
     for one in (UNBONDED, layer(0.3), layer(0.5)):
         yield Statement(
-            "Section 3.2",
             f"{name_of(one)}: the stiffness increases with the confinement",
-            "increases",
-            "smallest slope of ln k over ln(a/h)",
             partial(growth, one),
             lambda value: value > 0,
         )
     for label in HAYES:
         yield Statement(
-            "Fig. 3",
-            f"{label}: agreement with Hayes et al. (1972) is very good",
-            "very good",
-            "their table over ours, a/h = 0.2 to 2",
-            partial(hayes, label),
-            within(0.01),
+            f"{label}: agreement with Hayes et al. (1972) is very good", partial(hayes, label), within(0.01)
         )
     for one, ratio, m in (
         (UNBONDED, 0.01, 0.0),
@@ -180,10 +145,7 @@ def growth_of_stiffness() -> Iterator[Statement]:
         (layer(0.5), 100.0, 3.0),
     ):
         yield Statement(
-            "Eq. (34), Fig. 5",
             f"{name_of(one)}: m tends to {m:g} {'on thick' if m == 0 else 'on thin'} layers",
-            f"{m:g}",
-            f"m at a/h = {ratio:g}",
             partial(exponent_at, one, ratio),
             reads(m, GOOD * max(m, 1)),
         )
@@ -193,26 +155,13 @@ def shape_of_the_pressure() -> Iterator[Statement]:
     """Middle and edge of the pressure."""
     for low, high in ((0.5, 1.0), (1.0, 2.0), (2.0, 5.0)):
         yield Statement(
-            "Fig. 4",
             f"the pressure in the middle grows from a/h = {low:g} to {high:g}",
-            "higher",
-            f"p(0)/p_mean at a/h = {high:g}",
             partial(pressure, high, 0.0),
             above(partial(pressure, low, 0.0)),
         )
     yield Statement(
-        "Fig. 4",
         "in very confined situations the singularity at the edge disappears",
-        "disappears",
-        "its factor at a/h = 50, of 0.5 on the half-space",
         partial(pressure, 50.0, 1.0),
         lambda value: value < GOOD / 2,
     )
-    yield Statement(
-        "Section 4.2, Fig. 4",
-        "the second maximum in the centre develops for a/h >= 2",
-        "2",
-        "a/h from which the pressure falls from the centre outwards",
-        lambda: Measured(second_maximum(), 2e-6),
-        lambda value: value >= 2,
-    )
+    yield Statement("the second maximum in the centre develops for a/h >= 2", second_maximum, lambda value: value >= 2)

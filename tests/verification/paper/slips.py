@@ -6,7 +6,7 @@ from functools import partial
 import numpy as np
 from numpy.polynomial.legendre import leggauss
 
-from tests.verification.paper.statement import FORMULA, Measured, Statement, StatementVerdict, within
+from tests.verification.paper.statement import Statement, StatementVerdict, within
 
 # Gauss points on the contact; the integrands are smooth after the substitution.
 POINTS = 60
@@ -27,9 +27,9 @@ def hertz_as_printed(*, prime: bool) -> float:
     return float((-integral / np.pi) / (2 / np.pi * np.sqrt(1 - r**2)))
 
 
-def off_hertz(*, prime: bool) -> Measured:
+def off_hertz(*, prime: bool) -> float:
     """How far Eq. (12) is from Hertz's pressure."""
-    return Measured(hertz_as_printed(prime=prime) - 1, 1e-12, in_percent=True)
+    return hertz_as_printed(prime=prime) - 1
 
 
 def limit_of_the_inner_integral() -> float:
@@ -40,25 +40,16 @@ def limit_of_the_inner_integral() -> float:
 
 def statements() -> Iterator[Statement]:
     """The two slips, as printed and mended."""
-    hertz = "pressure of a paraboloid at r = a/2 over Hertz's"
     for prime in (False, True):
         yield Statement(
-            "Eq. (12)",
             "p from w_1D" if not prime else "p from w_1D', as in Eq. (9)",
-            "w_1D without prime" if not prime else "(9)",
-            hertz,
             partial(off_hertz, prime=prime),
             within(1e-9),
-            FORMULA,
             StatementVerdict.SLIP,
         )
     yield Statement(
-        "Eq. (15)",
         "the integral of the pressure runs to x",
-        "int_r^x",
-        f"{hertz}, for x = 0.75 a",
-        lambda: Measured(limit_of_the_inner_integral() - 1, 1e-12, in_percent=True),
+        lambda: limit_of_the_inner_integral() - 1,
         within(1e-9),
-        FORMULA,
         StatementVerdict.SLIP,
     )

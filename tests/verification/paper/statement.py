@@ -8,9 +8,6 @@ from enum import StrEnum
 GOOD = 0.05
 SAME = 0.005
 
-MDR = "MDR, integral equation"
-FORMULA = "written formula"
-
 
 class StatementVerdict(StrEnum):
     """Verdict on a statement of the paper, as `docs/paper.md` prints it."""
@@ -21,47 +18,30 @@ class StatementVerdict(StrEnum):
 
 
 @dataclass(frozen=True)
-class Measured:
-    """A number with its error, absolute; ``in_percent`` shows it as a deviation."""
-
-    value: float
-    error: float = 0.0
-    in_percent: bool = False
-
-
-@dataclass(frozen=True)
 class Statement:
-    """A statement.
+    """A statement of the paper, a row of `docs/paper.md`, which has its place, its printed value and its quantity.
 
     Attributes:
-        place: equation, section or figure.
-        says: in a few words.
-        printed: the value that the paper prints, or what it claims.
-        what: the number that is computed.
-        measure: computes it.
-        holds: whether the statement is true of the number.
-        method: what computes it.
-        otherwise: the verdict where it is not.
+        says: The statement in a few words, as in the row.
+        measure: Function that computes the number of the row.
+        holds: Whether the statement is true of the number.
+        otherwise: The verdict where it is not.
     """
 
-    place: str
     says: str
-    printed: str
-    what: str
-    measure: Callable[[], Measured]
+    measure: Callable[[], float]
     holds: Callable[[float], bool]
-    method: str = MDR
     otherwise: StatementVerdict = StatementVerdict.LOOSER
 
-    def judged(self) -> tuple[Measured, StatementVerdict]:
+    def judged(self) -> tuple[float, StatementVerdict]:
         """Return the computed number and the verdict on the statement."""
-        measured = self.measure()
-        return measured, StatementVerdict.HOLDS if self.holds(measured.value) else self.otherwise
+        value = self.measure()
+        return value, StatementVerdict.HOLDS if self.holds(value) else self.otherwise
 
 
-def deviation(value: float, reference: float, relative_error: float = 0.0) -> Measured:
-    """How far a value is from a reference, in per cent."""
-    return Measured(value / reference - 1, abs(value / reference) * relative_error, in_percent=True)
+def deviation(value: float, reference: float) -> float:
+    """Return how far a value is from a reference, relative to the reference."""
+    return value / reference - 1
 
 
 def within(share: float) -> Callable[[float], bool]:
@@ -74,11 +54,11 @@ def reads(printed: float, half_unit: float) -> Callable[[float], bool]:
     return lambda value: abs(value - printed) <= half_unit
 
 
-def above(other: Callable[[], Measured]) -> Callable[[float], bool]:
+def above(other: Callable[[], float]) -> Callable[[float], bool]:
     """Whether a number is larger than another one that is computed."""
-    return lambda value: value > other().value
+    return lambda value: value > other()
 
 
-def below(other: Callable[[], Measured]) -> Callable[[float], bool]:
+def below(other: Callable[[], float]) -> Callable[[float], bool]:
     """Whether a number is smaller than another one that is computed."""
-    return lambda value: value < other().value
+    return lambda value: value < other()
