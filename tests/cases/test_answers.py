@@ -8,12 +8,12 @@ from cases.answers import NAME, Table, read_answers
 from cases.runs import RUN, Run, read_run, write_run
 from cases.verdicts import Status
 from contact import InvalidInput
-from tests.cases.example_run import example_run
+from tests.cases.example_run import example
 
 
 @pytest.fixture
 def run() -> Run:
-    return example_run()
+    return example()
 
 
 def written(run, folder):

@@ -13,7 +13,7 @@ from cases.runs import write_run
 from contact import InvalidInput
 from contact.files.storage import read_tree, write_tree
 from contact.files.whole import write_whole
-from tests.cases.example_run import example_run
+from tests.cases.example_run import example
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -35,7 +35,7 @@ def full_disk(monkeypatch):
         ("page.html", lambda folder: write_whole(folder / "page.html", "x" * 1000)),
         ("picture.png", lambda folder: write_whole(folder / "picture.png", b"x" * 1000)),
         ("tree.h5", lambda folder: write_tree(folder / "tree.h5", {"a": np.zeros(100)})),
-        ("run.json", lambda folder: write_run(example_run().judged, folder)),
+        ("run.json", lambda folder: write_run(example().judged, folder)),
     ],
 )
 def test_a_full_disk_is_one_line_with_the_path_and_leaves_nothing(name, write, tmp_path):

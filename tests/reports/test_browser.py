@@ -4,8 +4,8 @@ import matplotlib.image
 import pytest
 
 from reports.page import CASES, write_report
+from tests.cases.example_run import FAILING, PASSING, example, only
 from tests.reports.browser import HEIGHT, PHONE, PRINTED_WIDTH, WIDTH, browser, measure, picture, width_in_frame
-from tests.reports.example import FAILING, PASSING, example, only
 from tests.reports.test_ci import many_failures
 
 pytestmark = [

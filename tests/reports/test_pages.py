@@ -12,7 +12,7 @@ from cases.runs import Run
 from reports.charts import front, of_case
 from reports.page import CASES, FIGURES, unbroken, write_report
 from reports.style import figure_style, svg_text
-from tests.reports.example import FAILING, PASSING, example, only, verdict, with_verdicts
+from tests.cases.example_run import FAILING, PASSING, example, only, verdict, with_verdicts
 
 LARGEST_PAGE = 500_000  # bytes
 

@@ -9,7 +9,7 @@ from cases.gate.accept import accept, refusals, write_conditions
 from cases.gate.baseline import read_baselines, relative_tolerance
 from cases.verdicts import Kind, Status
 from contact import InvalidInput
-from tests.cases.example_run import CASE, SCENE, example_stamp, failed, fast
+from tests.cases.example_run import PASSING, SCENE, example_stamp, fast, verdict
 from tests.cases.gate.example_baselines import (
     NOW,
     accepted,
@@ -36,8 +36,8 @@ def refused(folder, run=None, now=NOW, **how):
 
 def test_one_file_per_case_with_one_answer_per_line_and_every_digit(tmp_path):
     accepted(tmp_path, with_force("mdr", scaled(1 / 3)))
-    assert [path.name for path in tmp_path.iterdir()] == [f"{CASE}.jsonl"]
-    assert len((tmp_path / f"{CASE}.jsonl").read_text(encoding="utf-8").splitlines()) == 1 + 4
+    assert [path.name for path in tmp_path.iterdir()] == [f"{PASSING}.jsonl"]
+    assert len((tmp_path / f"{PASSING}.jsonl").read_text(encoding="utf-8").splitlines()) == 1 + 4
     kept = quantities(tmp_path)
     assert kept["mdr", SCENE, "normal_force"].values == (0.5,)
     assert kept["mdr", SCENE, "indentation_depth"].values == fast(SCENE).quantities["indentation_depth"].values
@@ -144,7 +144,7 @@ def test_an_impossible_spread_is_refused(tmp_path, bad):
 @pytest.mark.parametrize("kind", [Kind.EXACT, Kind.ORDER])
 @pytest.mark.parametrize("status", [Status.FAIL, Status.INVALID, Status.TIMEOUT, Status.XPASS])
 def test_a_failing_exact_or_order_claim_is_refused(tmp_path, kind, status):
-    claim = dataclasses.replace(failed(), case=CASE, kind=kind, status=status)
+    claim = dataclasses.replace(verdict(), case=PASSING, kind=kind, status=status)
     assert any("half-space force" in line for line in refused(tmp_path, clean_run(verdicts=(claim,))))
 
 
@@ -187,7 +187,7 @@ def test_changed_and_new_files_are_seen_but_not_the_baselines_being_written(tmp_
     folder = tmp_path / "baselines"
     assert write_conditions(tmp_path, folder, {}).changed == ()
     folder.mkdir()
-    (folder / f"{CASE}.jsonl").write_text("{}", encoding="utf-8")
+    (folder / f"{PASSING}.jsonl").write_text("{}", encoding="utf-8")
     assert write_conditions(tmp_path, folder, {}).changed == ()
     (tmp_path / "new.py").write_text("x = 1\n", encoding="utf-8")
     (tmp_path / "tracked.py").write_text("x = 2\n", encoding="utf-8")

@@ -8,7 +8,7 @@ from cases.answers import Table
 from cases.gate.gate import gate
 from cases.verdicts import ExitCode, Kind, Origin, Status, exit_code
 from contact.records.extras import NOT_INSTALLED
-from tests.cases.example_run import CASE, OTHER_SCENE, SCENE, fast
+from tests.cases.example_run import OTHER_SCENE, PASSING, SCENE, fast
 from tests.cases.gate.example_baselines import (
     accepted,
     clean_run,
@@ -168,12 +168,12 @@ def test_what_nobody_accepted_fails_by_its_name(folder):
 def test_a_case_that_left_the_suite_fails_by_its_name(folder):
     other = dataclasses.replace(clean_run().judged.cases[0], name="another_case")
     run = dataclasses.replace(clean_run(cases=(other,), verdicts=(), stress_tests=()), answers=Table())
-    assert {verdict.status for verdict in regressions(gated(run, folder)) if verdict.case == CASE} == {
+    assert {verdict.status for verdict in regressions(gated(run, folder)) if verdict.case == PASSING} == {
         Status.INCOMPARABLE
     }
     for suite in ("", "referees", "nightly"):
         elsewhere = dataclasses.replace(run, judged=dataclasses.replace(run.judged, suite=suite))
-        assert CASE not in {case.name for case in gated(elsewhere, folder).judged.cases}
+        assert PASSING not in {case.name for case in gated(elsewhere, folder).judged.cases}
 
 
 @pytest.mark.parametrize(
