@@ -4,12 +4,10 @@ import os
 import shutil
 import subprocess
 import sys
-from importlib.metadata import EntryPoint
 from pathlib import Path
 
 import pytest
 
-from cases.declare import methods
 from cases.runs import read_run
 from cases.verdicts import Kind, Status
 from reports.command_line import run
@@ -20,10 +18,9 @@ ARGUMENTS = ("run", "truncated_cone", "--method", NAME, "--executor", "serial", 
 
 
 @pytest.fixture
-def registered(monkeypatch):
+def registered(install, monkeypatch):
     """The example as if it were installed."""
-    entry = EntryPoint(name=NAME, value="hertz_half_space:HertzHalfSpace", group=methods.ENTRY_POINT_GROUP)
-    monkeypatch.setattr(methods, "entry_points", lambda group: [entry])
+    install({NAME: "hertz_half_space:HertzHalfSpace"})
     monkeypatch.syspath_prepend(str(FOLDER))
 
 

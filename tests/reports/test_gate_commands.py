@@ -24,18 +24,11 @@ CLEAN = WriteConditions(revision=revision(), changed=(), in_ci=False)
 @pytest.fixture
 def here(tmp_path, library, monkeypatch):
     """A folder of a run, a library, and a clean working tree."""
-
-    def set_library(case):
-        library(case)
-        for module in (baselines,):
-            monkeypatch.setattr(module, "load_cases", lambda: {case.name: case})
-
-    set_library(fake_case())
     monkeypatch.setattr(spread, "process_pool", executors.serial)
     monkeypatch.setattr(baselines, "write_conditions", lambda *_: CLEAN)
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("COLUMNS", "200")  # whatever the terminal: a table is not folded
-    return set_library
+    return library
 
 
 def run_cases(case=None):
