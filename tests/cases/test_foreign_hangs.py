@@ -1,6 +1,5 @@
 """A method of an installed package that hangs, crashes or leaves: a row that names it, and the run goes on."""
 
-
 import pytest
 
 from cases.foreign import against

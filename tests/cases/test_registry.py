@@ -6,7 +6,6 @@ from cases.case import Case
 from cases.claims import Equal
 from cases.declare.methods import MethodUse, build, method_names
 from cases.declare.registry import by_name, load_cases, select
-from cases.verdicts import Origin
 from contact import InvalidInput
 from reports.command_line import run
 from tests.cases.fake_case import FAST, STATED, WHY, case_scene, fake_case, hertz_force
@@ -96,11 +95,6 @@ def test_an_unknown_method_lists_the_known_ones():
 def test_settings_reach_the_method():
     assert build("fake", {"cell": 0.25}).cell == 0.25
     assert FAST.build().stated == 1e-12
-
-
-def test_every_origin_is_one_of_five():
-    """The four of the contribution rules; a method that shares something is told apart from an independent one."""
-    assert len(Origin) == 5
 
 
 @pytest.mark.parametrize("suite", ["ci", "nightly"])

@@ -1,6 +1,5 @@
 """Scenes that prescribe radii are put by depth to a method that takes no radii."""
 
-
 import numpy as np
 import pytest
 

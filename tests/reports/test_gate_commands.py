@@ -8,13 +8,12 @@ import pytest
 
 from cases.gate import spread
 from cases.gate.accept import WriteConditions
-from cases.gate.baseline import read_baselines
 from cases.run import executors, runner
 from cases.run.runner import RunOptions
 from cases.run.stamp import revision
 from reports.command_line import run
 from reports.commands import baselines
-from tests.cases.fake_case import FAST, SLOW, fake_case, spoiled
+from tests.cases.fake_case import FAST, fake_case, spoiled
 from tests.cases.fake_method import FakeHertz
 from tests.cases.test_narrow import with_a_nightly_method
 
@@ -119,19 +118,6 @@ def test_an_accepted_number_is_gated_from_then_on(tmp_path, monkeypatch, capsys)
     assert "in tolerances" in shown
     assert "normal_force" in shown
     assert gate_run() == 0
-
-
-def test_loosening_needs_its_flag_and_is_kept_with_its_reason(here, tmp_path, capsys):
-    run_cases()
-    accept_case("--write")
-    unstable = fake_case(slow=spoiled(SLOW, plant="last bits"))
-    here(unstable)
-    run_cases(unstable)
-    assert accept_case("--write") == 4
-    assert "--loosen" in capsys.readouterr().err
-    assert accept_case("--write", "--loosen", reason="an unstable version on purpose") == 0
-    (baseline,) = read_baselines(tmp_path / "baselines")
-    assert baseline.accepted.reason == "an unstable version on purpose"
 
 
 @pytest.mark.parametrize(

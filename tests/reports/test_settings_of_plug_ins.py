@@ -6,6 +6,7 @@ import pytest
 
 from cases.declare.settings import read_settings, with_settings
 from cases.foreign import with_registered
+from cases.run.timing import timed_warm
 from cases.runs import read_run
 from contact import InvalidInput
 from reports.command_line import run
@@ -93,7 +94,8 @@ def test_a_run_is_made_with_them(capsys):
 
 
 @pytest.mark.usefixtures("without_pages")
-def test_cost_climbs_a_ladder_of_them(library, capsys):
+def test_cost_climbs_a_ladder_of_them(library, monkeypatch, capsys):
+    monkeypatch.setitem(timed_warm.__kwdefaults__, "shortest", 1e-3)
     library(fake_case(work=True))
     words = ["run", "--only", "cost", "--suite", "ci", "--out", "out", "--quiet", "--method", "mine"]
     assert run([*words, "--setting", "cell=[0.01, 0.001]", "--setting", "order=2"]) == 0

@@ -5,8 +5,7 @@ import dataclasses
 import pytest
 
 from cases.answers import Table
-from cases.gate.gate import gate
-from cases.verdicts import ExitCode, Kind, Origin, Status, exit_code
+from cases.verdicts import ExitCode, Status, exit_code
 from contact.records.extras import NOT_INSTALLED
 from tests.cases.example_run import OTHER_SCENE, PASSING, SCENE, fast
 from tests.cases.gate.example_baselines import (
@@ -145,12 +144,6 @@ def test_a_method_that_is_not_installed_is_told_once_and_not_compared(folder):
     assert "6 accepted numbers are not compared" in claims[0].message
 
 
-def test_what_is_installed_is_compared_beside_what_is_not(folder):
-    other = [claim for claim in regressions(gated(skipped(ABSENT), folder)) if claim.methods == ("mdr",)]
-    assert Status.PASS in {claim.status for claim in other}
-    assert len(other) > 8
-
-
 @pytest.mark.parametrize(("reason", "scenes"), [("it models half-spaces", (SCENE, OTHER_SCENE)), (ABSENT, (SCENE,))])
 def test_a_method_that_refuses_or_answers_some_scenes_only_still_misses_what_was_accepted(folder, reason, scenes):
     found = [claim for claim in failures(skipped(reason, scenes), folder) if "normal_force" in claim.quantity]
@@ -199,18 +192,6 @@ def test_a_counter_that_vanishes_or_appears_fails(folder):
     assert "restarts" in {claim.quantity for claim in extra}
 
 
-def test_regression_is_never_called_verification(folder):
-    for claim in regressions(gated(clean_run(), folder)):
-        assert claim.kind is Kind.REGRESSION
-        assert claim.why.origin is Origin.OWN_EARLIER_OUTPUT
-
-
-def test_without_any_baseline_everything_is_extra(tmp_path):
-    result = gated(clean_run(), tmp_path)
-    assert {claim.status for claim in regressions(result)} == {Status.INCOMPARABLE}
-    assert exit_code(result.statuses) is ExitCode.GATE_FAILED
-
-
 def test_an_empty_run_ran_nothing(folder):
     empty = dataclasses.replace(clean_run(cases=(), verdicts=(), suite=""), answers=Table())
     assert exit_code(gated(empty, folder).statuses) is ExitCode.NOTHING_RAN
@@ -248,13 +229,6 @@ def test_the_error_bar_of_a_single_quantity_or_field_fails_under_its_name(folder
     assert {claim.claim for claim in found} == {f"accepted uncertainty of {quantity}"}
 
 
-def test_an_error_bar_that_is_no_longer_stated_fails_by_name(folder):
-    silent = with_force("fem", lambda q: dataclasses.replace(q, error=()))
-    found = failures(silent, folder)
-    assert {claim.claim for claim in found} == {"accepted uncertainty of normal_force"}
-    assert all("missing: " in claim.message for claim in found)
-
-
 def test_claims_removed_from_a_case_fail_by_their_names(folder):
     names = {verdict.claim for verdict in clean_run().judged.verdicts}
     found = failures(clean_run(verdicts=()), folder)
@@ -273,16 +247,3 @@ def test_a_single_claim_or_one_of_its_scenes_removed_fails_by_its_name(folder):
 def test_a_new_claim_is_welcome(folder):
     own = clean_run().judged.verdicts
     assert not failures(clean_run(verdicts=(*own, dataclasses.replace(own[0], claim="a new claim"))), folder)
-
-
-def test_only_the_chosen_methods_are_compared(folder):
-    without_fem = with_answers(lambda row: None if row.method == "fem" else row, clean_run(verdicts=()))
-    result = gate(without_fem, gate_baselines(folder), methods=("mdr",))
-    failed = [verdict for verdict in regressions(result) if verdict.status.is_failure]
-    assert {verdict.claim for verdict in failed} == {"accepted claim 'doubling E doubles F'"}
-
-
-def gate_baselines(folder):
-    from cases.gate.baseline import read_baselines
-
-    return read_baselines(folder)
