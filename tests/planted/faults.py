@@ -703,11 +703,11 @@ def accepted_folder():
 BASELINES = {
     "missing records pass": (
         swap("cases.gate.gate:_absent", absent_passes(1)),
-        Test("cases.gate.test_gate:test_a_missing_quantity_fails_by_its_name", (accepted_folder,)),
+        Test("cases.gate.test_gate:test_what_differs_fails_by_its_name", (accepted_folder, "a missing quantity")),
     ),
     "extra records pass": (
         swap("cases.gate.gate:_absent", absent_passes(2)),
-        Test("cases.gate.test_gate:test_what_nobody_accepted_fails_by_its_name", (accepted_folder,)),
+        Test("cases.gate.test_gate:test_what_differs_fails_by_its_name", (accepted_folder, "a method nobody accepted")),
     ),
     "tolerances a thousand times too wide": (
         swap("cases.gate.baseline:permitted_change", lambda f: lambda values, step: 1e3 * f(values, step)),
