@@ -84,7 +84,7 @@ def test_a_wrong_force_fails_by_its_own_estimated_error(tmp_path):
     mdr = methods.MethodUse(label="fast", method="mdr")
     wider = with_foreign_methods(fake_case(fast=mdr), {"by_depth": 0.0})
     case = beside(wider, ["by_depth"], "fast")
-    result = run_cases([case], RunOptions(out=tmp_path / "out", executor=serial, jobs=1, timing=False))
+    result = run_cases([case], RunOptions(out=tmp_path / "out", executor=serial, jobs=1, timing=False, time_limit=0.0))
     judged = [c for c in result.judged.verdicts if c.scene.endswith(SUFFIX) and "by_depth" in c.methods]
     assert judged
     assert {claim.status for claim in judged} == {Status.FAIL}

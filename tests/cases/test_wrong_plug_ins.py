@@ -53,7 +53,7 @@ def run_with(install, monkeypatch, tmp_path):
         install({"mine": f"{__name__}:{kind.__name__}"})
         # Pages are not what is tested here.
         monkeypatch.setattr("reports.commands.runs.write_pages", lambda *_: None)
-        out = ("--no-timing", "--executor", "serial", "--quiet", "--out", str(tmp_path))
+        out = ("--no-timing", "--executor", "serial", "--time-limit", "0", "--quiet", "--out", str(tmp_path))
         return run(["run", *arguments, *out]), read_run(tmp_path)
 
     return run_with

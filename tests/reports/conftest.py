@@ -19,4 +19,4 @@ def library(monkeypatch):
 @pytest.fixture
 def without_pages(monkeypatch):
     """Runs write no pages: other tests look at them, and they take most of the time."""
-    monkeypatch.setattr(runs, "write_pages", lambda *_: None)
+    monkeypatch.setattr(runs, "write_pages", lambda *_, **__: None)

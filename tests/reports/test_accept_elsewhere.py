@@ -35,7 +35,21 @@ def users(tmp_path, library, install, monkeypatch):
 def solve_all():
     names = ("mine", "fast", "slow")
     chosen = [word for name in names for word in ("--method", name)]
-    return run(["run", "fake_hertz", "--executor", "serial", "--quiet", "--no-timing", "--out", "out", *chosen])
+    return run(
+        [
+            "run",
+            "fake_hertz",
+            "--executor",
+            "serial",
+            "--time-limit",
+            "0",
+            "--quiet",
+            "--no-timing",
+            "--out",
+            "out",
+            *chosen,
+        ]
+    )
 
 
 def accept_all():

@@ -125,13 +125,15 @@ def test_a_sound_run_passes_and_writes_everything(tmp_path, capsys):
     ],
     ids=["a broken solver", "a wrong number"],
 )
-def test_what_is_wrong_fails_the_run_by_name(case, words, library, tmp_path, capsys):
-    """Every way to break is a row in `tests/cases/test_runner.py`."""
+def test_what_is_wrong_fails_the_run_by_name(case, words, library, tmp_path, monkeypatch, capsys):
+    """Every way to break is a row in `tests/cases/test_runner.py`; GitHub alone gets annotations."""
+    monkeypatch.delenv("GITHUB_ACTIONS", raising=False)
     library(case)
     assert run_here(tmp_path) == 1
     output = capsys.readouterr().out
     assert "FAILED" in output
     assert words in output
+    assert "::error" not in output
 
 
 @pytest.mark.usefixtures("without_pages")

@@ -22,7 +22,7 @@ def mine(install, monkeypatch, tmp_path):
 
 
 def solved(*more):
-    code = run(["run", "--executor", "serial", "--quiet", "--out", "out", *more])
+    code = run(["run", "--executor", "serial", "--time-limit", "0", "--quiet", "--out", "out", *more])
     return code, read_run(Path("out"))
 
 

@@ -20,6 +20,10 @@ def mine(install, monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)
 
 
+# Without a time limit methods of installed packages need no process of their own.
+IN_THIS_PROCESS = ("--quiet", "--out", "out", "--time-limit", "0")
+
+
 def written(text):
     Path("mine.toml").write_text(text, encoding="utf-8")
     return "mine.toml"
@@ -85,7 +89,7 @@ def test_a_setting_that_the_method_has_not_is_told_with_those_it_has(settings):
 
 @pytest.mark.usefixtures("library", "without_pages")
 def test_a_run_is_made_with_them(capsys):
-    words = ["run", "--executor", "serial", "--quiet", "--out", "out", "--method", "mine"]
+    words = ["run", "--executor", "serial", *IN_THIS_PROCESS, "--method", "mine"]
     run([*words, "--setting", "cell=0.125"])
     answers = read_run(Path("out")).answers
     assert {a.settings["cell"] for a in answers if a.method == "mine" and a.settings} == {0.125}
@@ -97,7 +101,7 @@ def test_a_run_is_made_with_them(capsys):
 def test_cost_climbs_a_ladder_of_them(library, monkeypatch, capsys):
     monkeypatch.setitem(timed_warm.__kwdefaults__, "shortest", 1e-3)
     library(fake_case(work=True))
-    words = ["run", "--only", "cost", "--suite", "ci", "--out", "out", "--quiet", "--method", "mine"]
+    words = ["run", "--only", "cost", "--suite", "ci", *IN_THIS_PROCESS, "--method", "mine"]
     assert run([*words, "--setting", "cell=[0.01, 0.001]", "--setting", "order=2"]) == 0
     (record,) = read_run(Path("out")).judged.costs
     assert [(point.method, point.setting) for point in record.points] == [
