@@ -6,7 +6,8 @@ from tests.cases.fake_case import fake_case
 
 @pytest.fixture
 def library(monkeypatch):
-    """A library of one fabricated case in place of the real one, for all commands."""
+    """A library of one fabricated case in place of the real one, for all commands, and not on GitHub."""
+    monkeypatch.delenv("GITHUB_ACTIONS", raising=False)
 
     def set_library(*cases):
         for module in (runs, baselines):

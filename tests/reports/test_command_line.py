@@ -125,9 +125,8 @@ def test_a_sound_run_passes_and_writes_everything(tmp_path, capsys):
     ],
     ids=["a broken solver", "a wrong number"],
 )
-def test_what_is_wrong_fails_the_run_by_name(case, words, library, tmp_path, monkeypatch, capsys):
+def test_what_is_wrong_fails_the_run_by_name(case, words, library, tmp_path, capsys):
     """Every way to break is a row in `tests/cases/test_runner.py`; GitHub alone gets annotations."""
-    monkeypatch.delenv("GITHUB_ACTIONS", raising=False)
     library(case)
     assert run_here(tmp_path) == 1
     output = capsys.readouterr().out
