@@ -2,10 +2,9 @@ import dataclasses
 
 import pytest
 
-from cases.case import Case
 from cases.claims import Equal
-from cases.declare.methods import MethodUse, build, method_names
-from cases.declare.registry import by_name, load_cases, select
+from cases.declare.methods import build
+from cases.declare.registry import by_name, select
 from contact import InvalidInput
 from reports.command_line import run
 from tests.cases.fake_case import FAST, STATED, WHY, case_scene, fake_case, hertz_force
@@ -77,19 +76,6 @@ def test_selection_by_name_and_suite():
         select(cases, names=["absent"])
     with pytest.raises(InvalidInput, match="no suite 'weekly'"):
         select(cases, suite="weekly")
-
-
-def test_the_library_loads_and_its_names_are_its_files():
-    for name, found in load_cases().items():
-        assert isinstance(found, Case)
-        assert name == found.name
-        assert found.suites
-
-
-def test_an_unknown_method_lists_the_known_ones():
-    with pytest.raises(InvalidInput, match=r"no method .abaqus.; there are .*fem"):
-        MethodUse(label="abaqus").build()
-    assert "fake" in method_names()
 
 
 def test_settings_reach_the_method():
