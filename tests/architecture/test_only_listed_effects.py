@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
-from functools import cache
 from pathlib import Path
 
 import pytest
@@ -42,114 +41,74 @@ print(json.dumps({
 }))
 """
 
-COARSE_TABLE = '{"cells": 64, "ratios": 60, "radii": 100}'
-COARSE_FEM = '{"order": 2, "edge_cell": 1e-2}'
 
-
-@cache
 def solved(method, scene, settings="{}"):
-    """Import set and stage set of one solution in a process of its own, started once for all tests that ask."""
+    """Import set and stage set of one solution in a process of its own."""
     command = [sys.executable, "-W", "error::RuntimeWarning", "-c", SCENES, method, scene, settings]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
     return json.loads(done.stdout)
 
 
 IN_TIME = ("mdr.history", "mdr.impact", "fem_reference.memory", "fem_reference.motions")
-ADHESION = ("mdr.adhesive", "mdr.detachment", "fem_reference.adhesion", "fem_reference.adhesion")
+ADHESION = ("mdr.adhesive", "mdr.detachment", "fem_reference.adhesion")
 FRICTION = ("mdr.friction", "fem_reference.friction")
-EFFECT_ROOMS = (*IN_TIME, *ADHESION, *FRICTION)
+EFFECTS = (*IN_TIME, *ADHESION, *FRICTION)
+# Modules of other methods, which an answer of a method never loads, and packages that it may load.
+OTHERS = {
+    "mdr": ("fem_reference", "bem.grid.transforms", "bem.grid.discs", "bem.grid.operators"),
+    "mdr_table": ("fem_reference",),
+    "integral_equation": ("mdr", "fem_reference", "bem.grid.transforms"),
+    "bem": ("mdr", "fem_reference"),
+    "fem": ("mdr", "bem"),
+}
+PACKAGES = {"fem": {"skfem", "gmsh"}, "bem": {"pyfftw"}, "mdr_table": {"pyfftw", "h5py"}}
+SETTINGS = {
+    "fem": '{"order": 2, "edge_cell": 1e-2}',
+    "bem": '{"points": 96}',
+    "mdr_table": '{"cells": 64, "ratios": 60, "radii": 100}',
+}
+MDR_STAGES = ["flat_punch_data", "force", "mdr_profile"]
+# Method, scene, what of the effects it loads, and its stages where they are those of an elastic scene.
+LOADED = [
+    ("mdr", "elastic", (), MDR_STAGES),
+    ("mdr", "adhesive", ADHESION, None),
+    ("mdr", "impact", IN_TIME, None),
+    ("fem", "elastic", (), ["assemble", "factor", "mesh", "recover", "solve"]),
+    ("fem", "viscoelastic", IN_TIME, None),
+    ("fem", "sticky", ADHESION, None),
+    ("fem", "adhered", FRICTION, None),
+    ("bem", "elastic", (), ["contact", "field_errors", "fields"]),
+    ("integral_equation", "elastic", (), ["error_estimate", "integral_equation", "one_circle"]),
+]
+LOADED_RARELY = [
+    ("mdr", "depths", (), MDR_STAGES),
+    ("mdr", "adhered", FRICTION, None),
+    ("mdr_table", "elastic", (), MDR_STAGES),
+]
 
 
 def effects_among(found):
-    return [name for name in found["modules"] if name.startswith(EFFECT_ROOMS)]
+    return [name for name in found["modules"] if name.startswith(EFFECTS)]
 
 
-@pytest.fixture
-def elastic():
-    return solved("mdr", "elastic")
-
-
-def test_an_elastic_scene_imports_no_effect_and_no_other_method(elastic):
-    assert effects_among(elastic) == []
-    assert elastic["foreign"] == []
-    assert [m for m in elastic["modules"] if m.startswith("fem_reference")] == []
-    assert {"bem.grid.transforms", "bem.grid.discs", "bem.grid.operators"} & set(elastic["modules"]) == set()
-
-
-def test_an_elastic_scene_runs_exactly_the_elastic_stages(elastic):
-    assert elastic["stages"] == ["flat_punch_data", "force", "mdr_profile"]
-
-
-def test_prescribed_depths_need_the_same_stages(elastic):
-    depths = solved("mdr", "depths")
-    assert depths["stages"] == elastic["stages"]
-    assert effects_among(depths) == []
-
-
-def test_adhesion_loads_no_time_integration():
-    found = effects_among(solved("mdr", "adhesive"))
-    assert found
-    assert [m for m in found if m.startswith(IN_TIME)] == []
-
-
-def test_impact_loads_no_adhesion():
-    found = effects_among(solved("mdr", "impact"))
-    assert found
-    assert [m for m in found if m.startswith(ADHESION)] == []
-
-
-def test_finite_elements_load_no_effect_for_an_elastic_scene():
-    found = solved("fem", "elastic", COARSE_FEM)
-    assert effects_among(found) == []
-    assert [m for m in found["modules"] if m.startswith(("mdr", "bem"))] == []
-    assert set(found["foreign"]) <= {"skfem", "gmsh"}
-
-
-def test_finite_elements_load_only_the_listed_effect():
-    """One process each: an impact loads no adhesion, adhesion loads nothing in time."""
-    in_time = effects_among(solved("fem", "viscoelastic", COARSE_FEM))
-    assert in_time
-    assert [m for m in in_time if m.startswith(ADHESION)] == []
-    adhering = effects_among(solved("fem", "sticky", COARSE_FEM))
-    assert adhering
-    assert [m for m in adhering if m.startswith(IN_TIME)] == []
-
-
-@pytest.mark.first(1)
-@pytest.mark.parametrize(("method", "settings"), [("fem", COARSE_FEM), ("mdr", "{}")])
-def test_full_stick_loads_no_other_effect(method, settings):
-    found = effects_among(solved(method, "adhered", settings))
-    assert found
-    assert [m for m in found if not m.startswith(FRICTION)] == []
-
-
-@pytest.mark.first(1)
-@pytest.mark.parametrize(("scene", "loads"), [("elastic", False), ("sticky", True)])
-def test_boundary_elements_follow_a_branch_only_with_adhesion(scene, loads):
-    found = solved("bem", scene, '{"points": 96}')
-    assert [m for m in found["modules"] if m.startswith(("mdr", "fem_reference"))] == []
-    assert any("adh" in stage or "branch" in stage or "history" in stage for stage in found["stages"]) is loads
-
-
-def test_the_direct_integral_equation_loads_no_other_method():
-    found = solved("integral_equation", "elastic")
-    assert [m for m in found["modules"] if m.startswith(("mdr", "fem_reference")) or "transforms" in m] == []
-    assert found["stages"] == ["error_estimate", "integral_equation", "one_circle"]
-
-
-@pytest.mark.first(1)
 @pytest.mark.parametrize(
-    ("method", "settings", "stages"),
-    [
-        ("fem", COARSE_FEM, ["assemble", "factor", "mesh", "recover", "solve"]),
-        ("bem", '{"points": 96}', ["contact", "field_errors", "fields"]),
-        ("mdr_table", COARSE_TABLE, ["flat_punch_data", "force", "mdr_profile"]),
-    ],
+    ("method", "scene", "loads", "stages"),
+    [*LOADED, *(pytest.param(*row, marks=pytest.mark.slow) for row in LOADED_RARELY)],
 )
-def test_an_elastic_scene_runs_exactly_its_stages(method, settings, stages):
-    found = solved(method, "elastic", settings)
-    assert found["stages"] == stages
-    assert effects_among(found) == []
+def test_an_answer_loads_what_its_scene_lists_and_nothing_of_another_effect_or_method(method, scene, loads, stages):
+    found = solved(method, scene, SETTINGS.get(method, "{}"))
+    effects = effects_among(found)
+    assert bool(effects) == bool(loads)
+    assert [name for name in effects if not name.startswith(loads)] == []
+    assert [name for name in found["modules"] if name.startswith(OTHERS[method])] == []
+    assert set(found["foreign"]) <= PACKAGES.get(method, set())
+    assert stages in (None, found["stages"])
+
+
+@pytest.mark.slow
+def test_boundary_elements_follow_a_branch_with_adhesion():
+    found = solved("bem", "sticky", SETTINGS["bem"])
+    assert any("adh" in stage or "branch" in stage or "history" in stage for stage in found["stages"])
 
 
 def test_a_planted_import_is_seen():

@@ -60,15 +60,6 @@ def test_a_task_beyond_its_time_is_a_timeout_and_its_worker_goes_on(cluster, tmp
     assert {row.status for row in result.answers if not row.variant and row.method == "fast"} == {Status.PASS}
 
 
-def test_both_workers_take_part(cluster, tmp_path):
-    run_cases([fake_case()], RunOptions(out=tmp_path, executor=by_name(cluster.scheduler_address), jobs=2))
-    client = distributed.Client(cluster)
-    try:
-        assert len(client.scheduler_info()["workers"]) == 2
-    finally:
-        client.close()
-
-
 ROOT = Path(__file__).resolve().parents[2]
 
 

@@ -2,8 +2,6 @@
 
 import errno
 import os
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -13,9 +11,7 @@ from cases.runs import write_run
 from contact import InvalidInput
 from contact.files.storage import read_tree, write_tree
 from contact.files.whole import write_whole
-from tests.cases.example_run import example_run
-
-ROOT = Path(__file__).resolve().parents[2]
+from tests.cases.example_run import example
 
 
 @pytest.fixture
@@ -35,7 +31,7 @@ def full_disk(monkeypatch):
         ("page.html", lambda folder: write_whole(folder / "page.html", "x" * 1000)),
         ("picture.png", lambda folder: write_whole(folder / "picture.png", b"x" * 1000)),
         ("tree.h5", lambda folder: write_tree(folder / "tree.h5", {"a": np.zeros(100)})),
-        ("run.json", lambda folder: write_run(example_run().judged, folder)),
+        ("run.json", lambda folder: write_run(example().judged, folder)),
     ],
 )
 def test_a_full_disk_is_one_line_with_the_path_and_leaves_nothing(name, write, tmp_path):
@@ -47,49 +43,14 @@ def test_a_full_disk_is_one_line_with_the_path_and_leaves_nothing(name, write, t
     assert list(tmp_path.iterdir()) == []
 
 
-def test_the_old_file_survives_a_full_disk(tmp_path, monkeypatch):
+def test_the_old_file_survives_a_full_disk(tmp_path, request):
     write_tree(tmp_path / "tree.h5", {"a": 1.0})
     before = sorted(tmp_path.iterdir())
-
-    def refuse(descriptor):
-        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
-
-    monkeypatch.setattr(os, "fsync", refuse)
+    request.getfixturevalue("full_disk")
     with pytest.raises(InvalidInput):
         write_tree(tmp_path / "tree.h5", {"a": 2.0})
     assert sorted(tmp_path.iterdir()) == before
     assert read_tree(tmp_path / "tree.h5") == {"a": 1.0}
-
-
-LIMITED = """
-import resource, signal, sys
-from pathlib import Path
-import numpy as np
-from contact.files.whole import write_whole
-from contact import InvalidInput
-from contact.files.storage import write_tree
-signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, 100_000))
-folder = Path(sys.argv[1])
-for write in (
-    lambda: write_whole(folder / "a.json", "x" * 1_000_000),
-    lambda: write_tree(folder / "b.h5", {str(n): np.random.default_rng(n).random(1000) for n in range(100)}),
-):
-    try:
-        write()
-    except InvalidInput as error:
-        print(error)
-"""
-
-
-def test_where_the_system_itself_refuses_bytes_nothing_is_left(tmp_path):
-    command = [sys.executable, "-c", LIMITED, str(tmp_path)]
-    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
-    first, second = done.stdout.splitlines()
-    assert first.startswith(f"{tmp_path / 'a.json'}: cannot be written (File too large)")
-    assert second.startswith(f"{tmp_path / 'b.h5'}: cannot be written (")
-    assert done.stderr == ""
-    assert list(tmp_path.iterdir()) == []
 
 
 def test_a_link_stays_a_link_and_a_device_a_device(tmp_path):

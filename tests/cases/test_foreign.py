@@ -1,7 +1,6 @@
 """A method of another package is asked whether it supports a scene, and blamed by its name for whatever goes wrong."""
 
 from dataclasses import replace
-from importlib.metadata import EntryPoint
 
 import numpy as np
 import pytest
@@ -48,10 +47,9 @@ class Stranger(FakeHertz):
 
 
 @pytest.fixture
-def register(monkeypatch):
+def register(install):
     def register(name="stranger", value="tests.cases.test_foreign:Stranger"):
-        entry = EntryPoint(name=name, value=value, group=methods.ENTRY_POINT_GROUP)
-        monkeypatch.setattr(methods, "entry_points", lambda group: [entry])
+        install({name: value})
 
     register()
     return register

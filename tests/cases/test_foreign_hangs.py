@@ -1,10 +1,7 @@
 """A method of an installed package that hangs, crashes or leaves: a row that names it, and the run goes on."""
 
-from importlib.metadata import EntryPoint
-
 import pytest
 
-from cases.declare import methods
 from cases.foreign import against
 from cases.run import runner
 from cases.run.executors import serial
@@ -30,13 +27,12 @@ class Leaving(FakeHertz):
 
 
 @pytest.fixture
-def rows(monkeypatch, tmp_path):
+def rows(install, monkeypatch, tmp_path):
     """Rows of a registered class beside the case's fast method."""
 
     def rows(kind, default=0.5, **options):
         monkeypatch.setattr(runner, "FOREIGN_TIME_LIMIT", default)
-        entry = EntryPoint(name="mine", value=f"{__name__}:{kind.__name__}", group=methods.ENTRY_POINT_GROUP)
-        monkeypatch.setattr(methods, "entry_points", lambda group: [entry])
+        install({"mine": f"{__name__}:{kind.__name__}"})
         cases = against([fake_case()], ["mine"], ["fast"])
         result = run_cases(cases, RunOptions(out=tmp_path, executor=serial, **options))
         own = result.answers.of_case("fake_hertz")

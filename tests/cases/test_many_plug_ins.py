@@ -3,38 +3,31 @@ appears.
 """
 
 from collections import Counter
-from importlib.metadata import EntryPoint
 
 import pytest
 
 from cases.claims import Agree, Claim
-from cases.declare import methods
 from cases.declare.registry import load_cases
 from cases.foreign import with_registered
+from tests.cases.fake_method import FakeHertz
 
 NAMES = ("stranger_a", "stranger_b", "stranger_c", "stranger_d")
 LIBRARY = sorted(load_cases())
 COMPARISONS = (Agree,)
 
 
+class ModestHertz(FakeHertz):
+    """A method that claims 5 %."""
+
+    claimed_accuracy = 0.05
+
+
 @pytest.fixture
-def install(monkeypatch):
-    """Let so many packages be installed; one of them claims 5 %."""
-    from tests.cases.fake_method import FakeHertz
-
-    modest = type("ModestHertz", (FakeHertz,), {"claimed_accuracy": 0.05})
-    monkeypatch.setattr("tests.cases.fake_method.ModestHertz", modest, raising=False)
-
-    def install(count):
-        classes = ("ModestHertz", "FakeHertz", "FakeHertz", "FakeHertz")
-        entries = [
-            EntryPoint(name=name, value=f"tests.cases.fake_method:{found}", group=methods.ENTRY_POINT_GROUP)
-            for name, found in zip(NAMES[:count], classes, strict=False)
-        ]
-        monkeypatch.setattr(methods, "entry_points", lambda group: entries)
-
-    install(0)
-    return install
+def install_four(install):
+    """Lets four packages be installed when it is called, one of them modest; none before."""
+    install({})
+    others = dict.fromkeys(NAMES[1:], "tests.cases.fake_method:FakeHertz")
+    return lambda: install({NAMES[0]: f"{__name__}:ModestHertz", **others})
 
 
 def comparisons(case):
@@ -50,9 +43,9 @@ def comparisons(case):
 
 
 @pytest.mark.parametrize("name", LIBRARY)
-def test_packages_never_meet_in_a_claim_and_each_pair_is_compared_once(install, name):
+def test_packages_never_meet_in_a_claim_and_each_pair_is_compared_once(install_four, name):
     case = load_cases()[name]
-    install(4)
+    install_four()
     joined = with_registered(case)
     for claim in joined.claims:
         if isinstance(claim, COMPARISONS):
@@ -64,11 +57,11 @@ def test_packages_never_meet_in_a_claim_and_each_pair_is_compared_once(install, 
 @pytest.mark.first(32)
 @pytest.mark.parametrize("suite", ["", "ci"])
 @pytest.mark.parametrize("name", LIBRARY)
-def test_a_chosen_method_is_asked_the_same_whatever_else_is_installed(install, name, suite):
+def test_a_chosen_method_is_asked_the_same_whatever_else_is_installed(install_four, name, suite):
     """The modest package, installed as well, changes nothing for the chosen one."""
     case = load_cases()[name]
     chosen = ["mdr", "stranger_b"]
-    install(4)
+    install_four()
     among_four = with_registered(case).in_suite(suite).only_methods(chosen)
     assert {task.use.label for task in among_four.tasks() if task.use.label in NAMES} <= {"stranger_b"}
     alone = with_registered(case, chosen).in_suite(suite).only_methods(chosen)
@@ -91,8 +84,8 @@ def asked_of(case):
     }
 
 
-def test_the_library_itself_is_that_of_this_project(install):
-    install(4)
+def test_the_library_itself_is_that_of_this_project(install_four):
+    install_four()
     for case in load_cases().values():
         assert not set(NAMES) & {use.label for use in case.methods}
         assert not [stranger for stranger in NAMES if stranger in repr([claim.name for claim in case.claims])]

@@ -1,12 +1,11 @@
 """A registered method joins every case: which claims are put to it, and with which tolerance."""
 
-from importlib.metadata import EntryPoint
+from dataclasses import replace
 
 import pytest
 
 from cases.claims import Agree, Equal, Law, Zero
 from cases.convergence import Order
-from cases.declare import methods
 from cases.declare.registry import load_cases
 from cases.foreign import with_foreign_methods, with_registered
 from contact import InvalidInput
@@ -15,15 +14,6 @@ from tests.cases.fake_case import fake_case
 
 def claims_of(case, kind):
     return [claim for claim in case.claims if isinstance(claim, kind)]
-
-
-@pytest.fixture
-def register(monkeypatch):
-    def register(*entries):
-        points = [EntryPoint(name=n, value=v, group=methods.ENTRY_POINT_GROUP) for n, v in entries]
-        monkeypatch.setattr(methods, "entry_points", lambda group: points)
-
-    return register
 
 
 def test_claims_about_single_methods_extend_to_the_newcomer():
@@ -53,16 +43,12 @@ def test_a_claimed_accuracy_tightens_and_never_loosens(claimed, exact, fast):
 def test_without_a_claimed_accuracy_it_meets_the_widest_tolerance_of_the_others():
     case = fake_case()
     (exact,) = claims_of(case, Equal)
-    from dataclasses import replace
-
     wide = replace(exact, tolerances={"fast": 1e-5})
     case = with_foreign_methods(replace(case, claims=(wide,)), {"newcomer": 0.0})
     assert claims_of(case, Equal)[0].tolerance_of("newcomer") == 1e-5
 
 
 def test_orders_and_residuals_stay_with_the_methods_they_belong_to():
-    from dataclasses import replace
-
     case = fake_case()
     (twin,) = claims_of(case, Law)
     residual = Zero(name="energy", quantity="energy_residual", tolerance=1e-8, why=twin.why)
@@ -71,27 +57,27 @@ def test_orders_and_residuals_stay_with_the_methods_they_belong_to():
     assert [order.method for order in claims_of(case, Order)] == ["slow"]
 
 
-def test_a_chosen_method_is_in_every_case_of_the_library(register):
-    register(("stranger", "tests.cases.fake_method:FakeHertz"))
+def test_a_chosen_method_is_in_every_case_of_the_library(install):
+    install({"stranger": "tests.cases.fake_method:FakeHertz"})
     for case in load_cases().values():
         assert "stranger" in {use.label for use in with_registered(case, ["stranger"]).methods}
 
 
-def test_without_registered_methods_a_case_is_unchanged(register):
-    register()
+def test_without_registered_methods_a_case_is_unchanged(install):
+    install({})
     case = fake_case()
     assert with_registered(case) is case
 
 
 @pytest.mark.parametrize(
-    ("entries", "message"),
+    ("name", "value", "message"),
     [
-        ([("stranger", "no_such_package:Solver")], "cannot be imported from no_such_package"),
-        ([("stranger", "tests.cases.fake_method:Nothing")], "Nothing"),
-        ([("mdr", "tests.cases.fake_method:FakeHertz")], "two methods are called 'mdr'"),
+        ("stranger", "no_such_package:Solver", "cannot be imported from no_such_package"),
+        ("stranger", "tests.cases.fake_method:Nothing", "Nothing"),
+        ("mdr", "tests.cases.fake_method:FakeHertz", "two methods are called 'mdr'"),
     ],
 )
-def test_a_method_that_cannot_join_says_why(register, entries, message):
-    register(*entries)
+def test_a_method_that_cannot_join_says_why(install, name, value, message):
+    install({name: value})
     with pytest.raises(InvalidInput, match=message):
         with_registered(fake_case())

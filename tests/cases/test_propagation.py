@@ -62,8 +62,8 @@ def test_samples_agree_with_differences():
     # The deviation of 400 samples is known to 1/sqrt(800), 3.5 %; three of these.
     assert relative(sampled, "normal_force")[0] == pytest.approx(by_differences, rel=0.11, abs=0.0)
     assert sampled.solved == 401
-    again = propagate(AT_DEPTH, text, samples=400)
-    assert again.quantity("normal_force").inputs[0] == sampled.quantity("normal_force").inputs[0]
+    few, again = (relative(propagate(AT_DEPTH, text, samples=20), "normal_force")[0] for _ in range(2))
+    assert few == again
 
 
 @pytest.mark.slow

@@ -2,11 +2,9 @@ import dataclasses
 
 import pytest
 
-from cases.case import Case
 from cases.claims import Equal
-from cases.declare.methods import MethodUse, build, method_names
-from cases.declare.registry import by_name, load_cases, select
-from cases.verdicts import Origin
+from cases.declare.methods import build
+from cases.declare.registry import by_name, select
 from contact import InvalidInput
 from reports.command_line import run
 from tests.cases.fake_case import FAST, STATED, WHY, case_scene, fake_case, hertz_force
@@ -80,27 +78,9 @@ def test_selection_by_name_and_suite():
         select(cases, suite="weekly")
 
 
-def test_the_library_loads_and_its_names_are_its_files():
-    for name, found in load_cases().items():
-        assert isinstance(found, Case)
-        assert name == found.name
-        assert found.suites
-
-
-def test_an_unknown_method_lists_the_known_ones():
-    with pytest.raises(InvalidInput, match=r"no method .abaqus.; there are .*fem"):
-        MethodUse(label="abaqus").build()
-    assert "fake" in method_names()
-
-
 def test_settings_reach_the_method():
     assert build("fake", {"cell": 0.25}).cell == 0.25
     assert FAST.build().stated == 1e-12
-
-
-def test_every_origin_is_one_of_five():
-    """The four of the contribution rules; a method that shares something is told apart from an independent one."""
-    assert len(Origin) == 5
 
 
 @pytest.mark.parametrize("suite", ["ci", "nightly"])

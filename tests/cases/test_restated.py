@@ -1,7 +1,5 @@
 """Scenes that prescribe radii are put by depth to a method that takes no radii."""
 
-from importlib.metadata import EntryPoint
-
 import numpy as np
 import pytest
 
@@ -52,17 +50,12 @@ class ByRadius(ByDepth):
         return Supported()
 
 
-@pytest.fixture
-def register(monkeypatch):
-    def named(kind):
-        entry = EntryPoint("by_depth", f"tests.cases.test_restated:{kind}", methods.ENTRY_POINT_GROUP)
-        monkeypatch.setattr(methods, "entry_points", lambda group: [entry])
-
-    named("ByDepth")
-    return named
+@pytest.fixture(autouse=True)
+def _by_depth(install):
+    install({"by_depth": f"{__name__}:ByDepth"})
 
 
-def test_twins_prescribe_the_depths_of_the_radii(register):
+def test_twins_prescribe_the_depths_of_the_radii():
     wider = with_foreign_methods(fake_case(), {"by_depth": 0.0})
     twins = [scene for scene in wider.scenes if scene.name.endswith(SUFFIX)]
     assert len(twins) == len(fake_case().scenes)
@@ -75,23 +68,23 @@ def test_twins_prescribe_the_depths_of_the_radii(register):
     assert {claim.quantity for claim in asked} == {"normal_force"}
 
 
-def test_a_method_that_takes_radii_gets_no_twins(register):
-    register("ByRadius")
+def test_a_method_that_takes_radii_gets_no_twins(install):
+    install({"by_depth": f"{__name__}:ByRadius"})
     wider = with_foreign_methods(fake_case(), {"by_depth": 0.0})
     assert [scene.name for scene in wider.scenes] == [scene.name for scene in fake_case().scenes]
 
 
-def test_against_another_method_twins_are_compared(register):
+def test_against_another_method_twins_are_compared():
     (case,) = against([fake_case()], ["by_depth"], ["mdr"])
     assert any(scene.name.endswith(SUFFIX) for scene in case.scenes)
 
 
-def test_a_wrong_force_fails_by_its_own_estimated_error(register, tmp_path):
+def test_a_wrong_force_fails_by_its_own_estimated_error(tmp_path):
     """The method states no error and does not change when refined: a thousandth too much is an error, not a doubt."""
     mdr = methods.MethodUse(label="fast", method="mdr")
     wider = with_foreign_methods(fake_case(fast=mdr), {"by_depth": 0.0})
     case = beside(wider, ["by_depth"], "fast")
-    result = run_cases([case], RunOptions(out=tmp_path / "out", executor=serial, jobs=1, timing=False))
+    result = run_cases([case], RunOptions(out=tmp_path / "out", executor=serial, jobs=1, timing=False, time_limit=0.0))
     judged = [c for c in result.judged.verdicts if c.scene.endswith(SUFFIX) and "by_depth" in c.methods]
     assert judged
     assert {claim.status for claim in judged} == {Status.FAIL}

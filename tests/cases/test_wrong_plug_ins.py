@@ -1,12 +1,10 @@
 """Plug-ins that are wrong, or that answer nothing: none of them passes, whatever they state of themselves."""
 
 import dataclasses
-from importlib.metadata import EntryPoint
 from typing import ClassVar
 
 import pytest
 
-from cases.declare import methods
 from cases.runs import read_run
 from cases.verdicts import Kind, Status
 from contact import Unsupported
@@ -50,13 +48,12 @@ class Refusing(Wrong):
 
 
 @pytest.fixture
-def run_with(monkeypatch, tmp_path):
+def run_with(install, monkeypatch, tmp_path):
     def run_with(kind, *arguments):
-        entry = EntryPoint(name="mine", value=f"{__name__}:{kind.__name__}", group=methods.ENTRY_POINT_GROUP)
-        monkeypatch.setattr(methods, "entry_points", lambda group: [entry])
+        install({"mine": f"{__name__}:{kind.__name__}"})
         # Pages are not what is tested here.
         monkeypatch.setattr("reports.commands.runs.write_pages", lambda *_: None)
-        out = ("--no-timing", "--executor", "serial", "--quiet", "--out", str(tmp_path))
+        out = ("--no-timing", "--executor", "serial", "--time-limit", "0", "--quiet", "--out", str(tmp_path))
         return run(["run", *arguments, *out]), read_run(tmp_path)
 
     return run_with

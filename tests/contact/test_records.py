@@ -49,6 +49,13 @@ def test_the_callers_array_is_copied():
     assert loading.values[0] == 1e-3
 
 
+def test_a_record_takes_texts_with_units():
+    """Units are read wherever records are made, not in files alone."""
+    layer = Layer(thickness="1 mm", youngs_modulus="2 kPa", poissons_ratio=0.3)
+    assert layer == Layer(thickness=1e-3, youngs_modulus=2e3, poissons_ratio=0.3)
+    assert ContactRadii(["1 um", "2 um"]) == ContactRadii([1e-6, 2e-6])
+
+
 def test_a_changed_copy_is_validated():
     with pytest.raises(InvalidInput, match=r"Layer\.thickness"):
         LAYER.replace(thickness=-1.0)

@@ -21,7 +21,6 @@ from contact import (
     Scene,
     Sublayer,
     TabulatedDepth,
-    load_scene,
     scene_from_mapping,
     scene_to_mapping,
 )
@@ -69,36 +68,6 @@ def test_other_units_change_moduli_and_lengths_only(layer):
     assert other.contact_modulus == 2.0**-20 * layer.contact_modulus
     assert other.surface.poissons_ratio == layer.surface.poissons_ratio
     assert in_units(scene_of(other), Units(length=2.0**-10, stress=2.0**20)).layer == layer
-
-
-def test_a_file_in_toml(tmp_path):
-    file = tmp_path / "scene.toml"
-    file.write_text(
-        """
-        [layer]
-        kind = "layer_stack"
-        interfaces = ["bonded"]
-        [[layer.sublayers]]
-        thickness = 0.2e-3
-        youngs_modulus = 1e6
-        poissons_ratio = 0.5
-        [[layer.sublayers]]
-        thickness = 0.8e-3
-        youngs_modulus = 5e6
-        poissons_ratio = 0.3
-        [layer.support]
-        youngs_modulus = 2e9
-        poissons_ratio = 0.2
-        interface = "unbonded"
-        [indenter]
-        kind = "paraboloid"
-        radius_of_curvature = 1e-2
-        [loading]
-        kind = "contact_radii"
-        values = [1e-3]
-        """
-    )
-    assert load_scene(file) == scene_of(STACK.replace(support=BASE))
 
 
 def test_a_stack_of_one_is_the_layer():

@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from contact import StageLog
+from contact.answer.stages import peak_memory_bytes
 
 
 def test_nested_stages_are_timed_apart():
@@ -47,3 +48,17 @@ def test_peak_memory_is_not_that_of_the_program_that_started_this_one():
     )
     done = subprocess.run([sys.executable, "-c", parent], capture_output=True, text=True, check=True)
     assert int(done.stdout) < 500_000_000
+
+
+BUSY = "import time\nwhile time.process_time() < 0.3: pass\nx = bytearray(60_000_000)"
+
+
+def test_processor_time_and_memory_of_a_child_count():
+    """A method that computes in processes of its own is not free."""
+    log, before = StageLog(), peak_memory_bytes()
+    with log.stage("elsewhere"):
+        subprocess.run([sys.executable, "-c", BUSY], check=True)
+    cost = log.cost(unknowns=1)
+    assert cost.cpu_seconds >= 0.3
+    assert log.records[0].cpu_seconds >= 0.3
+    assert cost.peak_memory_bytes >= max(before, 60_000_000)

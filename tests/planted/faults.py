@@ -7,16 +7,19 @@ import dataclasses
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
+from tempfile import mkdtemp
 from types import SimpleNamespace
 
 import numpy as np
 
 from cases.rules import Judgement
 from cases.verdicts import Status
-from contact import Sphere, Spheroconical, TruncatedParaboloid
+from contact import Layer, Paraboloid, Sphere, Spheroconical, TruncatedParaboloid
 from tests.cases.fake_case import FAST
+from tests.cases.gate.example_baselines import NOW, accepted
 from tests.planted.guards import TEMPORARY, Claims, Test
-from tests.planted.planting import override, set_to, swap
+from tests.planted.planting import found, override, set_to, swap
 
 
 @dataclass(frozen=True)
@@ -25,7 +28,7 @@ class Fault:
 
     Attributes:
         name: what is wrong, in words.
-        area: kernels, mdr, transforms, weak forms, time stepping, comparators, baselines or profiles.
+        area: its name in `AREAS`.
         plant: switches it on with a monkeypatch.
         guard: what must catch it.
         status: how the guard must end.
@@ -43,6 +46,8 @@ def cone(claims, scene, method):
     return Claims("truncated_cone", claims, (scene,), (method,))
 
 
+PARABOLOID, SPHERE = Paraboloid(radius_of_curvature=0.02), Sphere(radius=0.02)
+BONDED = Layer(thickness=1.0, youngs_modulus=0.91, poissons_ratio=0.3)
 LAYER = ("layer depth", "layer force")
 HALF_SPACE = ("half-space depth", "half-space force")
 
@@ -75,6 +80,11 @@ def half(resolvent):
     return property(lambda self: resolvent(self) / 2)
 
 
+def times(factor):
+    """The answer of a function times a factor."""
+    return lambda right: lambda *arguments: factor * right(*arguments)
+
+
 KERNELS = {
     "Kolosov's constant of plane stress": (
         override("bem.kernels.stack:StackKernel", "one_minus_chi", plane_stress_kolosov),
@@ -87,6 +97,10 @@ KERNELS = {
     "sinh 2q - 2q subtracted at small q": (
         set_to("bem.kernels.stack:_SERIES", 1e-9),
         Test("bem.test_kernels:test_kernel_keeps_full_relative_accuracy", ("bonded", 0.5)),
+    ),
+    "1 - chi wrong in the eighth digit": (
+        override("bem.kernels.stack:StackKernel", "one_minus_chi", times(1 + 1e-8)),
+        Claims("flat_punch_stiffness", ("stiffness to ten digits",), ("bonded nu=0.5 a/h=1",), ("mdr",)),
     ),
     "mean mode of a layer taken as zero": (
         set_to("bem.grid.influence:LEAST_SHARE", 1e6),
@@ -150,6 +164,17 @@ def force_times(factor):
     return of
 
 
+def stiffness_of_the_contact(at):
+    """y_1^2 = K/a: springs as stiff as the contact is on average."""
+
+    def wrong(self, radii, *excess):
+        values = at(self, radii, *excess)
+        y1 = np.sqrt(values.K / radii)
+        return values._replace(g=values.g * values.y1 / y1, y1=y1)
+
+    return wrong
+
+
 MDR = {
     "E in place of E*": (
         swap("bem.kernels.moduli:contact_modulus", lambda _: lambda layer: layer.surface.youngs_modulus),
@@ -179,13 +204,28 @@ MDR = {
     "search for the radius ends after one step": (
         set_to("mdr.radius_search:_MOST_STEPS", 1),
         Test(
-            "mdr.test_method:test_radii_depths_and_forces_describe_the_same_path", ("bonded", lambda: _mdr_indenter(1))
+            "mdr.test_method:test_radii_depths_and_forces_describe_the_same_path",
+            ("bonded", SPHERE),
         ),
         Status.INVALID,
     ),
     "pressure of Eq. (9) twice too large": (
-        override("mdr.contact_surface:Surface", "_inside", lambda f: lambda *a: 2 * f(*a)),
-        Test("mdr.test_method:test_the_pressure_carries_the_force", ("bonded", lambda: _mdr_indenter(0))),
+        override("mdr.contact_surface:Surface", "_inside", times(2)),
+        Test(
+            "mdr.test_method:test_the_pressure_carries_the_force",
+            ("bonded", PARABOLOID),
+        ),
+    ),
+    "layer's share of the pressure with the other sign": (
+        override("mdr.contact_surface:Surface", "_image", times(-1)),
+        Test(
+            "mdr.test_method:test_the_pressure_carries_the_force",
+            ("bonded", PARABOLOID),
+        ),
+    ),
+    "contact stiffness in place of spring stiffness": (
+        override("mdr.spring_bed:Springs", "at", stiffness_of_the_contact),
+        cone(LAYER, "bonded nu=0.5 a/h=1", "mdr"),
     ),
     "a force that is not a number": (
         override("mdr.spring_bed:Springs", "state", force_times(np.nan)),
@@ -195,25 +235,7 @@ MDR = {
 }
 
 
-def _mdr_indenter(number):
-    from tests.mdr.test_method import INDENTERS
-
-    return INDENTERS[number]
-
-
 # -- transforms and the boundary elements ----------------------------------------------------------------------------
-
-
-def half_space():
-    from bem.grid.operators import HALF_SPACE
-
-    return HALF_SPACE
-
-
-def bonded():
-    from tests.bem import test_grid
-
-    return test_grid.layer()
 
 
 TRANSFORMS = {
@@ -221,18 +243,20 @@ TRANSFORMS = {
         override(
             "bem.grid.transforms:CosineFilter", "__call__", lambda f: lambda self, p, s: f(self, p, s) * self.period
         ),
-        Test("bem.test_grid:test_a_sinusoidal_load_has_its_closed_form", (bonded,)),
+        Test("bem.test_grid:test_a_sinusoidal_load_has_its_closed_form", (BONDED,)),
     ),
     "no zero padding: the convolution is circular": (
         swap("bem.grid.operators:fast_period", lambda f: lambda least: f(least // 2)),
-        Test("bem.test_grid:test_free_space_is_the_sum_over_all_cells", (half_space,)),
+        Test(
+            "bem.test_grid:test_free_space_is_the_sum_over_all_cells", (lambda: found("bem.grid.operators:HALF_SPACE"),)
+        ),
     ),
     "Love's solution without 1/pi": (
-        swap("bem.grid.influence:rectangle_influence", lambda f: lambda offsets: np.pi * f(offsets)),
+        swap("bem.grid.influence:rectangle_influence", times(np.pi)),
         Test("bem.test_grid:test_a_cell_under_its_own_pressure_sinks_by_the_closed_form"),
     ),
     "layer correction with the wrong sign": (
-        swap("bem.grid.influence:_cell_means", lambda f: lambda *a: -f(*a)),
+        swap("bem.grid.influence:_cell_means", times(-1)),
         Test("bem.test_grid:test_printed_stiffness_is_met_on_a_grid_of_256", ("bonded", 0.3)),
     ),
     "complementarity never violated, whatever the pressure": (
@@ -362,11 +386,6 @@ def arctan_beyond_one(restitution):
     return wrong
 
 
-def half_the_loss(dissipation):
-    """1/2 eta v^2 is lost, not eta v^2."""
-    return lambda *a: dissipation(*a) / 2
-
-
 def creeping_too_fast(patch):
     """Free springs creep back one per cent too fast."""
     from mdr.history.spring_law import SpringLaw
@@ -414,11 +433,169 @@ TIME_STEPPING = {
         Test("verification.test_impact:test_flat_punch_restitution_is_smooth_through_critical_damping"),
     ),
     "half of the dissipation": (
-        swap("mdr.impact.history:_inverse", half_the_loss),
+        swap("mdr.impact.history:_inverse", times(1 / 2)),
         Claims("sphere_impact", ("restitution on layers", "energy balance"), ("bonded h=2 mm",), ("mdr",)),
     ),
 }
 
+
+# -- adhesion ---------------------------------------------------------------------------------------------------------
+
+
+ADHESION = {
+    "2 pi lost in the elongation": (
+        override("mdr.adhesive:Adhesive", "elongation", times((2 * np.pi) ** -0.5)),
+        Claims("paraboloid_adhesion", ("JKR pull off force",), ("half-space, force",), ("mdr",)),
+    ),
+    "E in place of E* under adhesion": (
+        swap("bem.kernels.moduli:contact_modulus", lambda _: lambda layer: layer.surface.youngs_modulus),
+        Claims("paraboloid_adhesion", ("JKR pull off depth",), ("half-space, force",), ("mdr",)),
+    ),
+    "stability turned upside down": (
+        override("bem.branch:Branch", "stable", lambda stable: lambda *arguments: ~stable(*arguments)),
+        Test(
+            "verification.test_adhesion:test_equilibrium_and_stability_are_those_of_the_energy",
+            (
+                Layer.half_space(youngs_modulus=0.75, poissons_ratio=0.5),
+                Paraboloid(radius_of_curvature=1.0),
+            ),
+        ),
+    ),
+}
+
+
+# -- friction ---------------------------------------------------------------------------------------------------------
+
+
+def held_at_zero(equilibrium):
+    """A new point is pulled back to where it lay before anything was pressed."""
+
+    def wrong(before, *others):
+        return equilibrium(dataclasses.replace(before, displacements=0.0 * before.displacements), *others)
+
+    return wrong
+
+
+def coupled_the_other_way(rubbed):
+    """The coupling of pressure and radial displacement has the other sign: the force does not change, q does."""
+
+    def wrong(surface, *others):
+        sign = np.where(np.arange(len(surface.compliance)) < len(surface.radii), 1.0, -1.0)
+        return rubbed(dataclasses.replace(surface, compliance=np.outer(sign, sign) * surface.compliance), *others)
+
+    return wrong
+
+
+def heat_of_the_traction_before(accounted):
+    """What slid is counted with the traction before the step, which pointed the other way where the slip turned."""
+
+    def wrong(before, after):
+        heat = -(before.shear * (after.radial - before.radial))[after.sliding != 0]
+        return dataclasses.replace(accounted(before, after), dissipated=before.dissipated + float(heat.sum()))
+
+    return wrong
+
+
+def forgetting_the_way(advance):
+    """The displacement of points ahead of the contact is not remembered when they touch."""
+
+    def wrong(before, active, end):
+        radial = np.where(np.arange(len(before.radial)) >= before.active, 0.0, before.radial)
+        moved = np.append(before.displacements[: len(radial)], radial)
+        return advance(dataclasses.replace(before, displacements=moved), active, end)
+
+    return wrong
+
+
+def pulled_inward(rows):
+    """The radial displacement of the fast method nearly without its sign."""
+
+    def wrong(*arguments):
+        radial, *others = rows(*arguments)
+        return np.array([-0.9 * radial, *others])
+
+    return wrong
+
+
+def lower_layers_turned(beyond):
+    """What a stack's lower layers add to the coupling has the other sign."""
+
+    def wrong(kernel, wavenumber):
+        found, alone = beyond(kernel, wavenumber), beyond(type(kernel).single("bonded", 0.5), wavenumber)
+        return found[0], 2.0 * alone[1] - found[1], found[2]
+
+    return wrong
+
+
+def more_friction(factor):
+    """Finite elements rub with a coefficient too large by a factor."""
+
+    def of(solve):
+        def wrong(method, scene):
+            effects = tuple(effect.replace(coefficient=factor * effect.coefficient) for effect in scene.effects)
+            return dataclasses.replace(solve(method, scene.replace(effects=effects)), scene=scene)
+
+        return wrong
+
+    return override("fem_reference:Fem", "solve", of)
+
+
+def rubbing(name, *arguments):
+    """A test of the friction of finite elements."""
+    return Test(f"fem_reference.test_friction:{name}", arguments)
+
+
+STUCK = rubbing("test_full_stick_is_that_of_mdr", 0.0, "bonded", 1.0, Paraboloid(radius_of_curvature=10.0))
+RECIPROCITY = Claims(
+    "friction_paraboloid",
+    ("the first order is that of reciprocity",),
+    ("nu=0.5 mu=0.04", "nu=0.5 mu=0.02"),
+    ("fem",),
+)
+
+
+FRICTION = {
+    "heat given back": (
+        swap("fem_reference.friction.step:_accounted", heat_of_the_traction_before),
+        rubbing("test_work_is_stored_or_dissipated_with_second_order_in_the_cells"),
+    ),
+    # That feeds energy in: no equilibrium is found.
+    "friction along the slip": (
+        swap("fem_reference.friction.step:_sliding", times(-1)),
+        rubbing("test_coulombs_law_holds_and_slip_goes_against_the_traction"),
+        Status.INVALID,
+    ),
+    "a layer that pulls inward where it pushes outward": (
+        swap("mdr.inside:_from_rows", pulled_inward),
+        rubbing("test_slope_at_vanishing_friction_is_that_of_reciprocity", 0.5, "bonded", 0.12),
+    ),
+    "new points held where nothing was pressed": (
+        swap("fem_reference.friction.step:_equilibrium", held_at_zero),
+        STUCK,
+        Status.INVALID,
+    ),
+    "new points forget that they slid on the way": (
+        swap("fem_reference.friction.step:advance", forgetting_the_way),
+        STUCK,
+        Status.INVALID,
+    ),
+    "pressure that pushes the surface the other way": (
+        swap("fem_reference.friction.step:RubbedContact", coupled_the_other_way),
+        STUCK,
+    ),
+    # Every second point then moves by another law.
+    "two cells of the tractions on each cell of the mesh": (
+        set_to("fem_reference.friction.growth:RUBBED_STRIDE", 2),
+        rubbing("test_forces_under_stick_converge_to_those_of_mdr_with_second_order", "bonded"),
+    ),
+    "lower layers that pull where they push": (
+        override("bem.kernels.stack:StackKernel", "beyond_half_space", lower_layers_turned),
+        Test("mdr.test_stick_on_stacks:test_finite_elements_agree_on_one_stack"),
+    ),
+    # One per cent is within the stated error of the force.
+    "friction one per cent too large": (more_friction(1.01), RECIPROCITY, Status.INCONCLUSIVE),
+    "friction ten per cent too large": (more_friction(1.1), RECIPROCITY),
+}
 
 # -- comparators -----------------------------------------------------------------------------------------------------
 
@@ -524,33 +701,17 @@ def absent_passes(place):
 
 def accepted_folder():
     """Baselines of the fabricated run."""
-    from pathlib import Path
-    from tempfile import mkdtemp
-
-    from tests.cases.gate.example_baselines import accepted
-
     return accepted(Path(mkdtemp()))
-
-
-def another(**change):
-    """A condition under which nothing may be accepted."""
-
-    def make():
-        from tests.cases.gate.example_baselines import NOW
-
-        return dataclasses.replace(NOW, **change)
-
-    return make
 
 
 BASELINES = {
     "missing records pass": (
         swap("cases.gate.gate:_absent", absent_passes(1)),
-        Test("cases.gate.test_gate:test_a_missing_quantity_fails_by_its_name", (accepted_folder,)),
+        Test("cases.gate.test_gate:test_what_differs_fails_by_its_name", (accepted_folder, "a missing quantity")),
     ),
     "extra records pass": (
         swap("cases.gate.gate:_absent", absent_passes(2)),
-        Test("cases.gate.test_gate:test_what_nobody_accepted_fails_by_its_name", (accepted_folder,)),
+        Test("cases.gate.test_gate:test_what_differs_fails_by_its_name", (accepted_folder, "a method nobody accepted")),
     ),
     "tolerances a thousand times too wide": (
         swap("cases.gate.baseline:permitted_change", lambda f: lambda values, step: 1e3 * f(values, step)),
@@ -574,7 +735,7 @@ BASELINES = {
         swap("cases.gate.accept:_refused_circumstances", lambda _: lambda run, now: ()),
         Test(
             "cases.gate.test_accept:test_the_wrong_place_or_time_is_refused",
-            (TEMPORARY, another(changed=("mdr/core.py",)), "mdr/core.py"),
+            (TEMPORARY, dataclasses.replace(NOW, changed=("mdr/core.py",)), "mdr/core.py"),
         ),
     ),
     "failing claims accepted": (
@@ -642,6 +803,8 @@ AREAS = {
     "transforms": TRANSFORMS,
     "weak forms": WEAK_FORMS,
     "time stepping": TIME_STEPPING,
+    "adhesion": ADHESION,
+    "friction": FRICTION,
     "comparators": COMPARATORS,
     "baselines": BASELINES,
     "profiles": PROFILES,

@@ -13,7 +13,7 @@ from cases.convergence import Order
 from cases.declare.registry import load_cases
 from cases.run.solve_task import job_of, solve
 from cases.verdicts import Status, worst
-from contact import NotConvergedError
+from contact import NotConvergedError, UnsupportedSceneError
 
 TEMPORARY = object()  # stands for a fresh folder among a test's arguments
 
@@ -74,7 +74,7 @@ class Test:
             self.load()(*arguments)
         except (AssertionError, pytest.fail.Exception):
             return Status.FAIL
-        except NotConvergedError:
+        except (NotConvergedError, UnsupportedSceneError):
             return Status.INVALID
         return Status.PASS
 

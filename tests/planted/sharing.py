@@ -79,6 +79,25 @@ def times(original):
     return wrong
 
 
+def scaled(factor=WRONG, *, fields):
+    """A function whose answer, a record or a named tuple, has some fields times a factor."""
+
+    def of(original):
+        def wrong(*arguments):
+            right = original(*arguments)
+            other = {name: times_all(getattr(right, name), factor) for name in fields}
+            return dataclasses.replace(right, **other) if dataclasses.is_dataclass(right) else right._replace(**other)
+
+        return wrong
+
+    return of
+
+
+def times_all(values, factor):
+    """A number, an array, or all numbers of a tuple times a factor."""
+    return tuple(factor * value for value in values) if isinstance(values, tuple) else factor * values
+
+
 def heavier(original):
     """Gauss weights one per cent too large."""
 
@@ -92,16 +111,6 @@ def heavier(original):
 def steeper(made):
     """Pieces of a slope one per cent too large."""
     return lambda self, profile, knots, pieces: made(self, profile, knots, WRONG * pieces)
-
-
-def deeper(at):
-    """MDR profiles one per cent too large."""
-
-    def wrong(*arguments):
-        values = at(*arguments)
-        return values._replace(g=WRONG * values.g)
-
-    return wrong
 
 
 def too_large(*, of):
@@ -156,12 +165,7 @@ def both(*plants):
 
 def longer_relaxation(original):
     """Relaxation times one per cent too long."""
-
-    def wrong(self):
-        right = original(self)
-        return dataclasses.replace(right, times=WRONG * right.times, viscosity=WRONG * right.viscosity)
-
-    return property(wrong)
+    return property(scaled(fields=("times", "viscosity"))(original))
 
 
 def wrong_reduction(**change):
@@ -177,26 +181,6 @@ def wrong_reduction(**change):
         return scene
 
     return override("contact.scene.coated_pair:CoatedPair", "scene", wrong)
-
-
-def misread(original):
-    """Quantities recorded one per cent too large."""
-
-    def wrong(*arguments):
-        right = original(*arguments)
-        return dataclasses.replace(right, values=tuple(WRONG * value for value in right.values))
-
-    return wrong
-
-
-def shrunk_rings(original):
-    """Nodes of rings one per cent too far inside, their weights those of the right places."""
-
-    def wrong(*arguments):
-        right = original(*arguments)
-        return dataclasses.replace(right, radius=right.radius / WRONG)
-
-    return wrong
 
 
 def shrunk_points(original):
@@ -269,7 +253,9 @@ PLANTED = {
     "contact modulus": {
         "E* of boundary elements and MDR": (swap("bem.kernels.moduli:contact_modulus", times), ELASTIC)
     },
-    "springs and profile of MDR": {"MDR profile": (override("mdr.spring_bed:Springs", "at", deeper), ELASTIC)},
+    "springs and profile of MDR": {
+        "MDR profile": (override("mdr.spring_bed:Springs", "at", scaled(fields=("g",))), ELASTIC)
+    },
     "boundary elements on a grid": {
         "influence of a loaded rectangle": (swap("bem.grid.influence:rectangle_influence", times), ("grids",))
     },
@@ -295,9 +281,9 @@ PLANTED = {
         **{what: (too_large(of=of), probes) for what, (of, probes) in NUMBERS.items()},
         **{f"modulus at the {end}": (too_large_once(of=f"{MODULI}.{end}"), ("graded",)) for end in ("surface", "base")},
     },
-    "record of an answer": {"values": (swap("cases.recording:_quantity", misread), ELASTIC)},
+    "record of an answer": {"values": (swap("cases.recording:_quantity", scaled(fields=("values",))), ELASTIC)},
     "rings on which pressures are compared": {
-        "places of the samples": (swap("cases.norms:ring_quadrature", shrunk_rings), ("cone",))
+        "places of the samples": (swap("cases.norms:ring_quadrature", scaled(1 / WRONG, fields=("radius",))), ("cone",))
     },
 }
 FAULTS = tuple(SharedFault(shared, what, *fault) for shared, group in PLANTED.items() for what, fault in group.items())

@@ -60,22 +60,6 @@ def measure(page: Path, *, width: int = WIDTH, printed: bool = False) -> dict:
     return json.loads(found[1].replace("&amp;", "&").replace("&gt;", ">"))
 
 
-FRAME = """<body style="margin: 0"><iframe id="frame" src="{page}" style="width: {width}px; height: 800px; border: 0">
-</iframe><pre id="measured"></pre><script>
-onload = () => document.getElementById("measured").textContent =
-  document.getElementById("frame").contentDocument.documentElement.scrollWidth;
-</script></body>"""
-
-
-def width_in_frame(page: Path, width: int) -> int:
-    """How wide the page is [pixels] in a frame narrower than any window that headless Chromium opens."""
-    with tempfile.TemporaryDirectory() as folder:
-        frame = Path(folder) / "frame.html"
-        frame.write_text(FRAME.format(page=page.as_uri(), width=width), encoding="utf-8")
-        dumped = _run("--dump-dom", frame.as_uri(), folder, "--allow-file-access-from-files")
-    return int(re.search(r'<pre id="measured">(\d+)</pre>', dumped)[1])
-
-
 def picture(page: Path, target: Path, *, height: int = HEIGHT) -> None:
     """The page as PNG."""
     with tempfile.TemporaryDirectory() as folder:

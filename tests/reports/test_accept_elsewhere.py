@@ -1,17 +1,13 @@
 """`accept` and `gate` in a user's own repository: the package installed, a method of the user's own in the run."""
 
 import subprocess
-from importlib.metadata import EntryPoint
 from pathlib import Path
 
 import pytest
 
-from cases.declare import methods
 from cases.gate import spread
 from cases.run import executors, stamp
 from reports.command_line import run
-from reports.commands import baselines
-from tests.cases.fake_case import fake_case
 
 
 def git(*words):
@@ -20,14 +16,9 @@ def git(*words):
 
 
 @pytest.fixture
-def users(tmp_path, library, monkeypatch):
+def users(tmp_path, library, install, monkeypatch):
     """A repository of a user with a plug-in; this package lies in an environment that it ignores."""
-    case = fake_case()
-    library(case)
-    for module in (baselines,):
-        monkeypatch.setattr(module, "load_cases", lambda: {case.name: case})
-    entry = EntryPoint(name="mine", value="tests.cases.fake_method:FakeHertz", group=methods.ENTRY_POINT_GROUP)
-    monkeypatch.setattr(methods, "entry_points", lambda group: [entry])
+    install({"mine": "tests.cases.fake_method:FakeHertz"})
     monkeypatch.setattr(spread, "process_pool", executors.serial)
     monkeypatch.delenv("CI", raising=False)
     installed = tmp_path / ".venv" / "site-packages" / "cases"
@@ -44,14 +35,28 @@ def users(tmp_path, library, monkeypatch):
 def solve_all():
     names = ("mine", "fast", "slow")
     chosen = [word for name in names for word in ("--method", name)]
-    return run(["run", "fake_hertz", "--executor", "serial", "--quiet", "--no-timing", "--out", "out", *chosen])
+    return run(
+        [
+            "run",
+            "fake_hertz",
+            "--executor",
+            "serial",
+            "--time-limit",
+            "0",
+            "--quiet",
+            "--no-timing",
+            "--out",
+            "out",
+            *chosen,
+        ]
+    )
 
 
 def accept_all():
     return run(["accept", "fake_hertz", "--reason", "first numbers", "--run", "out", "--write"])
 
 
-@pytest.mark.usefixtures("users")
+@pytest.mark.usefixtures("users", "without_pages")
 def test_numbers_of_a_user_s_method_are_accepted_in_the_user_s_repository(capsys):
     solve_all()
     assert accept_all() == 0, capsys.readouterr()
@@ -60,7 +65,7 @@ def test_numbers_of_a_user_s_method_are_accepted_in_the_user_s_repository(capsys
     assert run(["gate", "out", "--quiet"]) == 0
 
 
-@pytest.mark.usefixtures("users")
+@pytest.mark.usefixtures("users", "without_pages")
 def test_a_change_of_the_user_s_own_source_is_refused(capsys):
     solve_all()
     Path("plug_in.py").write_text("A = 2\n", encoding="utf-8")

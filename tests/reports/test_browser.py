@@ -4,8 +4,8 @@ import matplotlib.image
 import pytest
 
 from reports.page import CASES, write_report
-from tests.reports.browser import HEIGHT, PHONE, PRINTED_WIDTH, WIDTH, browser, measure, picture, width_in_frame
-from tests.reports.example import FAILING, PASSING, example, only
+from tests.cases.example_run import FAILING, PASSING, example, only
+from tests.reports.browser import HEIGHT, PHONE, PRINTED_WIDTH, WIDTH, browser, measure, picture
 from tests.reports.test_ci import many_failures
 
 pytestmark = [
@@ -57,16 +57,6 @@ def test_nothing_is_wider_than_its_window_or_its_sheet_of_paper(failed_page, wid
         seen = measure(page, width=width, printed=printed)
         assert seen["page_width"] <= width
         assert width == PHONE or seen["too_wide"] == []
-
-
-def test_at_400_pixels_pages_do_not_scroll_sideways(failed_page, tmp_path):
-    """A matrix with many columns scrolls in its own box."""
-    row = "".join(f"<td>PASS {number} of 100" for number in range(12))
-    wide = tmp_path / "wide.html"
-    text = failed_page.read_text(encoding="utf-8")
-    wide.write_text(text.replace("</main>", f'<table class="matrix"><tr>{row}</table></main>'), encoding="utf-8")
-    for page in (wide, *(failed_page.parent / CASES).glob("*.html")):
-        assert width_in_frame(page, 400) <= 400
 
 
 def test_three_answers_stand_on_the_first_screen_of_a_run_that_passed(tmp_path):

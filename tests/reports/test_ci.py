@@ -11,7 +11,7 @@ from cases.runs import Run
 from contact.records.errors import printable
 from reports.ci import LARGEST, MOST, annotation_lines, junit_text, summary_text
 from reports.page import write_report
-from tests.reports.example import FAILING, PASSING, example, only, verdict, with_verdicts
+from tests.cases.example_run import FAILING, PASSING, example, only, verdict, with_verdicts
 
 
 def many_failures(number) -> Run:

@@ -116,32 +116,33 @@ def test_a_sound_run_passes_and_writes_everything(tmp_path, capsys):
     assert "report.html" in output
 
 
-SLOW_PLANTS = [pytest.param(plant, marks=pytest.mark.slow) for plant in ("not converged", "raise")]
-
-
-@pytest.mark.parametrize("plant", ["nan", *SLOW_PLANTS])
-def test_a_broken_solver_fails_the_run_by_name(plant, library, tmp_path, capsys):
-    """Every way to break is a row in `tests/cases/test_runner.py`; by the command all but one are slow."""
-    library(fake_case(slow=spoiled(SLOW, plant=plant)))
+@pytest.mark.usefixtures("without_pages")
+@pytest.mark.parametrize(
+    ("case", "words"),
+    [
+        (fake_case(slow=spoiled(SLOW, plant="nan")), "INVALID fake_hertz"),
+        (fake_case(fast=spoiled(FAST, cell=1.0, error=1e-3)), "FAIL fake_hertz"),
+    ],
+    ids=["a broken solver", "a wrong number"],
+)
+def test_what_is_wrong_fails_the_run_by_name(case, words, library, tmp_path, capsys):
+    """Every way to break is a row in `tests/cases/test_runner.py`; GitHub alone gets annotations."""
+    library(case)
     assert run_here(tmp_path) == 1
     output = capsys.readouterr().out
     assert "FAILED" in output
-    assert "INVALID fake_hertz" in output
+    assert words in output
+    assert "::error" not in output
 
 
-def test_a_wrong_number_fails_the_run(library, tmp_path, capsys):
-    library(fake_case(fast=spoiled(FAST, cell=1.0, error=1e-3)))
-    assert run_here(tmp_path) == 1
-    assert "FAIL fake_hertz" in capsys.readouterr().out
-
-
+@pytest.mark.usefixtures("without_pages")
 def test_an_open_verdict_fails_only_when_strict(library, tmp_path):
     library(fake_case(slow=spoiled(SLOW, stated=1e-3)))
     assert run_here(tmp_path) == 0
     assert run_here(tmp_path, "--resume", "--strict") == 6
 
 
-@pytest.mark.usefixtures("library")
+@pytest.mark.usefixtures("library", "without_pages")
 def test_an_unknown_case_or_method_names_those_there_are(tmp_path, capsys):
     assert run_here(tmp_path, "nothing") == 4
     assert "fake_hertz" in capsys.readouterr().err
@@ -149,27 +150,11 @@ def test_an_unknown_case_or_method_names_those_there_are(tmp_path, capsys):
     assert "fast, slow" in capsys.readouterr().err
 
 
-@pytest.mark.usefixtures("library")
+@pytest.mark.usefixtures("library", "without_pages")
 def test_one_method_alone_answers_the_claims_it_can(tmp_path):
     assert run_here(tmp_path, "--method", "fast") == 0
     verdicts = json.loads((tmp_path / "out" / "run.json").read_text(encoding="utf-8"))["verdicts"]
     assert {verdict["claim"] for verdict in verdicts} == {"closed form", "doubling E doubles F"}
-
-
-def test_nothing_to_run_is_exit_code_5(library, tmp_path):
-    library()
-    assert run_here(tmp_path) == 5
-
-
-@pytest.mark.slow
-def test_github_gets_annotations_and_nobody_else(library, tmp_path, capsys, monkeypatch):
-    library(fake_case(slow=spoiled(SLOW, plant="nan")))
-    run_here(tmp_path)
-    assert "::error" not in capsys.readouterr().out
-    monkeypatch.setenv("GITHUB_ACTIONS", "true")
-    run_here(tmp_path)
-    lines = [line for line in capsys.readouterr().out.splitlines() if line.startswith("::error")]
-    assert 1 <= len(lines) <= 9
 
 
 def test_the_list_counts_a_solution_that_several_claims_need_once(capsys):
@@ -355,19 +340,6 @@ def test_the_example_scene_is_a_scene(tmp_path, capsys):
     assert load_scene(path).indenter.flat_radius == 0.5e-3
 
 
-@pytest.mark.slow
-def test_solve_loads_with_few_collections_of_garbage(hertz):
-    """They walk what was just loaded: 124 of the youngest objects once, 85 now, and go on afterwards."""
-    code = (
-        "import gc, sys; from reports.command_line import run; run(sys.argv[1:]); "
-        "print(gc.get_stats()[0]['collections'], gc.isenabled())"
-    )
-    done = subprocess.run([sys.executable, "-c", code, "solve", hertz], check=True, capture_output=True, text=True)
-    young, goes_on = done.stdout.split()[-2:]
-    assert int(young) < 105
-    assert goes_on == "True"
-
-
 def processor_seconds(code):
     """Of a process that runs the code; another job on the machine does not count."""
     start = os.times()
@@ -400,7 +372,7 @@ def test_commands_compute_on_one_thread_unless_told_otherwise():
         assert int(done.stdout) == threads
 
 
-@pytest.mark.usefixtures("library")
+@pytest.mark.usefixtures("library", "without_pages")
 def test_a_folder_in_which_another_run_works_is_refused_in_one_line(tmp_path, capsys, monkeypatch):
     assert run_here(tmp_path) == 0
     before = (tmp_path / "out" / "run.json").read_bytes()
@@ -416,6 +388,7 @@ def test_a_folder_in_which_another_run_works_is_refused_in_one_line(tmp_path, ca
             assert (tmp_path / "out" / "run.json").read_bytes() == before, command
 
 
+@pytest.mark.usefixtures("without_pages")
 def test_the_report_of_a_run_without_cases_is_exit_code_5(library, tmp_path, capsys):
     library()
     assert run_here(tmp_path) == 5
@@ -427,7 +400,7 @@ def test_the_report_of_a_run_without_cases_is_exit_code_5(library, tmp_path, cap
     assert run(["report", str(tmp_path / "out"), str(tmp_path / "other")]) == 5
 
 
-@pytest.mark.usefixtures("library")
+@pytest.mark.usefixtures("library", "without_pages")
 def test_the_report_of_a_damaged_run_is_refused_in_one_line(tmp_path, capsys):
     assert run_here(tmp_path) == 0
     results = tmp_path / "out" / "run.json"

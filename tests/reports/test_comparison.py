@@ -9,15 +9,14 @@ from cases.runs import RUN, Run, write_run
 from cases.verdicts import Status
 from reports.commands.runs import compare_runs, report
 from reports.comparison import changed_claims, changed_numbers, headline, worst_first
-from tests.cases.example_run import passing_run
-from tests.reports.example import example
+from tests.cases.example_run import PASSING, example, only
 from tests.reports.test_pages import not_a_number, words_of
 
 
 @pytest.fixture
 def runs(tmp_path):
     """A run, and a later one in which a passing claim fails."""
-    run = passing_run()
+    run = only(PASSING)
     first, *others = run.judged.verdicts
     failed = dataclasses.replace(first, status=Status.FAIL, fraction=7.0)
     for name, verdicts in (("first", (first, *others)), ("second", (failed, *others))):

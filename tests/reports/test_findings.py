@@ -8,7 +8,7 @@ import pytest
 from cases.runs import Run
 from cases.verdicts import Kind, Status
 from reports.findings import WORST_FIRST, causes, counts, findings, headline, is_wide
-from tests.reports.example import FAILING, PASSING, example, only, verdict, with_verdicts
+from tests.cases.example_run import FAILING, PASSING, example, only, verdict, with_verdicts
 
 
 def test_reading_order_names_every_status_once():

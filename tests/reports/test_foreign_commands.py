@@ -1,13 +1,11 @@
 """A method of an installed package at the shell: `run`, `run --against`, `gate`, `cost` and `maps` with `--method`."""
 
-from importlib.metadata import EntryPoint
 from pathlib import Path
 
 import pytest
 
 from cases.case import Case
 from cases.claims import Agree
-from cases.declare import methods
 from cases.declare.registry import load_cases
 from cases.foreign import against, beside, with_registered
 from cases.runs import RUN, read_run
@@ -17,16 +15,14 @@ from tests.cases.fake_method import FakeHertz
 
 
 @pytest.fixture(autouse=True)
-def mine(monkeypatch, tmp_path):
+def mine(install, monkeypatch, tmp_path):
     """A method of an installed package, and another that nobody chooses."""
-    value = "tests.cases.fake_method:FakeHertz"
-    entries = [EntryPoint(name=name, value=value, group=methods.ENTRY_POINT_GROUP) for name in ("mine", "unchosen")]
-    monkeypatch.setattr(methods, "entry_points", lambda group: entries)
+    install(dict.fromkeys(("mine", "unchosen"), "tests.cases.fake_method:FakeHertz"))
     monkeypatch.chdir(tmp_path)
 
 
 def solved(*more):
-    code = run(["run", "--executor", "serial", "--quiet", "--out", "out", *more])
+    code = run(["run", "--executor", "serial", "--time-limit", "0", "--quiet", "--out", "out", *more])
     return code, read_run(Path("out"))
 
 
@@ -56,7 +52,7 @@ def test_nothing_is_claimed_of_the_fast_method_itself(name, suite):
             assert set(claim.labels(use)) <= {"mine", "mdr"}
 
 
-@pytest.mark.usefixtures("library")
+@pytest.mark.usefixtures("library", "without_pages")
 def test_any_method_is_compared_with_any_other():
     for one, other in (("mine", "slow"), ("slow", "fast"), ("mine", "unchosen")):
         code, result = solved("--method", one, "--against", other)

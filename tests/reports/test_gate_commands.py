@@ -8,13 +8,12 @@ import pytest
 
 from cases.gate import spread
 from cases.gate.accept import WriteConditions
-from cases.gate.baseline import read_baselines
 from cases.run import executors, runner
 from cases.run.runner import RunOptions
 from cases.run.stamp import revision
 from reports.command_line import run
 from reports.commands import baselines
-from tests.cases.fake_case import FAST, SLOW, fake_case, spoiled
+from tests.cases.fake_case import FAST, fake_case, spoiled
 from tests.cases.fake_method import FakeHertz
 from tests.cases.test_narrow import with_a_nightly_method
 
@@ -24,18 +23,11 @@ CLEAN = WriteConditions(revision=revision(), changed=(), in_ci=False)
 @pytest.fixture
 def here(tmp_path, library, monkeypatch):
     """A folder of a run, a library, and a clean working tree."""
-
-    def set_library(case):
-        library(case)
-        for module in (baselines,):
-            monkeypatch.setattr(module, "load_cases", lambda: {case.name: case})
-
-    set_library(fake_case())
     monkeypatch.setattr(spread, "process_pool", executors.serial)
     monkeypatch.setattr(baselines, "write_conditions", lambda *_: CLEAN)
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("COLUMNS", "200")  # whatever the terminal: a table is not folded
-    return set_library
+    return library
 
 
 def run_cases(case=None):
@@ -128,34 +120,14 @@ def test_an_accepted_number_is_gated_from_then_on(tmp_path, monkeypatch, capsys)
     assert gate_run() == 0
 
 
-def test_loosening_needs_its_flag_and_is_kept_with_its_reason(here, tmp_path, capsys):
-    run_cases()
-    accept_case("--write")
-    unstable = fake_case(slow=spoiled(SLOW, plant="last bits"))
-    here(unstable)
-    run_cases(unstable)
-    assert accept_case("--write") == 4
-    assert "--loosen" in capsys.readouterr().err
-    assert accept_case("--write", "--loosen", reason="an unstable version on purpose") == 0
-    (baseline,) = read_baselines(tmp_path / "baselines")
-    assert baseline.accepted.reason == "an unstable version on purpose"
-
-
-@pytest.mark.parametrize(
-    ("change", "words"),
-    [
-        ({"in_ci": True}, "continuous integration"),
-        ({"changed": ("mdr/core.py",)}, "mdr/core.py"),
-        ({"revision": "1" * 40}, "run again"),
-    ],
-)
 @pytest.mark.usefixtures("here")
-def test_accepting_in_the_wrong_place_is_refused_before_anything_is_repeated(change, words, monkeypatch, capsys):
+def test_accepting_where_nothing_may_be_accepted_is_refused_before_anything_is_repeated(monkeypatch, capsys):
+    """Every such place and time is a row in `tests/cases/gate/test_accept.py`."""
     run_cases()
-    monkeypatch.setattr(baselines, "write_conditions", lambda *_: dataclasses.replace(CLEAN, **change))
+    monkeypatch.setattr(baselines, "write_conditions", lambda *_: dataclasses.replace(CLEAN, changed=("mdr/core.py",)))
     monkeypatch.setattr(baselines, "measured_spreads", None)
     assert accept_case("--write") == 4
-    assert words in capsys.readouterr().err
+    assert "mdr/core.py" in capsys.readouterr().err
 
 
 def test_a_failing_exact_claim_cannot_be_accepted(here, tmp_path, capsys):

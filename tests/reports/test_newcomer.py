@@ -74,13 +74,6 @@ def test_at_most_ten_rows_are_printed_and_where_the_others_are(arguments, told, 
     assert len([line for line in out.splitlines() if not re.search("[a-zA-Z]{2}", line)]) == 10
 
 
-@pytest.mark.parametrize("support", ["bonded", "unbonded"])
-def test_the_layer_has_its_article(support):
-    layer = SCENE.layer.replace(support=support)
-    words = {"bonded": "on a bonded layer", "unbonded": "on an unbonded layer"}
-    assert words[support] in solution_table(Mdr().solve(SCENE.replace(layer=layer))).title
-
-
 def test_each_column_of_an_answer_is_explained():
     scene = SCENE.replace(loading=IndentationDepths([1e-5]), effects=[Friction(coefficient=0.1)])
     numbers = dict.fromkeys((*FrictionPath.ARRAYS,), np.ones(1))

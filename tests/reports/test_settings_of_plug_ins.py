@@ -1,13 +1,12 @@
 """Settings of a method of an installed package, from the shell and from a file: `run`, `cost`."""
 
-from importlib.metadata import EntryPoint
 from pathlib import Path
 
 import pytest
 
-from cases.declare import methods
 from cases.declare.settings import read_settings, with_settings
 from cases.foreign import with_registered
+from cases.run.timing import timed_warm
 from cases.runs import read_run
 from contact import InvalidInput
 from reports.command_line import run
@@ -15,12 +14,14 @@ from tests.cases.fake_case import fake_case
 
 
 @pytest.fixture(autouse=True)
-def mine(monkeypatch, tmp_path):
+def mine(install, monkeypatch, tmp_path):
     """Two methods of installed packages, in an empty folder."""
-    value = "tests.cases.fake_method:FakeHertz"
-    entries = [EntryPoint(name=name, value=value, group=methods.ENTRY_POINT_GROUP) for name in ("mine", "my.own")]
-    monkeypatch.setattr(methods, "entry_points", lambda group: entries)
+    install(dict.fromkeys(("mine", "my.own"), "tests.cases.fake_method:FakeHertz"))
     monkeypatch.chdir(tmp_path)
+
+
+# Without a time limit methods of installed packages need no process of their own.
+IN_THIS_PROCESS = ("--quiet", "--out", "out", "--time-limit", "0")
 
 
 def written(text):
@@ -86,9 +87,9 @@ def test_a_setting_that_the_method_has_not_is_told_with_those_it_has(settings):
         with_settings(case, {"mine": settings})
 
 
-@pytest.mark.usefixtures("library")
+@pytest.mark.usefixtures("library", "without_pages")
 def test_a_run_is_made_with_them(capsys):
-    words = ["run", "--executor", "serial", "--quiet", "--out", "out", "--method", "mine"]
+    words = ["run", "--executor", "serial", *IN_THIS_PROCESS, "--method", "mine"]
     run([*words, "--setting", "cell=0.125"])
     answers = read_run(Path("out")).answers
     assert {a.settings["cell"] for a in answers if a.method == "mine" and a.settings} == {0.125}
@@ -96,12 +97,11 @@ def test_a_run_is_made_with_them(capsys):
     assert "it has cell" in capsys.readouterr().err
 
 
-def test_cost_climbs_a_ladder_of_them(monkeypatch, capsys):
-    from reports.commands import runs
-
-    case = fake_case(work=True)
-    monkeypatch.setattr(runs, "load_cases", lambda: {case.name: case})
-    words = ["run", "--only", "cost", "--suite", "ci", "--out", "out", "--quiet", "--method", "mine"]
+@pytest.mark.usefixtures("without_pages")
+def test_cost_climbs_a_ladder_of_them(library, monkeypatch, capsys):
+    monkeypatch.setitem(timed_warm.__kwdefaults__, "shortest", 1e-3)
+    library(fake_case(work=True))
+    words = ["run", "--only", "cost", "--suite", "ci", *IN_THIS_PROCESS, "--method", "mine"]
     assert run([*words, "--setting", "cell=[0.01, 0.001]", "--setting", "order=2"]) == 0
     (record,) = read_run(Path("out")).judged.costs
     assert [(point.method, point.setting) for point in record.points] == [

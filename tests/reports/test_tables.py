@@ -7,7 +7,7 @@ from cases.runs import Run
 from reports import tables
 from reports.charts import of_case, relative_distance
 from reports.style import figure_style
-from tests.reports.example import FAILING, PASSING, example, only
+from tests.cases.example_run import FAILING, PASSING, example, only
 
 
 def test_shortest_times_have_one_row_per_quantity_and_method_and_the_best_bound_where_none_is_good_enough():

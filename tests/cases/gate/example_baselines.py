@@ -7,22 +7,21 @@ from cases.gate.accept import WriteConditions, accept, accepted_before, propose
 from cases.gate.baseline import read_baselines
 from cases.gate.gate import gate
 from cases.verdicts import Kind
-from tests.cases.example_run import CASE, passing_run
+from tests.cases.example_run import PASSING, only
 
 NOW = WriteConditions(revision="0" * 40, changed=(), in_ci=False)
 SPREAD = 1e-10  # tolerance 1e-9
 
 
 def clean_run(**judged):
-    run = passing_run()
-    return dataclasses.replace(run, judged=dataclasses.replace(run.judged, **judged))
+    return only(PASSING, **judged)
 
 
 def spreads_of(run, spread=SPREAD):
     return {(a.method, a.scene, name): spread for a in run.answers for name in a.quantities}
 
 
-def proposal_of(run, folder, *, case=CASE, spread=SPREAD, reason="first numbers"):
+def proposal_of(run, folder, *, case=PASSING, spread=SPREAD, reason="first numbers"):
     before = accepted_before(folder, case)
     return propose(run, case, suites=("ci",), before=before, spreads=spreads_of(run, spread), reason=reason)
 

@@ -7,14 +7,14 @@ import pytest
 from cases.gate.baseline import read_baselines
 from cases.run.keys import question
 from contact import InvalidInput
-from tests.cases.example_run import CASE
+from tests.cases.example_run import PASSING
 from tests.cases.fake_case import fake_case
 from tests.cases.gate.example_baselines import accepted
 
 
 @pytest.fixture
 def file(tmp_path):
-    return accepted(tmp_path) / f"{CASE}.jsonl"
+    return accepted(tmp_path) / f"{PASSING}.jsonl"
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ import pytest
 from cases.studies import Step, StressTest
 from cases.verdicts import Status
 from contact import InvalidInput
-from tests.cases.example_run import CASE
+from tests.cases.example_run import PASSING
 from tests.cases.gate.example_baselines import accepted, clean_run, gated, regressions
 
 
@@ -19,7 +19,7 @@ def stress_test(*digits, method="mdr"):
         for k, d in enumerate(digits)
     )
     return StressTest(
-        case=CASE, name="walk", parameter="p", unit="1", method=method, quantity="normal_force", steps=steps
+        case=PASSING, name="walk", parameter="p", unit="1", method=method, quantity="normal_force", steps=steps
     )
 
 

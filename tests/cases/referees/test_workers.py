@@ -61,19 +61,22 @@ def pressed(script, system):
     return worker.solved({"size": 1.0, "tolerance": 1e-9}, np.zeros((4, 4)), 1.0)
 
 
-def test_an_iteration_that_ends_is_not_repeated(script):
-    system = StandingStill(ends_at=0.0)
-    assert pressed(script, system)[0] == 10.0
-    assert system.asked == [(1.0, None)]
-
-
-def test_an_iteration_that_stands_still_starts_again_from_a_deeper_contact(script):
-    """The force is that at the depth asked for, from the displacements of the first deeper contact that ended."""
-    system = StandingStill(ends_at=1.15)
+@pytest.mark.parametrize(
+    ("ends_at", "asked"),
+    [
+        (0.0, [(1.0, None)]),
+        # From the displacements of the first deeper contact that ended.
+        (1.15, [(1.0, None), (1.05, None), (1.1, None), (1.2, None), (1.0, "from 1.2")]),
+    ],
+    ids=["ends", "stands still"],
+)
+def test_an_iteration_that_stands_still_starts_again_from_a_deeper_contact(script, ends_at, asked):
+    """The force is that at the depth asked for."""
+    system = StandingStill(ends_at)
     force, touching = pressed(script, system)
     assert force == 10.0
     assert touching.all()
-    assert system.asked == [(1.0, None), (1.05, None), (1.1, None), (1.2, None), (1.0, "from 1.2")]
+    assert system.asked == asked
 
 
 def test_an_iteration_that_never_ends_is_told_with_its_depth(script):

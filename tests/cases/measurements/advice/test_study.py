@@ -1,5 +1,7 @@
 """The effect ledger of a case: what its scenes' parts move, from solving with and without."""
 
+import functools
+
 import pytest
 
 from cases.answers import Table
@@ -26,6 +28,7 @@ DETACHMENT = Scene(
 )
 
 
+@functools.cache
 def entries(scene):
     study = Ablation(scene="scene", methods=("mdr",), slow=("fem",))
     claim = Equal(name="c", quantity="peak_force", to=lambda _: [1.0], tolerance=1.0, why=WHY)

@@ -9,8 +9,7 @@ import pytest
 
 from cases import stress
 from cases.library.stability import CASE, LADDERS, contact_ratio, damped_punch, truncated
-from cases.stress import Ladder, breakdown, invariant_residuals, no_silent_failure, nudged, repeated, worse_than
-from cases.studies import Step, StressTest
+from cases.stress import Ladder, breakdown, invariant_residuals, no_silent_failure, repeated
 from cases.verdicts import Status
 from contact import InvalidInput, NotConvergedError, Supported
 from mdr import Mdr
@@ -55,14 +54,6 @@ def crashing(path):
     raise ZeroDivisionError("planted")
 
 
-def test_a_nudge_moves_numbers_by_one_unit_in_the_last_place_and_nothing_else():
-    scene = contact_ratio(2.0, nu=0.5, support="bonded")
-    moved = [nudged(scene, np.random.default_rng(seed)) for seed in range(20)]
-    radii = {float(other.loading.values[0]) for other in moved}
-    assert radii == {np.nextafter(2.0, 0.0), 2.0, np.nextafter(2.0, 3.0)}
-    assert {other.layer.poissons_ratio for other in moved} == {0.5}
-
-
 def test_the_fast_method_climbs_with_nearly_all_digits():
     ladder = climb(PLAN, Mdr())
     assert breakdown(ladder) is None
@@ -104,29 +95,6 @@ def test_a_named_refusal_and_a_crash_are_told_apart():
     assert (refusal.status, refusal.digits) == (Status.INVALID, None)
     assert refusal.reason == "NotConvergedError: planted (residual = 1.000e-03)"
     assert (crash.status, crash.reason) == (Status.FAIL, "crash: ZeroDivisionError: planted")
-
-
-def ladder(*digits):
-    rungs = [
-        Step(value=10.0**-k, status=Status.INVALID, reason="NotConvergedError: x", digits=None)
-        if d is None
-        else Step(value=10.0**-k, status=Status.PASS, digits=d)
-        for k, d in enumerate(digits)
-    ]
-    return StressTest(
-        case="stability", name="n", parameter="p", unit="1", method="mdr", quantity="normal_force", steps=tuple(rungs)
-    )
-
-
-def test_an_earlier_breakdown_and_a_lost_digit_are_worse():
-    accepted = ladder(14.0, 12.0, 9.0, None)
-    assert worse_than(ladder(14.0, 11.5, 8.2, None), accepted) == []
-    assert worse_than(ladder(14.0, 12.0, 9.0, 5.0), accepted) == []
-    assert worse_than(ladder(14.0, 12.0, 7.9, None), accepted) == [
-        "n, mdr, p = 0.01: 7.9 digits, but 9.0 were accepted"
-    ]
-    assert "NotConvergedError: x, but 12.0 digits" in worse_than(ladder(14.0, None, 9.0, None), accepted)[0]
-    assert worse_than(ladder(14.0, 12.0), accepted) == ["n, mdr, p = 0.01: not solved, but 9.0 digits were accepted"]
 
 
 def test_a_method_takes_only_the_tests_whose_first_scene_it_supports_and_that_it_is_asked_to():
