@@ -73,7 +73,7 @@ class Sizes(NamedTuple):
     reach: float = 21.0
     radii: int = 18
     extra: int = 0
-    graded: int = 60
+    graded: int = 120
 
     def polynomials(self, octave: int, *, is_graded: bool) -> int:
         """Number of polynomials for contacts of a/h up to 2^octave."""

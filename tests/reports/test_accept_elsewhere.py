@@ -23,7 +23,7 @@ def users(tmp_path, library, install, monkeypatch):
     monkeypatch.delenv("CI", raising=False)
     installed = tmp_path / ".venv" / "site-packages" / "cases"
     installed.mkdir(parents=True)
-    monkeypatch.setattr(stamp, "_SOURCE", installed)
+    monkeypatch.setattr(stamp, "SOURCE", installed)
     monkeypatch.chdir(tmp_path)
     git("init", "--quiet")
     Path(".gitignore").write_text(".venv\nout\n", encoding="utf-8")
