@@ -185,7 +185,7 @@ def test_planted_faults_are_seen(monkeypatch):
     path = followed(SOFT, INDENTERS[0], TIME, DEPTH)
     assert force_at(path, 3, path.inside(3)) < 5e-7
     with monkeypatch.context() as plant:
-        plant.setattr(SpringDensity, "_superposed", lambda self, values: values)
+        plant.setattr(SpringDensity, "_superposed", lambda self, values, edge: values)
         inside = path.inside(3)
         apart, stated = conformity(path, 3, inside)
         assert apart > 100.0 * stated
