@@ -35,9 +35,10 @@ _NODES = 16
 _WIDEST = 1.0
 # Ends of further panels towards a pointed tip, over the width of the first panel.
 _TOWARDS_AXIS = 0.3 ** np.arange(1, 5)
-# Distances from a front at which panels end, over the largest one; with half as many the error of displacements next
-# to it is 1e-6.
-_BESIDE_FRONT = 0.2 ** np.arange(1, 7)
+# Distances from the edge of contact at which panels end, over the largest one: springs touched within the last
+# relaxation time differ from the others. With half as many, relaxation over 1e-6 of the loading changes the force by
+# 6e-6; with twice as many nothing changes.
+_BESIDE_EDGE = 0.2 ** np.arange(1, 9)
 # Distance over the largest radius below which two ends of panels coincide.
 _APART = 1e-9
 
@@ -80,7 +81,7 @@ class SpringDensity:
         self, springs: Springs, profile: Profile, panels: Panels, values: FloatArray, *, has_edge: bool
     ) -> None:
         self.springs, self.sizes, self.kernel, self.profile = springs, springs.sizes, springs.kernel, profile
-        self.panels, self.a, self.tip, self.degree = panels, float(panels.high[-1, 0]), self, 2 * values.shape[1]
+        self.panels, self.a, self.tip, self.degree = panels, float(panels.high[-1, 0]), self, 4 * values.shape[1]
         self._nodes, self._weights = gauss(values.shape[1])
         # Values at nodes to Legendre coefficients in 2 s - 1.
         order = np.arange(values.shape[1])
@@ -206,17 +207,17 @@ class HistoryFields:
         """phi of the forces of springs in contact, or of the displacements of all springs ever touched."""
         radius, indenter, viscosity = self.answer.radius, self.problem.scene.indenter, self.problem.law.viscosity
         b = float(radius[: step + 1].max() if is_displaced else radius[step])
-        panels = self._panels_to(springs, b, float(radius[step]) if viscosity and is_displaced else 0.0)
+        panels = self._panels_to(springs, b, float(radius[step]))
         x = panels.at(gauss(nodes)[0])
         values = self._springs_at(springs, x.ravel(), step, is_displaced=is_displaced).reshape(x.shape)
         # Dashpots press as soon as they are touched.
         has_edge = isinstance(indenter, FlatPunch) or (viscosity > 0 and not is_displaced)
         return SpringDensity(springs, indenter, panels, values, has_edge=has_edge)
 
-    def _panels_to(self, springs: Springs, b: float, front: float) -> Panels:
-        """Panels of [0, b], graded towards a front at which springs lose contact one after another."""
+    def _panels_to(self, springs: Springs, b: float, edge: float) -> Panels:
+        """Panels of [0, b], graded towards the edge of contact [m] from both sides."""
         flat, rows = springs.tip.flat, []
-        near = [(b - front) * _BESIDE_FRONT + front, front - front * _BESIDE_FRONT, [front]]
+        near = [edge + (b - edge) * _BESIDE_EDGE, edge - edge * _BESIDE_EDGE, [edge]]
         even = np.arange(0.0, b, b if springs.kernel.is_uniform else _WIDEST * springs.unit)
         inner = np.concatenate([self.answer.radius, *near, even])
         kinks = sorted({flat, *springs.tip.breaks})
