@@ -14,6 +14,12 @@ Array = NDArray[np.float64]
 # Radii of pressures and displacements over the contact radius of the last state. The last two are next to the edge,
 # where errors of displacements are largest.
 PRESSED, MOVED = (0.23, 0.57, 0.88), (0.5, 1.7, 1.002, 1.02)
+# Fields inside by the kind of their stated error.
+_INSIDE = {
+    "displacement": ("radial_displacement", "axial_displacement"),
+    "stress": ("radial_stress", "hoop_stress", "axial_stress", "shear_stress"),
+    "hydrostatic_pressure": ("hydrostatic_pressure",),
+}
 # Paths with more states are represented by so many.
 _MOST_STATES = 4
 # Least allowance for the difference of two answers, over the scale of the quantity: roundings of both.
@@ -79,6 +85,26 @@ def _fields(answer: ContactPath, radius: float | None) -> dict[str, Stated]:
             )
             found[name] = Stated(values, *(np.full_like(values, part) for part in parts))
     return found
+
+
+def last_contact(answer: Solution) -> int:
+    """Index of the last state in contact, of those that the loading names."""
+    states = _states(answer)
+    return int(states[np.asarray(answer.contact_radius)[states] > 0.0][-1])
+
+
+def inside_numbers(answer: Solution, radius: Array, depth: Array) -> dict[str, Stated]:
+    """Fields inside at the last state in contact, at points [m] of shape (n,)."""
+    step = last_contact(answer)
+    found = answer.inside(step).at(radius, depth)
+    values = {kind: np.concatenate([getattr(found, name) for name in names]) for kind, names in _INSIDE.items()}
+    scales = dict.fromkeys(values, np.abs(values["stress"]).max()) | {"displacement": answer.indentation_depth[step]}
+    return {
+        f"{kind} inside": Stated(
+            v, *np.multiply.outer([found.error_estimate[kind] * scales[kind], scales[kind]], np.ones_like(v))
+        )
+        for kind, v in values.items()
+    }
 
 
 def differences(first: dict[str, Stated], second: dict[str, Stated]) -> dict[str, tuple[float, float]]:

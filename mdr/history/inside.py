@@ -4,10 +4,11 @@ The whole layer relaxes alike at constant volume. So its stresses are those of a
 that instant, and follow from the spring forces f(x) alone. Its displacements are those of an elastic layer of the
 instantaneous modulus whose springs have the displacements u(x) of the bed, in contact or free.
 
-Springs q(x) up to b are flat punches on top of each other. With the density phi_1(t; x) under a unit one, and its
-derivative by the radius, y_1(x) r_x(t), where r_x is the resolvent of the equation of contact,
+Springs q(x) up to b are flat punches on top of each other. With the density phi_1(t; x) under a unit one,
 
-    phi(t) = q(b) phi_1(t; b) - int_t^b q'(x) phi_1(t; x) dx = y_1(t) q(t) + int_t^b r_x(t) y_1(x) q(x) dx.
+    phi(t) = q(b) phi_1(t; b) - int_t^b q'(x) phi_1(t; x) dx.
+
+On graded layers phi_1 is bounded at t = x, and only its derivatives have a logarithm there.
 """
 
 from __future__ import annotations
@@ -34,9 +35,10 @@ _NODES = 16
 _WIDEST = 1.0
 # Ends of further panels towards a pointed tip, over the width of the first panel.
 _TOWARDS_AXIS = 0.3 ** np.arange(1, 5)
-# Distances from a front at which panels end, over the largest one; with half as many the error of displacements next
-# to it is 1e-6.
-_BESIDE_FRONT = 0.2 ** np.arange(1, 7)
+# Distances from the edge of contact at which panels end, over the largest one: springs touched within the last
+# relaxation time differ from the others. With half as many, relaxation over 1e-6 of the loading changes the force by
+# 6e-6; with twice as many nothing changes.
+_BESIDE_EDGE = 0.2 ** np.arange(1, 9)
 # Distance over the largest radius below which two ends of panels coincide.
 _APART = 1e-9
 
@@ -79,51 +81,45 @@ class SpringDensity:
         self, springs: Springs, profile: Profile, panels: Panels, values: FloatArray, *, has_edge: bool
     ) -> None:
         self.springs, self.sizes, self.kernel, self.profile = springs, springs.sizes, springs.kernel, profile
-        self.panels, self.a, self.tip, self.degree = panels, float(panels.high[-1, 0]), self, 2 * values.shape[1]
+        self.panels, self.a, self.tip, self.degree = panels, float(panels.high[-1, 0]), self, 4 * values.shape[1]
         self._nodes, self._weights = gauss(values.shape[1])
         # Values at nodes to Legendre coefficients in 2 s - 1.
         order = np.arange(values.shape[1])
         self._to_series = (
             (2 * order[:, None] + 1) * legendre.legvander(2 * self._nodes - 1, order[-1]).T * self._weights
         )
-        self._series = self._to_series @ self._superposed(values).T
+        edge = float((self._to_series @ values[-1]).sum()) if has_edge else 0.0
+        self._series = self._to_series @ self._superposed(values, edge).T
         self.edge = self.edge_of_series = float(self._series[:, -1].sum()) if has_edge else 0.0
         ends = panels.at(np.array([0.0, 1.0]))
         self._widest, self._ends = float(np.diff(ends).max()), ends[:-1, 1]
         self.breaks = tuple(np.unique(ends[(ends > 0) & (ends < self.a)]).tolist())
 
-    def _superposed(self, values: FloatArray) -> FloatArray:
-        """phi at the nodes [m], shape (p, n), from q there."""
+    def _superposed(self, values: FloatArray, edge: float) -> FloatArray:
+        """phi at the nodes [m], shape (p, n), from q there and at the edge.
+
+        phi_1(t; x) = sum_n punch_n(x) b_n(t/x), b_n = sqrt(4n + 1) P_2n. Within a panel punch_n is interpolated.
+        """
         if self.kernel.is_uniform:
             return values
-        s, w, panels = self._nodes, self._weights, self.panels
-        x = panels.at(s)
-        y1 = np.empty(x.size)
-        for which, _, resolvent, _ in self.springs.punches.at(x.ravel() / self.springs.unit):
-            y1[which] = 1 + resolvent[:, 0]
-        product = y1.reshape(x.shape) * values
-        phi, series, weighted = product.copy(), self._to_series @ product.T, product * w * panels.slope(s)
+        s, w, panels, punches, unit = self._nodes, self._weights, self.panels, self.springs.punches, self.springs.unit
+        x, rise = panels.at(s), 2 * legendre.legder(self._to_series @ values.T)  # rise: series of dq/ds
+        count = punches.unknowns(self.a / unit)
+        series = np.zeros((x.size + 1, count))  # of phi_1 in P_2n at all nodes and the edge
+        for which, punch, *_ in punches.at(np.append(x, self.a) / unit):
+            n = np.arange(punch.shape[1])
+            series[which, : n.size] = punch * np.sqrt(4 * n + 1)
+        phi, nodes = edge * (even_legendre(x / self.a, count) @ series[-1]), series[:-1].reshape(*x.shape, count)
+        weighted = w * legendre.legval(2 * s - 1, rise)
         for p in range(len(x) - 1):
-            t, beyond = np.broadcast_arrays(x[p, :, None], x[p + 1 :].ravel())
-            phi[p] += self._resolvent(t, beyond) @ weighted[p + 1 :].ravel()
+            polynomials = even_legendre(x[p, :, None, None] / x[p + 1 :], count)
+            phi[p] -= np.tensordot(polynomials, weighted[p + 1 :, :, None] * nodes[p + 1 :], 3)
         for i, share in enumerate(s.tolist()):
             rest = share + (1 - share) * s
-            kernel = self._resolvent(np.broadcast_to(x[:, i : i + 1], x.shape), panels.at(rest))
-            phi[:, i] += (kernel * legendre.legval(2 * rest - 1, series) * panels.slope(rest)) @ ((1 - share) * w)
+            interpolated = legendre.legvander(2 * rest - 1, s.size - 1) @ self._to_series @ nodes
+            punch = (even_legendre(x[:, i : i + 1] / panels.at(rest), count) * interpolated).sum(axis=-1)
+            phi[:, i] -= (punch * legendre.legval(2 * rest - 1, rise)) @ ((1 - share) * w)
         return np.asarray(phi)
-
-    def _resolvent(self, t: FloatArray, x: FloatArray) -> FloatArray:
-        """r_x(t) [1/m] at each pair t <= x [m]: sum_n resolvent_n(x) b_n(t/x)/x, b_n = sqrt(4n + 1) P_2n."""
-        radii, which = np.unique(x, return_inverse=True)
-        which, values, share = which.ravel(), np.empty(x.size), np.minimum((t / x).ravel(), 1.0)
-        for index, _, resolvent, _ in self.springs.punches.at(radii / self.springs.unit):
-            # Row of each distinct radius in this block of series, -1 for radii of other blocks.
-            row = np.full(radii.size, -1)
-            row[index] = np.arange(index.size)
-            some = np.flatnonzero(row[which] >= 0)
-            series = resolvent * np.sqrt(4 * np.arange(resolvent.shape[1]) + 1) / radii[index, None]
-            values[some] = (even_legendre(share[some], resolvent.shape[1]) * series[row[which[some]]]).sum(axis=1)
-        return values.reshape(x.shape)
 
     def transform_slope(self, t: FloatArray) -> FloatArray:
         """-phi' at t [m], any shape."""
@@ -211,17 +207,17 @@ class HistoryFields:
         """phi of the forces of springs in contact, or of the displacements of all springs ever touched."""
         radius, indenter, viscosity = self.answer.radius, self.problem.scene.indenter, self.problem.law.viscosity
         b = float(radius[: step + 1].max() if is_displaced else radius[step])
-        panels = self._panels_to(springs, b, float(radius[step]) if viscosity and is_displaced else 0.0)
+        panels = self._panels_to(springs, b, float(radius[step]))
         x = panels.at(gauss(nodes)[0])
         values = self._springs_at(springs, x.ravel(), step, is_displaced=is_displaced).reshape(x.shape)
         # Dashpots press as soon as they are touched.
         has_edge = isinstance(indenter, FlatPunch) or (viscosity > 0 and not is_displaced)
         return SpringDensity(springs, indenter, panels, values, has_edge=has_edge)
 
-    def _panels_to(self, springs: Springs, b: float, front: float) -> Panels:
-        """Panels of [0, b], graded towards a front at which springs lose contact one after another."""
+    def _panels_to(self, springs: Springs, b: float, edge: float) -> Panels:
+        """Panels of [0, b], graded towards the edge of contact [m] from both sides."""
         flat, rows = springs.tip.flat, []
-        near = [(b - front) * _BESIDE_FRONT + front, front - front * _BESIDE_FRONT, [front]]
+        near = [edge + (b - edge) * _BESIDE_EDGE, edge - edge * _BESIDE_EDGE, [edge]]
         even = np.arange(0.0, b, b if springs.kernel.is_uniform else _WIDEST * springs.unit)
         inner = np.concatenate([self.answer.radius, *near, even])
         kinks = sorted({flat, *springs.tip.breaks})

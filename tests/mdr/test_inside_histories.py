@@ -138,6 +138,14 @@ def test_the_surface_follows_the_indenter_whatever_went_before(indenter, step):
     assert largest(base, MOVED) < 1e-13 * 0.05
 
 
+@pytest.mark.parametrize("time", [1e-4, 1e-2])
+def test_fast_relaxation_next_to_the_edge(time):
+    """Only springs touched within the last relaxation time still press harder than relaxed ones."""
+    model = StandardSolid(long_term_shear_modulus=0.25, maxwell_shear_modulus=0.75, viscosity=0.75 * time)
+    path = followed(SOFT, INDENTERS[1], np.array([0.0, 1.0, 2.0]), np.array([0.0, 0.05, 0.06]), model)
+    assert force_at(path, 2, path.inside(2)) < 5e-8
+
+
 @pytest.mark.slow
 def test_creep_under_a_force():
     crept = Mdr().solve(
@@ -185,7 +193,7 @@ def test_planted_faults_are_seen(monkeypatch):
     path = followed(SOFT, INDENTERS[0], TIME, DEPTH)
     assert force_at(path, 3, path.inside(3)) < 5e-7
     with monkeypatch.context() as plant:
-        plant.setattr(SpringDensity, "_superposed", lambda self, values: values)
+        plant.setattr(SpringDensity, "_superposed", lambda self, values, edge: values)
         inside = path.inside(3)
         apart, stated = conformity(path, 3, inside)
         assert apart > 100.0 * stated

@@ -15,11 +15,12 @@ import pytest
 
 from bem import Bem, IntegralEquationMethod
 from bem.flat_punch import IntegralEquation
-from contact import ContactError, ContactPath, FlatPunch
+from bem.tables import FftTable
+from contact import ContactError, ContactPath
 from fem_reference import Fem
 from mdr import Mdr
 from tests.random_scenes import drawn_scene
-from tests.stated_numbers import differences, stated_numbers
+from tests.stated_numbers import differences, inside_numbers, last_contact, stated_numbers
 
 # Only a seed that tuned nothing says something: change it when a method was mended by scenes of this one.
 _SEED = 2611
@@ -36,6 +37,7 @@ class Row(NamedTuple):
         kinds: Of layer, indenter, loading and effect; drawn where not named.
         fast: Scenes among the fast tests.
         wish: More of `drawn_scene`.
+        is_inside: Whether fields inside are compared in place of the numbers of the path.
     """
 
     method: Any
@@ -43,6 +45,7 @@ class Row(NamedTuple):
     kinds: dict[str, str]
     fast: int = 3
     wish: Mapping[str, Any] = MappingProxyType({})
+    is_inside: bool = False
 
 
 NARROW: dict[str, Any] = {"ratio": (0.05, 5.0), "slope": (0.02, 1.0)}
@@ -51,6 +54,7 @@ GRADED = {"layer": "graded, ExponentialDepth", "effect": "no effect"}
 PULLED = {"loading": "Detachment, displacement", "effect": "Adhesion"}
 HISTORY = {"loading": "DepthHistory, ramp", "effect": "StandardSolid"}
 FORCES = {"loading": "ForceHistory, ramp", "effect": "StandardSolid"}
+STUCK = {"effect": "Friction, full stick"}
 IMPACT = {"loading": "Impact", "effect": "no effect"}
 DEPTHS, LOADS = {"loading": "IndentationDepths"}, {"loading": "NormalForces"}
 
@@ -78,23 +82,39 @@ ROWS = {
     "fem, impacts": Row(Fem(accuracy=1e-2), EXACT, ELASTIC | IMPACT, 0, NARROW),
     "fem, depths in time": Row(Fem(accuracy=1e-2), EXACT, ELASTIC | HISTORY, 0, NARROW),
     "fem, forces in time": Row(Fem(accuracy=1e-2), EXACT, ELASTIC | FORCES, 0, NARROW),
+    "mdr on few nodes, inside": Row(COARSE, EXACT, ELASTIC | DEPTHS, 3, NARROW, is_inside=True),
+    "mdr on few nodes, inside stacks": Row(COARSE, EXACT, ELASTIC | STACK | DEPTHS, 2, NARROW, is_inside=True),
+    "mdr on few nodes, inside graded": Row(COARSE, EXACT, GRADED | DEPTHS, 0, NARROW, is_inside=True),
+    "mdr on few nodes, inside in time": Row(COARSE, EXACT, ELASTIC | HISTORY, 2, NARROW, is_inside=True),
+    "mdr on few nodes, inside stacks in time": Row(COARSE, EXACT, STACK | HISTORY, 0, NARROW, is_inside=True),
+    "mdr on few nodes, stick": Row(COARSE, EXACT, ELASTIC | STUCK | DEPTHS, 2, NARROW),
+    "mdr on few nodes, stacks that stick": Row(COARSE, EXACT, STACK | STUCK | DEPTHS, 0, NARROW),
+    "mdr on tables": Row(Mdr(flat_punch=FftTable(cells=64, ratios=60, radii=100)), EXACT, ELASTIC | DEPTHS, 0, NARROW),
 }
 
 
 def compared(row: Row, draw: np.random.Generator) -> dict[str, tuple[float, float]]:
-    """True and allowed errors of the first scene that both methods answer; punches of given radius have no search."""
+    """True and allowed errors of the first scene that both methods answer."""
     for _ in range(_TRIES):
         try:
             kinds = row.kinds if "loading" in row.kinds else row.kinds | {"loading": "ContactRadii"}
             scene = drawn_scene(draw, **kinds, **row.wish)
-            if kinds["loading"] == "ContactRadii" and isinstance(scene.indenter, FlatPunch):
-                continue
             answer = row.method.solve(scene)
+            if row.is_inside:
+                return compared_inside(answer, row.other.solve(scene), draw)
             radius = float(answer.contact_radius[-1]) if isinstance(answer, ContactPath) else None
             return differences(stated_numbers(answer), stated_numbers(row.other.solve(scene), radius))
         except ContactError:
             continue
     return {}
+
+
+def compared_inside(answer: Any, other: Any, draw: np.random.Generator) -> dict[str, tuple[float, float]]:
+    """True and allowed errors of fields inside at random points, one in four near the surface."""
+    a = float(answer.contact_radius[last_contact(answer)])
+    radius = 2.0 * a * draw.random(12)
+    depth = min(2.0 * a, answer.scene.layer.thickness) * draw.random(12) ** 3
+    return differences(*(inside_numbers(path, radius, depth) for path in (answer, other)))
 
 
 def uncovered(name: str, count: int) -> list[str]:
