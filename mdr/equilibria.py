@@ -55,9 +55,9 @@ _DISTANCES = np.array([-1.0, -0.5, -0.25, 0.25, 0.5, 1.0])
 _FEWER = 0.65
 # Relative rounding error of pressure and displacement by their quadratures.
 _FIELD_ROUNDING = 2e-13
-# Relative errors on graded layers, whose series converge slowly, of pressures that are infinite at the edge, and of
-# displacements. At half of them one of thirty scenes is not covered.
-_GRADED_EDGE, _GRADED_OUTSIDE = 2e-9, 1e-8
+# Relative error of pressures that are infinite at the edge of a graded layer, whose series converge slowly. At half of
+# it one of thirty scenes is not covered.
+_GRADED_EDGE = 2e-9
 
 
 def solve_elastic(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[str, Setting]) -> ContactPath:
@@ -227,7 +227,6 @@ def _elastic_errors(scene: Scene, springs: Springs, state: State, values: Spring
     displacement = (zero if by_depth else of_depth) + a_error**1.5 + whole + EPS * values.K / a
     # The functions below refer to a few states only, since they stay in memory as long as the answer.
     ends = {(a, depth, force / (np.pi * a * a)) for a, depth, force in np.transpose(states[:3])[[0, -1]].tolist()}
-    widest, deepest = float(states.radius[-1]), float(states.depth[-1])
     return {
         "contact_radius": a_error,
         "indentation_depth": zero if by_depth else of_depth,
@@ -237,7 +236,7 @@ def _elastic_errors(scene: Scene, springs: Springs, state: State, values: Spring
             max(pressure_error(springs, *end, is_singular=is_singular(scene, end[0])) for end in ends) + pressure
         ),
         "surface_displacement": lambda: (
-            displacement_error(springs, widest, deepest, is_singular=is_singular(scene, widest)) + displacement
+            max(displacement_error(springs, a, d, is_singular=is_singular(scene, a)) for a, d, _ in ends) + displacement
         ),
     }
 
@@ -283,8 +282,7 @@ def displacement_error(springs: Springs, a: float, depth: float, *, is_singular:
     if not outside.size:
         return _FIELD_ROUNDING
     values = [surface.displacement(outside) for surface in surface_pair(springs, a, depth, is_singular=is_singular)]
-    floor = _GRADED_OUTSIDE if springs.kernel.tail else _FIELD_ROUNDING
-    return float(stated_error(values[0], values[1], scale=depth, floor=floor).max())
+    return float(stated_error(values[0], values[1], scale=depth, floor=_FIELD_ROUNDING).max())
 
 
 def _largest(answer: FloatArray, other: FloatArray, scale: FloatArray) -> float:
