@@ -6,6 +6,7 @@ correlation of the inputs its variance grows by D R D^T (the law of propagation,
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Unpack
 
 import numpy as np
 
@@ -13,7 +14,7 @@ from cases.declare.uncertain_inputs import UncertainInputs, read_inputs
 from contact import InvalidInput, Scene
 from contact.records.validation import FloatArray
 from mdr.curves import CurveFit, fit_curve
-from mdr.curves.fit import DEFAULT_PARAMETERS
+from mdr.curves.fit import Options
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -36,9 +37,7 @@ def fit_uncertain(
     depth: Sequence[float] | FloatArray,
     force: Sequence[float] | FloatArray,
     uncertain: str | UncertainInputs,
-    *,
-    parameters: Sequence[str] = DEFAULT_PARAMETERS,
-    confidence: float = 0.95,
+    **options: Unpack[Options],
 ) -> UncertainFit:
     """Fit as `mdr.curves.fit_curve` does, with the effect of uncertain inputs added to the intervals.
 
@@ -47,8 +46,7 @@ def fit_uncertain(
         depth: Measured depths [m], shape (n,).
         force: Measured forces [N], shape (n,).
         uncertain: Text as for `read_inputs`, such as "radius=5%, thickness=4e-6..6e-6", or the inputs read from it.
-        parameters: Fitted parameters, as for `fit_curve`.
-        confidence: Confidence of the intervals.
+        options: Parameters, confidence and limit, as for `fit_curve`.
 
     Raises:
         InvalidInput: For inputs that the scene does not have or that are fitted, and as `fit_curve` does.
@@ -56,13 +54,12 @@ def fit_uncertain(
     """
     inputs = read_inputs(uncertain, scene) if isinstance(uncertain, str) else uncertain
     names = [uncertain_input.name for uncertain_input in inputs.inputs]
-    fitted = {"youngs_modulus", *parameters} & {name.rpartition(".")[2] for name in names}
+    fitted = {"youngs_modulus", *options.get("parameters", ())} & {name.rpartition(".")[2] for name in names}
     if fitted:
         raise InvalidInput(f"uncertain {', '.join(sorted(fitted))}: the fit finds it; name inputs that are kept")
 
     def fit_at(deviations: FloatArray) -> CurveFit:
-        changed = inputs.scene_at(scene, deviations)
-        return fit_curve(changed, depth, force, parameters=parameters, confidence=confidence)
+        return fit_curve(inputs.scene_at(scene, deviations), depth, force, **options)
 
     middle = fit_at(np.zeros(len(names)))
     pairs = [(fit_at(unit).values, fit_at(-unit).values) for unit in np.eye(len(names))]

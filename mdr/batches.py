@@ -55,7 +55,7 @@ class ImpactResults:
     relative_error: FloatArray
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class Equilibria:
     """Elastic contacts, each array of shape (n,).
 
@@ -116,8 +116,7 @@ def equilibria(scenes: Sequence[Scene], flat_punch: FlatPunchSource, *, progress
         if progress is not None:
             progress(done, len(scenes))
     _refuse_unanswered(scenes, states, states[1])
-    radius, depth, force, stiffness = states
-    return Equilibria(contact_radius=radius, indentation_depth=depth, normal_force=force, contact_stiffness=stiffness)
+    return Equilibria(*states)
 
 
 def _refuse_unanswered(scenes: Sequence[Scene], states: FloatArray, depths: FloatArray) -> None:

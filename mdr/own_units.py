@@ -48,12 +48,7 @@ def own_units(layer: ElasticLayer, indenter: Profile) -> OwnUnits:
     Args:
         layer: Layer, stack or half-space.
         indenter: Power law.
-
-    Raises:
-        TypeError: If the indenter is no power law.
     """
-    if not is_power_law(indenter):
-        raise TypeError(f"{type(indenter).__name__} is no power law")
     length = 1.0 if layer.is_half_space else layer.thickness
     depth, stiffness = float(indenter.height(np.array([length]))[0]), contact_modulus(layer) * length
     return OwnUnits(layer.in_own_units(), _unit_power(tip_of(indenter).exponent), length, depth, stiffness)

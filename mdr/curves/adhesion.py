@@ -10,9 +10,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 from functools import lru_cache
-from typing import Final, NamedTuple
+from typing import Final
 
 import numpy as np
 
@@ -39,7 +38,7 @@ _LOG_MODULI: Final = tuple(k / 4 for k in range(-20, 13))
 # Trial depths of the deepest point from pull-off, over the range of depths in contact. Half as many start 15 % off.
 _DEPTHS: Final = tuple(0.9 * 1.12**k for k in range(-1, 12))
 # Least depth of the dip of the force at pull-off over the scatter of the force. Half of it accepts dips of noise.
-_DIP: Final = 6.0
+DIP: Final = 6.0
 # Share of the dip from which on points are in contact. The force at pull-off is 5/9 of the dip under a paraboloid.
 # Half of it counts scatter before the jump as contact.
 _ATTACHED: Final = 0.3
@@ -53,31 +52,26 @@ _SAME: Final = 1e-2
 _RANGE_OF_FORCES: Final = 3e-10
 
 
-class Table(NamedTuple):
-    """The elastic contact at many radii a, each array of shape (n,).
+def branch_of(table: FloatArray, root: float) -> tuple[FloatArray, FloatArray]:
+    """Depths [m] and F/E [m^2] of stable equilibria under control of the depth, for sqrt(w/E), from pull-off on.
 
-    Attributes:
-        depth: Depth g(a) [m] without adhesion.
-        force: F_el/E [m^2] without adhesion.
-        stretch: Decrease of the depth per sqrt(w/E), sqrt(2 pi a E/c_N) [m^(1/2)].
-        pull: Decrease of F/E per sqrt(w/E), k_N/E times the stretch [m^(3/2)].
+    Args:
+        table: Table of the elastic contact, as `table_of` returns it.
+        root: sqrt(w/E) [m^(1/2)].
     """
-
-    depth: FloatArray
-    force: FloatArray
-    stretch: FloatArray
-    pull: FloatArray
-
-    def branch(self, root: float) -> tuple[FloatArray, FloatArray]:
-        """Depths [m] and F/E [m^2] of stable equilibria under control of the depth, for sqrt(w/E), from pull-off on."""
-        depths = self.depth - root * self.stretch
-        stable = slice(int(np.argmin(depths)), None)
-        return depths[stable], (self.force - root * self.pull)[stable]
+    depth, force, stretch, pull = table
+    depths = depth - root * stretch
+    stable = slice(int(np.argmin(depths)), None)
+    return depths[stable], (force - root * pull)[stable]
 
 
 @lru_cache(maxsize=64)
-def table_of(scene: Scene) -> Table:
-    """The table of an elastic scene up to its largest depth; the last 64 are cached."""
+def table_of(scene: Scene) -> FloatArray:
+    """Table of an elastic scene at increasing contact radii up to its largest depth, shape (4, n); 64 are cached.
+
+    Its rows are the depth g(a) [m] and F_el/E [m^2] without adhesion, and their decreases per sqrt(w/E): that of the
+    depth, sqrt(2 pi a E/c_N) [m^(1/2)], and that of F/E, k_N/E times the former [m^(3/2)].
+    """
     assert isinstance(scene.loading, IndentationDepths)
     # The elastic contact at the largest depth ends the table; its solution refuses contacts that are no circle.
     largest = float(solve_elastic(scene, IntegralEquation(), {}).contact_radius[-1])
@@ -86,7 +80,7 @@ def table_of(scene: Scene) -> Table:
     values, modulus = springs.at(radius), scene.layer.surface.youngs_modulus
     state = springs.state(radius, values)
     stretch = np.sqrt(2 * np.pi * radius * modulus / (springs.modulus * values.y1**2))
-    return Table(state.depth, state.force / modulus, stretch, state.stiffness / modulus * stretch)
+    return np.stack([state.depth, state.force / modulus, stretch, state.stiffness / modulus * stretch])
 
 
 def fit_adhesive(scene: Scene, data: Data) -> Fitted:
@@ -96,65 +90,70 @@ def fit_adhesive(scene: Scene, data: Data) -> Fitted:
         InvalidInput: If the curve shows no contact.
         NotConvergedError: If no values describe the curve, or several do equally well.
     """
-    ends: list[Fitted] = []
-    for attached in _hypotheses(data):
-        span = max(float(np.ptp(data.depth[attached])), 1e-3 * float(np.ptp(data.depth)))
-        reach = 4 * span if data.has_free_point else max(4 * span, 2 * data.deepest)
-        curve = longest_curve(scene, _DEEPER * reach)
-        family = _family(scene, data, table_of(curve.scene), span, attached=attached, elastic_error=curve.error)
-        trials = {u: np.array([data.deepest]) for u in family.starts}
-        if data.has_free_point:
-            depths = {u: family.pull_off(u)[0] + span * np.array(_DEPTHS) for u in family.starts if family.pull_off}
-            trials = {u: trial[trial < 0.9 * curve.largest_depth / _DEEPER] for u, trial in depths.items()}
-        ends += least_squares(data, family, {u: trial for u, trial in trials.items() if trial.size})
-    return _best(data, ends)
+    families = (_family(scene, data, attached) for attached in _hypotheses(data))
+    return _best(data, [end for family, trials in families for end in least_squares(data, family, trials)])
 
 
-def _family(
-    scene: Scene, data: Data, table: Table, span: float, *, attached: BoolArray, elastic_error: float
-) -> Family:
-    """Curves over sqrt(w/E) with a free work of adhesion, over ln E with a known one.
+def _family(scene: Scene, data: Data, attached: BoolArray) -> tuple[Family, dict[float, FloatArray]]:
+    """Curves over sqrt(w/E) with a free work of adhesion, over ln E with a known one, and trial indentations [m].
+
+    Trial indentations, each of shape (m,), are given at each first value of u where the table reaches them.
 
     Args:
         scene: Scene with the known work of adhesion.
         data: The curve.
-        table: Table of the elastic contact.
-        span: Range of depths in contact [m].
         attached: Points in contact, shape (n,). The force is zero at all others, and constant beyond pull-off.
-        elastic_error: Relative error of the force without adhesion.
     """
     effect, has_free_work = scene.effect(Adhesion), "work_of_adhesion" in data.names
-    known_work = effect.work_of_adhesion if effect else 0.0
+    assert effect is not None
+    known_work = effect.work_of_adhesion
+    span = max(float(np.ptp(data.depth[attached])), 1e-3 * float(np.ptp(data.depth)))
+    reach = 4 * span if data.has_free_point else max(4 * span, 2 * data.deepest)
+    curve = longest_curve(scene, _DEEPER * reach)
+    elastic = table_of(curve.scene)
 
     def modulus_at(u: float) -> float:
         return 1.0 if has_free_work else math.exp(min(max(u, -300.0), 300.0))
 
-    def branch(u: float, table: Table) -> tuple[FloatArray, FloatArray]:
-        depths, forces = table.branch(u if has_free_work else math.sqrt(known_work / modulus_at(u)))
+    def branch(u: float, table: FloatArray = elastic) -> tuple[FloatArray, FloatArray]:
+        depths, forces = branch_of(table, u if has_free_work else math.sqrt(known_work / modulus_at(u)))
         return depths, modulus_at(u) * forces
 
-    def shape(u: float, table: Table = table) -> CurveShape:
+    def shape(u: float, table: FloatArray = elastic) -> CurveShape:
         nodes = branch(u, table)
         return lambda depth: np.where(attached, np.interp(np.asarray(depth), *nodes), 0.0)
 
     def error(u: float, depth: FloatArray) -> float:
         """Relative error of the force: of the elastic contact, and of linear interpolation in the table."""
-        fine, coarse = shape(u)(depth), shape(u, Table(*(values[::2] for values in table)))(depth)
-        return elastic_error + float(np.abs(coarse - fine).max()) / (3 * float(np.abs(fine).max(initial=1e-300)))
+        fine, coarse = shape(u)(depth), shape(u, elastic[:, ::2])(depth)
+        return curve.error + float(np.abs(coarse - fine).max()) / (3 * float(np.abs(fine).max(initial=1e-300)))
 
     def pull_off(u: float) -> tuple[float, float]:
-        depths, forces = branch(u, table)
+        depths, forces = branch(u)
         return float(depths[0]), float(forces[0])
 
-    family = Family(shape, error, attached=attached, pull_off=pull_off)
-    stretch, elastic = (float(np.interp(span, table.depth, values)) for values in (table.stretch, table.force))
+    at_span = [float(np.interp(span, elastic[0], row)) for row in elastic]
+    first = [0.0, *(span * ratio / at_span[2] for ratio in _STRETCHES)]
+    unit = first[len(first) // 2]
     if not has_free_work:
-        starts = [math.log(float(np.ptp(data.force)) / elastic) + step for step in _LOG_MODULI]
-        by_u = replace(family, parameter=lambda u, modulus: modulus_at(u), has_free_modulus=False)
-        return replace(by_u, varied="youngs_modulus", starts=starts)
-    roots = [0.0, *(span * ratio / stretch for ratio in _STRETCHES)]
-    by_root = replace(family, parameter=lambda u, modulus: max(u, 0.0) ** 2 * modulus, unit=roots[len(roots) // 2])
-    return replace(by_root, varied="work_of_adhesion", starts=roots)
+        unit, first = 1.0, [math.log(float(np.ptp(data.force)) / at_span[1]) + step for step in _LOG_MODULI]
+    trials = {u: np.array([data.deepest]) for u in first}
+    if data.has_free_point:
+        longest = 0.9 * curve.largest_depth / _DEEPER
+        depths = {u: pull_off(u)[0] + span * np.array(_DEPTHS) for u in first}
+        trials = {u: near[near < longest] for u, near in depths.items() if near[0] < longest}
+    family = Family(
+        shape,
+        error,
+        varied="work_of_adhesion" if has_free_work else "youngs_modulus",
+        parameter=lambda u, modulus: max(u, 0.0) ** 2 * modulus if has_free_work else modulus_at(u),
+        has_free_modulus=has_free_work,
+        starts=first,
+        unit=unit,
+        attached=attached,
+        pull_off=pull_off,
+    )
+    return family, trials
 
 
 def _hypotheses(data: Data) -> Iterator[BoolArray]:
@@ -166,9 +165,10 @@ def _hypotheses(data: Data) -> Iterator[BoolArray]:
     level = float(np.median(before)) if "baseline" in data.names else 0.0
     scatter = 1.48 * float(np.median(np.abs(np.diff(before)))) if before.size > 2 else 0.0
     dip = level - float(force[least])
-    if not dip > max(_DIP * scatter, 1e-9 * float(np.ptp(force))):
+    every = np.ones(data.depth.size, dtype=bool)
+    if not dip > max(DIP * scatter, 1e-9 * float(np.ptp(force))):
         yield data.depth >= data.deepest - 1.2 * rough_indentation(data)
-        yield np.ones(data.depth.size, dtype=bool)
+        yield every
         return
     if float(force[-1]) < level - 0.9 * dip:
         raise NotConvergedError("the withdrawal starts too close to pull-off for a modulus; press deeper before it")
@@ -177,26 +177,22 @@ def _hypotheses(data: Data) -> Iterator[BoolArray]:
     attached[order[(detached[-1] + 1 if detached.size else 0) :]] = True
     yield attached
     if detached.size <= 3:
-        yield np.ones(data.depth.size, dtype=bool)
+        yield every
 
 
-def points_beyond(data: Data, fitted: Fitted) -> int:
-    """Number of points in contact beyond the pull-off of the fit; zero if the pull-off force is within the scatter."""
+def pull_off_of(data: Data, fitted: Fitted) -> tuple[float, int]:
+    """Pull-off force of the fit over the scatter of the residuals, and number of points in contact beyond pull-off.
+
+    The number is zero where the pull-off force is within the scatter.
+    """
     family = fitted.family
     assert family.attached is not None
     assert family.pull_off is not None
     depth, phi = family.pull_off(fitted.u)
-    scatter = max(float(np.std(fitted.residual)), _NO_PULL_OFF * float(np.ptp(data.force)))
-    if abs(fitted.modulus * phi) < 3 * scatter:
-        return 0
-    return int(np.sum(family.attached & (data.depth - data.deepest + fitted.indentation < depth)))
-
-
-def hides_pull_off(fitted: Fitted) -> bool:
-    """Whether the pull-off force of the fit is within the scatter, so that the data do not show where contact ends."""
-    assert fitted.family.pull_off is not None
-    force = fitted.modulus * fitted.family.pull_off(fitted.u)[1]
-    return abs(force) < _DIP * float(np.std(fitted.residual))
+    scatter = max(float(np.std(fitted.residual)), _NO_PULL_OFF * float(np.ptp(data.force)), 1e-300)
+    signal = abs(fitted.modulus * phi) / scatter
+    is_beyond = family.attached & (data.depth - data.deepest + fitted.indentation < depth)
+    return signal, int(np.sum(is_beyond)) * (signal > DIP / 2)
 
 
 def _best(data: Data, ends: Sequence[Fitted]) -> Fitted:
@@ -205,45 +201,37 @@ def _best(data: Data, ends: Sequence[Fitted]) -> Fitted:
     Raises:
         NotConvergedError: If there is none, or a result with another modulus fits equally well.
     """
-    possible = sorted(
-        (end for end in ends if points_beyond(data, end) <= 1 + _BEYOND * data.depth.size), key=lambda end: end.squares
-    )
-    if not possible or not possible[0].modulus > 0.0:
+    possible = [end for end in ends if pull_off_of(data, end)[1] <= 1 + _BEYOND * data.depth.size]
+    best = min(possible, key=lambda end: end.squares, default=None)
+    if best is None or not best.modulus > 0.0:
         raise NotConvergedError(
             "no values describe the curve of withdrawal; press deeper (the force has to rise above its minimum), or "
             "check the tip of the scene and the sign of the force (pressing is positive)"
         )
-    best = possible[0]
     check_contact(data, best.residual, data.depth)
     limit = best.squares * (1 + 3 / data.force.size) + 1e-12 * float(data.force @ data.force)
-    for end in possible[1:]:
-        if end.squares <= limit and abs(end.youngs_modulus / best.youngs_modulus - 1) > _SAME:
-            change = best.residual - end.residual
-            if float(change @ change) > 9 * limit / data.force.size or end.modulus == 0.0:
-                raise NotConvergedError(
-                    f"two sets of values fit this curve equally well (E = {best.youngs_modulus:.4g} and "
-                    f"{end.youngs_modulus:.4g} Pa); include the baseline before pull-off, or fix the work of adhesion "
-                    "or the contact point"
-                )
+    for end in possible:
+        change = best.residual - end.residual
+        is_other_curve = float(change @ change) > 9 * limit / data.force.size or end.modulus == 0.0
+        is_other_modulus = abs(end.youngs_modulus / best.youngs_modulus - 1) > _SAME
+        if end.squares <= limit and is_other_modulus and is_other_curve:
+            raise NotConvergedError(
+                f"two sets of values fit this curve equally well (E = {best.youngs_modulus:.4g} and "
+                f"{end.youngs_modulus:.4g} Pa); include the baseline before pull-off, or fix the work of adhesion "
+                "or the contact point"
+            )
     return best
 
 
 def tabor_sentence(scene: Scene, modulus: float, work: float) -> str:
-    """The Tabor parameter mu = (R w^2/(E*^2 z_0^3))^(1/3) in words, of round tips."""
+    """The Tabor parameter mu = (R w^2/(E*^2 z_0^3))^(1/3) in words, of round tips; empty without adhesion."""
     match scene.indenter:
-        case Paraboloid(radius_of_curvature=radius) | Sphere(radius=radius):
-            pass
+        case Paraboloid(radius_of_curvature=radius) | Sphere(radius=radius) if work > 0.0:
+            reduced = modulus / (1 - scene.layer.surface.poissons_ratio**2)
+            mu = (radius * work**2 / reduced**2) ** (1 / 3) / _RANGE_OF_FORCES
+            return (
+                f"Tabor parameter {mu:.2g} for a range of forces of 0.3 nm: this fit assumes adhesion at the edge only "
+                "(JKR), which is valid above 5, approximate from 0.1 to 5, and invalid below 0.1, where DMT is valid"
+            )
         case _:
             return ""
-    reduced = modulus / (1 - scene.layer.surface.poissons_ratio**2)
-    mu = (radius * work**2 / reduced**2) ** (1 / 3) / _RANGE_OF_FORCES
-    if work == 0.0:
-        return ""
-    meaning = (
-        "above 5, so that adhesion acts at the edge only, as this fit assumes (JKR)"
-        if mu > 5
-        else "below 0.1, where DMT is valid and this fit is not"
-        if mu < 0.1
-        else "between 0.1 and 5, where Maugis' model is valid and this fit is approximate"
-    )
-    return f"Tabor parameter {mu:.2g} for a range of forces of 0.3 nm: {meaning}"

@@ -234,7 +234,8 @@ def _polished(data: Data, family: Family, indentation: float, u: float) -> Fitte
     """Result of Levenberg and Marquardt over the indentation [m] and u, started from these values."""
     varies = bool(family.varied)
 
-    def at(x: FloatArray) -> Fitted:
+    def fitted_at(x: FloatArray) -> Fitted:
+        """Least squares of the linear parameters at x, indentation and u over their units where these are fitted."""
         point = indentation * float(x[0]) if data.has_free_point else indentation
         number = float(x[-1]) * family.unit if varies else u
         phi = family.shape(number)(data.depth - data.deepest + point)
@@ -242,9 +243,9 @@ def _polished(data: Data, family: Family, indentation: float, u: float) -> Fitte
         return Fitted(point, number, family, float(modulus), residual)
 
     def residual(x: FloatArray) -> FloatArray:
-        return at(x).residual
+        return fitted_at(x).residual
 
     x = np.array([1.0] * data.has_free_point + [u / family.unit] * varies)
     if x.size:
         x = leastsq(residual, x, xtol=1e-9, ftol=1e-12, maxfev=400, full_output=True)[0]
-    return at(x)
+    return fitted_at(x)

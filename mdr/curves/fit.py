@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Final, Literal
+from typing import Final, Literal, TypedDict, Unpack
 
 import numpy as np
 from numpy.polynomial.polynomial import polyfit
@@ -17,7 +17,7 @@ from numpy.polynomial.polynomial import polyfit
 from contact import Adhesion, ContactError, InvalidInput, NotConvergedError, Scene
 from contact.answer.small_strains import depth_note
 from contact.records.validation import FloatArray
-from mdr.curves.adhesion import fit_adhesive, hides_pull_off, points_beyond, tabor_sentence
+from mdr.curves.adhesion import DIP, fit_adhesive, pull_off_of, tabor_sentence
 from mdr.curves.contact_point import (
     FURTHEST,
     Data,
@@ -28,9 +28,9 @@ from mdr.curves.contact_point import (
     trial_indentations,
 )
 from mdr.curves.families import BACKGROUND, Family, changed, check_parameters, elastic_family, fixed_family
-from mdr.curves.force_curve import curve_to, longest_curve
+from mdr.curves.force_curve import longest_curve
 from mdr.curves.formulas import formulas_for
-from mdr.curves.result import CurveFit, FormulaFit, MapFit, derivatives, with_intervals
+from mdr.curves.result import CurveFit, FormulaFit, MapFit, with_intervals
 
 DEFAULT_PARAMETERS: Final = ("youngs_modulus", "contact_point", "baseline", "tilt")
 # Relative step of central differences, whose error is proportional to its square; a tenth of it amplifies rounding.
@@ -50,6 +50,21 @@ class Limit:
 
     kind: Literal["depth", "force", "fraction"]
     value: float
+
+
+class Options(TypedDict, total=False):
+    """Options of a fit.
+
+    Attributes:
+        parameters: "youngs_modulus", or of a stack "layer[0].youngs_modulus", "base.youngs_modulus"; and any of
+            "contact_point", "baseline", "tilt", and one of "thickness", "work_of_adhesion".
+        confidence: Confidence of the intervals.
+        limit: Points up to a depth, a force or a fraction of the largest force are fitted; by default all.
+    """
+
+    parameters: Sequence[str]
+    confidence: float
+    limit: Limit | None
 
 
 def fit_curve(
@@ -99,11 +114,9 @@ def fit_map(
     depth: Sequence[FloatArray] | FloatArray,
     force: Sequence[FloatArray] | FloatArray,
     *,
-    parameters: Sequence[str] = DEFAULT_PARAMETERS,
-    confidence: float = 0.95,
-    limit: Limit | None = None,
     positions: FloatArray | None = None,
     progress: Callable[[int, int], None] | None = None,
+    **options: Unpack[Options],
 ) -> MapFit:
     """Fit every curve of a map by itself, as `fit_curve` does.
 
@@ -111,36 +124,31 @@ def fit_map(
         scene: As for `fit_curve`.
         depth: Measured depths [m] of each curve, n arrays of any lengths, or one array if all curves share them.
         force: Measured forces [N], n arrays of the lengths of their depths.
-        parameters: As for `fit_curve`.
-        confidence: Confidence of the intervals.
-        limit: As for `fit_curve`.
         positions: Places x, y of the curves in the map [m], shape (n, 2).
         progress: Called with the number of fitted curves and the number of all curves.
+        options: Parameters, confidence and limit, as for `fit_curve`.
 
     Raises:
         InvalidInput: If depths and forces are no map, or no curve can be fitted with the scene and parameters.
     """
-    check_parameters(scene, parameters)
+    check_parameters(scene, options.get("parameters", DEFAULT_PARAMETERS))
     if not len(force) or np.ndim(force[0]) != 1:
         raise InvalidInput(f"force has the shape {np.shape(force)}: give one row per curve")
     depths = [np.asarray(depth)] * len(force) if np.ndim(depth[0]) == 0 else list(depth)
     if len(depths) != len(force):
         raise InvalidInput(f"a map of {len(depths)} depths and {len(force)} forces: give one depth for each force")
-    fits: list[CurveFit | ContactError] = []
-    for d, f in zip(depths, force, strict=True):
+    curves: list[CurveFit | None] = []
+    reasons = [""] * len(force)
+    for number, (d, f) in enumerate(zip(depths, force, strict=True)):
         try:
-            fits.append(
-                fit_curve(scene, d, f, parameters=parameters, confidence=confidence, limit=limit, formulas=False)
-            )
+            curves.append(fit_curve(scene, d, f, formulas=False, **options))
         except ContactError as error:
-            fits.append(error)
+            curves.append(None)
+            reasons[number] = str(error)
         if progress is not None:
-            progress(len(fits), len(force))
-    return MapFit(
-        curves=tuple(fit if isinstance(fit, CurveFit) else None for fit in fits),
-        reasons=tuple("" if isinstance(fit, CurveFit) else str(fit) for fit in fits),
-        positions=np.full((len(fits), 2), np.nan) if positions is None else positions,
-    )
+            progress(number + 1, len(force))
+    places = np.full((len(force), 2), np.nan) if positions is None else positions
+    return MapFit(curves=tuple(curves), reasons=tuple(reasons), positions=places)
 
 
 def _checked(
@@ -183,8 +191,12 @@ def _fit_elastic(scene: Scene, data: Data) -> Fitted:
                 "no contact point within half a travel before the first depth: the curve is almost straight; measure "
                 "a baseline before contact, or fit without tilt (--with contact_point)"
             )
-        if reach < first_reach:
-            curve_to(scene, 2 * reach)  # raises the error of an indenter that ends before this depth
+        # The reach is the first one up to rounding, a half of it, a quarter ..
+        if 1.5 * reach < first_reach:
+            raise InvalidInput(
+                f"indentation = {best.indentation:.4g} m: the scene can be solved up to {reach:.4g} m only; leave "
+                "deeper points out (--until), or give the scene a longer indenter"
+            )
         rough, reach = best.indentation, 2.0 ** math.ceil(math.log2(1.5 * best.indentation))
 
 
@@ -225,28 +237,36 @@ def _stated(scene: Scene, data: Data, fitted: Fitted, confidence: float) -> Curv
         )
     baseline, tilt = _background(data, fitted.modulus * family.shape(fitted.u)(shifted), shifted)
     depth, force = max(abs(float(shifted.max())), 1e-6 * float(np.ptp(shifted))), float(np.ptp(data.force))
-    x = np.array([fitted.modulus, fitted.u, point, baseline, tilt])
+    every = np.array([fitted.modulus, fitted.u, point, baseline, tilt])
     steps = _STEP * np.array([fitted.modulus, family.unit, depth, force, force / float(np.ptp(shifted))])
-    fields = {family.varied: 1, "contact_point": 2, "baseline": 3, "tilt": 4}
-    rows = [fields.get(name, 0) for name in names]
+    places = {family.varied: 1, "contact_point": 2, "baseline": 3, "tilt": 4}
+    rows = [places.get(name, 0) for name in names]
+
+    def whole(x: FloatArray) -> list[float]:
+        """E, u, contact point, baseline and tilt, of which x are fitted."""
+        numbers = every.copy()
+        numbers[rows] = x
+        return list(map(float, numbers))
 
     def model(x: FloatArray) -> FloatArray:
         """Force [N] at the measured depths, shape (n,)."""
-        modulus, u, contact_point, baseline, tilt = x.tolist()
+        modulus, u, contact_point, baseline, tilt = whole(x)
         d = data.depth - contact_point
         return np.asarray(modulus * family.shape(u)(d) + baseline + tilt * d)
 
-    def parameters(x: FloatArray) -> FloatArray:
-        """E, varied parameter, contact point, baseline and tilt in SI units from x, which has u instead, shape (5,)."""
-        return np.array([x[0], family.parameter(float(x[1]), float(x[0])), *x[2:]])
+    def parameters(x: FloatArray) -> dict[str, float]:
+        """Value of each fitted parameter in SI units."""
+        modulus, u, *line = whole(x)
+        numbers = [modulus, family.parameter(u, modulus), *line]
+        return {name: numbers[row] for name, row in zip(names, rows, strict=True)}
 
-    values = dict(zip(names, parameters(x)[rows].tolist(), strict=True))
-    warnings, notes = _words(scene, data, fitted, values)
+    warnings, notes = _words(scene, data, fitted, parameters(every[rows]))
     return with_intervals(
-        derivatives(model, x, steps, rows),
-        derivatives(parameters, x, steps, rows)[rows],
+        model,
+        parameters,
+        every[rows],
+        steps[rows],
         pressed,
-        values=values,
         confidence=confidence,
         # w = E u^2 is flat at u = 0.
         curvature=[fitted.modulus * (name == "work_of_adhesion") for name in names],
@@ -254,7 +274,6 @@ def _stated(scene: Scene, data: Data, fitted: Fitted, confidence: float) -> Curv
         scene=scene,
         depth=data.depth,
         force=data.force,
-        fitted=model(x),
         numerical_error=family.error(fitted.u, shifted),
         notes=notes,
     )
@@ -277,10 +296,10 @@ def _words(scene: Scene, data: Data, fitted: Fitted, values: dict[str, float]) -
     warnings = [warning] if (warning := depth_note(as_fitted, fitted.indentation)) else []
     if effect is None:
         return warnings, ()
-    beyond = points_beyond(data, fitted)
+    signal, beyond = pull_off_of(data, fitted)
     if beyond > 1:
         warnings.append(f"{beyond} points in contact are beyond the pull-off of the fit; see the residuals")
-    if "work_of_adhesion" in values and hides_pull_off(fitted):
+    if "work_of_adhesion" in values and signal < DIP:
         warnings.append(
             "the pull-off is hidden in the scatter: where contact ends is not seen, and the intervals of modulus "
             "and work of adhesion may be too narrow; average more curves, or fix the work of adhesion"

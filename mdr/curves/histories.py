@@ -48,8 +48,6 @@ _FALLS: Final = 0.05
 _LEAST: Final = 1e-9
 # Halvings of the search for t1. With 30 the rounding of t1 shows in derivatives.
 _HALVINGS: Final = 42
-# Largest number of evaluations of least squares. Twenty are usual; a curve that needs more has a flat minimum.
-_EVALUATIONS: Final = 80
 # Name of the fitted factor of a relaxation function of given shape.
 _SCALE: Final = "instantaneous_shear_modulus"
 # Relative step of derivatives by the parameters. A hundredth of it amplifies the rounding of t1.
@@ -153,57 +151,39 @@ class History:
     """Measured data and fitted parameters.
 
     Attributes:
-        scene: Scene with the relaxation function, from which parameters that are not fitted are taken.
-        curve: Elastic force curve of its layer.
+        curve: Elastic force curve of the layer.
         time: Instants [s], shape (n,).
         depth: Depths [m], shape (n,).
         force: Forces [N], shape (n,).
-        parameters: Moduli first, then relaxation times, contact point and baseline.
         response: Name of the fitted quantity.
+        parameters: Moduli first, then relaxation times, contact point and baseline.
+        shares: Derivatives of G_inf, G_j and the viscosity by the fitted moduli, shape (m + 2, p).
+        times: Relaxation times of the scene [s], shape (m,), where they are not fitted.
     """
 
-    scene: Scene
     curve: ForceCurve
     time: FloatArray
     depth: FloatArray
     force: FloatArray
-    parameters: tuple[Parameter, ...]
     response: Literal["force", "depth"]
-
-    @property
-    def given(self) -> Relaxation:
-        """Relaxation function of the scene."""
-        effect = self.scene.effect(Viscoelasticity)
-        assert effect is not None
-        return effect.relaxation
-
-    @property
-    def has_free_times(self) -> bool:
-        """Whether relaxation times are fitted."""
-        return any(parameter.scale is None for parameter in self.parameters)
+    parameters: tuple[Parameter, ...]
+    shares: FloatArray
+    times: FloatArray
 
     def values(self, x: FloatArray) -> dict[str, float]:
         """Value of each parameter in SI units, by name, from the variables x of least squares."""
         pairs = zip(self.parameters, x.tolist(), strict=True)
         return {p.name: math.exp(number) if p.scale is None else p.scale * number for p, number in pairs}
 
-    def solid(self, values: dict[str, float]) -> Relaxation:
-        """Relaxation function with these values of the fitted parameters, the others as in the scene."""
-        given, numbers = self.given, np.array(list(values.values()))
-        if _SCALE in values:
-            share = numbers[0] / given.instantaneous_modulus
-            return replace(given, long_term_modulus=share * given.long_term_modulus, moduli=share * given.moduli)
-        if given.viscosity > 0.0:
-            return replace(given, long_term_modulus=numbers[0], viscosity=numbers[1])
-        moduli, times = np.split(numbers[1 : 1 + 2 * given.moduli.size], [given.moduli.size])
-        return replace(
-            given, long_term_modulus=numbers[0], moduli=moduli, times=times if self.has_free_times else given.times
-        )
-
     def model(self, x: FloatArray) -> FloatArray:
         """Force [N] or depth [m] at the instants, shape (n,)."""
-        values = self.values(x)
-        solid, point, level = self.solid(values), values.get("contact_point", 0.0), values.get("baseline", 0.0)
+        values, kinds = self.values(x), self.parameters
+        long_term, *moduli, viscosity = self.shares @ list(values.values())[: self.shares.shape[1]]
+        times = np.array([values[kind.name] for kind in kinds if kind.scale is None] or self.times)
+        solid = Relaxation(
+            long_term_modulus=long_term, moduli=np.array(moduli), times=times, viscosity=float(viscosity)
+        )
+        point, level = values.get("contact_point", 0.0), values.get("baseline", 0.0)
         if self.response == "force":
             return force_of_depth(self.curve, solid, self.time, self.depth - point) + level
         return point + depth_of_force(self.curve, solid, self.time, self.force - level)
@@ -239,36 +219,34 @@ def fit_history(
     history = _history(scene, t, d, f, tuple(parameters))
     measured = f if history.response == "force" else d
     size = float(np.ptp(measured))
-    lower, upper = (np.array([getattr(number, end) for number in history.parameters]) for end in ("low", "high"))
+    bounds = tuple(np.array([getattr(number, end) for number in history.parameters]) for end in ("low", "high"))
 
     def misfit(x: FloatArray) -> FloatArray:
         return np.asarray((history.model(x) - measured) / size)
 
     ends = []
     for start in _starts(history):
-        first, step = np.clip(start, lower + 1e-9, upper - 1e-9), np.full(start.size, _STEP)
-        ends.append(
-            least_squares(misfit, first, bounds=(lower, upper), x_scale="jac", diff_step=step, max_nfev=_EVALUATIONS)
-        )
+        first = np.clip(start, bounds[0] + 1e-9, bounds[1] - 1e-9)
+        ends.append(least_squares(misfit, first, jac="3-point", bounds=(bounds[0], bounds[1]), x_scale="jac"))
         if ends[-1].success and correlation_factor(ends[-1].fun) == 1.0:
             break
     best = min(ends, key=lambda end: float(end.cost))
     if not best.success:
         raise NotConvergedError("the fit did not converge; fit fewer branches, or keep the times (--fit moduli)")
-    values = history.values(best.x)
-    indentation = d - values.get("contact_point", 0.0)
+    indentation = d - history.values(best.x).get("contact_point", 0.0)
     note = depth_note(scene, float(indentation.max()))
     return with_intervals(
-        np.asarray(best.jac) * size,
-        np.diag([number.scale or values[number.name] for number in history.parameters]),
+        history.model,
+        history.values,
+        best.x,
+        # Moduli may be small and stay positive; the other variables may be zero, and change by about one.
+        _STEP * np.where(bounds[0] == _LEAST, best.x, 1.0),
         indentation > 0.0,
-        values=values,
         confidence=confidence,
         warnings=[note] if note else [],
         scene=scene,
         depth=d,
         force=f,
-        fitted=history.model(best.x),
         numerical_error=history.curve.error,
         time=t,
         response=history.response,
@@ -308,26 +286,32 @@ def _history(scene: Scene, t: FloatArray, d: FloatArray, f: FloatArray, names: t
     reach = max(float(np.ptp(d)), float(d.max()))
     curve = longest_curve(scene, 2 * reach)
     modulus = float(np.ptp(f)) / (3 * float(curve.extended(reach)))
-    fitted = [*_of_solid(effect, names, modulus, t)]
+    fitted, shares = _of_solid(effect, names, modulus, t)
     fitted += [Parameter("contact_point", float(np.ptp(d)))] * ("contact_point" in names)
     fitted += [Parameter("baseline", float(np.ptp(f)))] * ("baseline" in names)
-    return History(scene, curve, t, d, f, tuple(fitted), "depth" if by_force else "force")
+    response: Literal["force", "depth"] = "depth" if by_force else "force"
+    return History(curve, t, d, f, response, tuple(fitted), shares, effect.relaxation.times)
 
 
-def _of_solid(effect: Viscoelasticity, names: Sequence[str], modulus: float, t: FloatArray) -> list[Parameter]:
-    """Fitted moduli and relaxation times of the effect, scaled by a modulus [Pa] and bounded by the instants t [s]."""
+def _of_solid(
+    effect: Viscoelasticity, names: Sequence[str], modulus: float, t: FloatArray
+) -> tuple[list[Parameter], FloatArray]:
+    """Fitted moduli and times, scaled by a modulus [Pa] and bounded by the instants t [s], and `History.shares`."""
+    given, span = effect.relaxation, float(np.ptp(t))
     if "scale" in names:
-        return [Parameter(_SCALE, modulus, _LEAST)]
-    span = float(np.ptp(t))
+        parts = np.array([given.long_term_modulus, *given.moduli, given.viscosity])
+        return [Parameter(_SCALE, modulus, _LEAST)], parts[:, None] / given.instantaneous_modulus
     if isinstance(effect, KelvinVoigt):
-        return [Parameter("shear_modulus", modulus, _LEAST), Parameter("viscosity", modulus * span, _LEAST)]
+        viscosity = Parameter("viscosity", modulus * span, _LEAST)
+        return [Parameter("shear_modulus", modulus, _LEAST), viscosity], np.eye(2)
     moduli, times = ["maxwell_shear_modulus"], ["relaxation_time"]
     if not isinstance(effect, StandardSolid):
-        numbers = range(effect.relaxation.moduli.size)
+        numbers = range(given.moduli.size)
         moduli, times = [f"shear_moduli[{j}]" for j in numbers], [f"relaxation_times[{j}]" for j in numbers]
     ends = math.log(0.1 * float(np.diff(t).min())), math.log(100 * span)
     fitted = [Parameter(name, modulus, _LEAST) for name in ("long_term_shear_modulus", *moduli)]
-    return fitted + [Parameter(name, None, *ends) for name in times if "times" in names]
+    shares = np.eye(given.moduli.size + 2, len(fitted))
+    return fitted + [Parameter(name, None, *ends) for name in times if "times" in names], shares
 
 
 def _check_course(prescribed: FloatArray, *, may_fall: bool) -> None:
@@ -345,28 +329,27 @@ def _check_course(prescribed: FloatArray, *, may_fall: bool) -> None:
 
 def _starts(history: History) -> list[FloatArray]:
     """First guesses of x: non-negative moduli by linear least squares, for the best trial times and contact points."""
-    names, given = [number.name for number in history.parameters], history.given
+    names, scales = zip(*((number.name, number.scale) for number in history.parameters), strict=True)
     turn = _turn(history.depth) + 1 if history.response == "force" else history.time.size
     time, depth, force = history.time[:turn], history.depth[:turn], history.force[:turn]
-    span, shares = float(np.ptp(time)), np.array([given.long_term_modulus, *given.moduli]) / given.instantaneous_modulus
+    span, has_free_times = float(np.ptp(time)), None in scales
     shortest = max(float(np.median(np.diff(time))), 1e-4 * span)
-    trial_times = [tuple(given.times.tolist())]
-    if history.has_free_times:
-        trial_times = list(combinations(np.geomspace(shortest, span, _TRIAL_TIMES).tolist(), given.times.size))
+    trial_times = [tuple(history.times.tolist())]
+    if has_free_times:
+        trial_times = list(combinations(np.geomspace(shortest, span, _TRIAL_TIMES).tolist(), history.times.size))
     points = depth.max() - float(np.ptp(depth)) * np.array(_TRIAL_POINTS) if "contact_point" in names else [0.0]
     starts: list[tuple[float, int, list[float]]] = []
     for point in points:
         phi = 3 * history.curve.extended(depth - point)
         levels = [np.ones_like(phi), -np.ones_like(phi)] if "baseline" in names else []
-        columns = {tau: convolved(time, phi, tau) for tau in {tau for times in trial_times for tau in times}}
+        relaxed = {tau: convolved(time, phi, tau) for tau in {tau for times in trial_times for tau in times}}
+        rate = np.gradient(phi, time)
         for times in trial_times:
-            parts = [phi, *(columns[tau] for tau in times)]
-            parts = [np.tensordot(shares, parts, 1)] if _SCALE in names else parts
-            sizes = np.array([float(np.abs(part).max()) or 1.0 for part in (*parts, *levels)])
-            factors, misfit = nnls(np.stack([*parts, *levels], axis=1) / sizes, force)
+            parts = history.shares.T @ [phi, *(relaxed[tau] for tau in times), rate]
+            columns = np.stack([*parts, *levels], axis=1)
+            sizes = np.abs(columns).max(axis=0, initial=1e-300)
+            factors, misfit = nnls(columns / sizes, force)
             moduli, level = np.split(factors / sizes, [len(parts)])
-            start = [*moduli, *[0.1 * moduli[0] * span] * (given.viscosity > 0 and _SCALE not in names)]
-            start += [*np.log(times).tolist()] * history.has_free_times + [point] * ("contact_point" in names)
+            start = [*moduli, *np.log(times if has_free_times else ()), *[point] * ("contact_point" in names)]
             starts.append((float(misfit), len(starts), [*start, *(level[:1] - level[1:])]))
-    scales = np.array([number.scale or 1.0 for number in history.parameters])
-    return [np.array(start) / scales for *_, start in sorted(starts)[:_STARTS]]
+    return [np.array(start) / [scale or 1.0 for scale in scales] for *_, start in sorted(starts)[:_STARTS]]

@@ -11,7 +11,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any, Final, Literal, TypeAlias
+from typing import Any, Final, Literal, TypeAlias, TypedDict, Unpack
 
 import numpy as np
 from scipy.signal import find_peaks
@@ -83,34 +83,48 @@ class Measured:
         return replace(self, depth=self.depth[rows], force=self.force[rows], time=time)
 
 
-def read_curve(
-    file: str | Path,
-    number: int = 0,
-    *,
-    units: str = "",
-    cantilever: Cantilever | None = None,
-    direction: Direction = "loading",
-) -> tuple[FloatArray, FloatArray]:
+class Source(TypedDict, total=False):
+    """Options of reading a file.
+
+    Attributes:
+        units: Units of the columns of a table, "nm,nN", where their heads have none.
+        cantilever: Spring constant and sensitivity for columns of height and deflection.
+        direction: The part of a curve with loading and withdrawal that is returned; "history" returns all of it.
+    """
+
+    units: str
+    cantilever: Cantilever
+    direction: Direction
+
+
+def read_curve(file: str | Path, number: int = 0, **source: Unpack[Source]) -> tuple[FloatArray, FloatArray]:
     """Depth [m] and force [N] of one curve, each of shape (n,); as `load_curves` reads it.
 
     Raises:
         InvalidInput: As `load_curves` does, and if there is no curve of that number.
     """
-    curves = load_curves(file, units=units, cantilever=cantilever, direction=direction)
+    curve = numbered(load_curves(file, **source), number, file)
+    return curve.depth, curve.force
+
+
+def numbered(curves: Sequence[Measured], number: int, file: str | Path) -> Measured:
+    """The curve of that number, counted from 0.
+
+    Raises:
+        InvalidInput: If the file has no such curve.
+    """
     if not 0 <= number < len(curves):
         raise InvalidInput(f"{file}: has no curve {number}; it has {len(curves)}, counted from 0")
-    return curves[number].depth, curves[number].force
+    return curves[number]
 
 
-def read_map(
-    file: str | Path, *, units: str = "", cantilever: Cantilever | None = None, direction: Direction = "loading"
-) -> list[Measured]:
+def read_map(file: str | Path, **source: Unpack[Source]) -> list[Measured]:
     """The curves of a map: as `load_curves` reads them, or each column after the first as forces of a curve.
 
     Raises:
         InvalidInput: As `load_curves` does, or if a table has a single column.
     """
-    return load_curves(file, units=units, cantilever=cantilever, direction=direction, is_map=True)
+    return load_curves(file, is_map=True, **source)
 
 
 def load_curves(
@@ -193,14 +207,12 @@ def _one_curve(table: Table, cantilever: Cantilever, direction: Direction, place
 
 def _columns_of(side: str, table: Table) -> tuple[Column, ...]:
     """Columns of one direction, the word for it removed from their heads; none if heads do not name both directions."""
-    if min(sum(bool(words.search(column.name)) for column in table.columns) for words in _SIDES.values()) < 2:
+    named = {word: [column for column in table.columns if _SIDES[word].search(column.name)] for word in _SIDES}
+    if min(map(len, named.values())) < 2:
         return ()
-    columns = []
-    for column in table.columns:
-        if _SIDES[side].search(column.name):
-            name, unit = name_and_unit(_SIDES[side].sub("", column.name).strip(" _-"))
-            columns.append(replace(column, name=name, unit=column.unit or unit))
-    return tuple(columns)
+    heads = [name_and_unit(_SIDES[side].sub("", column.name).strip(" _-")) for column in named[side]]
+    pairs = zip(named[side], heads, strict=True)
+    return tuple(replace(column, name=name, unit=column.unit or unit) for column, (name, unit) in pairs)
 
 
 def _converted(table: Table, cantilever: Cantilever, file: str) -> tuple[FloatArray, FloatArray, list[str]]:
@@ -219,37 +231,36 @@ def _converted(table: Table, cantilever: Cantilever, file: str) -> tuple[FloatAr
         raise InvalidInput(
             f"{file}: needs a column of depth or height and one of force or deflection; rename the heads ({heads})"
         )
-    forces = _si(signal, "N", file) if force else _force_of_deflection(signal, cantilever, file)
-    notes = [] if force else ["force and depth from the deflection, by the spring constant"]
+    is_height, stiffness, notes = place is height and not depth, cantilever.spring_constant, []
+    if (is_height or not force) and not stiffness:
+        name, meaning = (signal.name, "a deflection") if not force else (place.name, "a height, with the bending")
+        raise InvalidInput(
+            f'{file}: {name} is {meaning} of the cantilever; give its spring constant (--spring-constant "0.05 N/m"), '
+            "or columns of depth and force"
+        )
+    if force:
+        forces = _si(force, "N", file)
+    else:
+        forces = (stiffness or 0.0) * _deflection(signal, cantilever, file)
+        notes.append("force and depth from the deflection, by the spring constant")
     depths = _si(place, "m", file)
     high = forces >= forces.min() + 0.7 * np.ptp(forces)
     if np.mean(depths[high]) < 0.5 * (depths.min() + depths.max()):
         notes.append(f"{place.name or 'the first column'} falls into the contact: its sign is changed")
         depths = -depths
-    if place is not height or depth:
-        return depths, forces, notes
-    if not cantilever.spring_constant:
-        raise InvalidInput(
-            f"{file}: {place.name} is a height, which holds the bending of the cantilever; give its spring "
-            'constant (--spring-constant "0.05 N/m"), or a column of depth'
-        )
-    return (
-        depths - forces / cantilever.spring_constant,
-        forces,
-        [*notes, "depth = height less bending of the cantilever"],
-    )
+    if is_height and stiffness:
+        notes.append("depth = height less bending of the cantilever")
+        depths = depths - forces / stiffness
+    return depths, forces, notes
 
 
-def _force_of_deflection(signal: Column, cantilever: Cantilever, file: str) -> FloatArray:
-    """Force [N] from a column of deflection in metres or volts."""
-    if cantilever.spring_constant is None:
-        raise InvalidInput(f'{file}: {signal.name} is a deflection; give --spring-constant "0.05 N/m"')
+def _deflection(signal: Column, cantilever: Cantilever, file: str) -> FloatArray:
+    """Deflection [m] from a column in metres or volts."""
     if not signal.unit.endswith("V"):
-        return cantilever.spring_constant * _si(signal, "m", file)
+        return _si(signal, "m", file)
     if cantilever.sensitivity is None:
         raise InvalidInput(f'{file}: {signal.name} is in {signal.unit}; give --sensitivity "50 nm/V"')
-    volts = signal.values * {"": 1.0, "m": 1e-3, "u": 1e-6, "k": 1e3}[signal.unit[:-1]]
-    return cantilever.spring_constant * volts * cantilever.sensitivity
+    return cantilever.sensitivity * {"": 1.0, "m": 1e-3, "u": 1e-6, "k": 1e3}[signal.unit[:-1]] * signal.values
 
 
 def _named(columns: Sequence[Column], kind: str) -> Column | None:

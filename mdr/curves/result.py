@@ -179,20 +179,13 @@ class MapFit:
         return np.stack([low, self.of(lambda fit: fit.interval(fit.modulus_name)[1])])
 
 
-def derivatives(
-    function: Callable[[FloatArray], FloatArray], x: FloatArray, steps: FloatArray, rows: Sequence[int]
-) -> FloatArray:
-    """Central differences of a function of shape (n,) by its arguments x[rows], shape (n, p)."""
-    shifts = zip(np.diag(steps)[rows], 2 * steps[rows], strict=True)
-    return np.stack([(function(x + shift) - function(x - shift)) / width for shift, width in shifts], axis=1)
-
-
 def with_intervals(
-    jacobian: FloatArray,
-    changes: FloatArray,
+    model: Callable[[FloatArray], FloatArray],
+    parameters: Callable[[FloatArray], Mapping[str, float]],
+    x: FloatArray,
+    steps: FloatArray,
     pressed: BoolArray,
     *,
-    values: Mapping[str, float],
     confidence: float,
     curvature: Sequence[float] | float = 0.0,
     warnings: Sequence[str] = (),
@@ -201,19 +194,25 @@ def with_intervals(
     """The fit with covariance, intervals and band, widened where residuals are correlated or larger in contact.
 
     Args:
-        jacobian: Derivatives of the fitted curve by the variables of least squares, shape (n, p).
-        changes: Derivatives of the parameters by the variables of least squares, shape (p, p).
+        model: Returns the fitted curve at variables x, shape (n,).
+        parameters: Returns the value of each parameter at variables x.
+        x: Variables at the minimum of the squares, shape (p,).
+        steps: Steps of central differences by x, shape (p,).
         pressed: Which points are in contact, shape (n,).
-        values: Value of each parameter.
         confidence: Confidence of the intervals.
         curvature: Half the second derivative of each parameter by its variable, where the first one may vanish.
         warnings: Warnings on the fit.
         fields: Further fields of `CurveFit`.
     """
+    values, fitted = parameters(x), model(x)
+    shifted = [(x + shift, x - shift, 2 * step) for shift, step in zip(np.diag(steps), steps, strict=True)]
+    jacobian = np.stack([(model(up) - model(down)) / width for up, down, width in shifted], axis=1)
+    each = [(parameters(up), parameters(down), width) for up, down, width in shifted]
+    changes = np.array([[(up[name] - down[name]) / width for up, down, width in each] for name in values])
     depth, measured = fields["depth"], fields[fields.get("response", "force")]
     order = np.arange(depth.size) if "time" in fields else np.argsort(depth, kind="stable")
-    residual = (measured - fields["fitted"])[order]
-    freedom = max(residual.size - jacobian.shape[1], 1)
+    residual = (measured - fitted)[order]
+    freedom = max(residual.size - x.size, 1)
     variance = float(residual @ residual) / freedom
     wider, lines = _widening(residual, pressed[order], variance)
     inverse = _inverse(jacobian)
@@ -225,6 +224,7 @@ def with_intervals(
     is_noisy = math.sqrt(variance) > _ROUNDING * float(np.ptp(measured))
     return CurveFit(
         values=values,
+        fitted=fitted,
         standard_error=dict(zip(values, errors.tolist(), strict=True)),
         covariance=covariance,
         quantile=quantile,

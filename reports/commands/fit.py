@@ -14,7 +14,7 @@ from contact.records.units import read_quantity
 from contact.scene.effects import Viscoelasticity
 from mdr.curves import Limit, fit_curve, fit_history, fit_map
 from mdr.curves.fit import DEFAULT_PARAMETERS
-from mdr.curves.reading import Cantilever, Direction, Measured, load_curves, read_map
+from mdr.curves.reading import Cantilever, Direction, Measured, load_curves, numbered
 from reports.files import PICTURES, check_outputs, csv_writer, picture_writers, write_outputs
 from reports.fit_tables import fit_csv, fit_table, formula_table, map_csv, map_facts, shares_table
 from reports.terminal import console, progress_bar, show_facts, show_table
@@ -55,9 +55,7 @@ def fit_file(
     if number is None:
         _fit_map(scene, curves, outputs, limit=read_limit(until), **options)
         return
-    if not 0 <= number < len(curves):
-        raise InvalidInput(f"{file}: has no curve {number}; it has {len(curves)}, counted from 0")
-    curve, shares = curves[number], []
+    curve, shares = numbered(curves, number, file), []
     with progress_bar("fitting"):
         if _relaxes(scene):
             result = fit_history(scene, curve.time, curve.depth, curve.force, **options)
@@ -124,9 +122,8 @@ def read_curves(
     stiffness = read_quantity(spring_constant, "N/m", "--spring-constant") if spring_constant else None
     factor = read_quantity(sensitivity.partition("/")[0], "m", "--sensitivity") if sensitivity else None
     direction: Direction = "loading" if scene.effect(Adhesion) is None else "withdrawal"
-    read = read_map if is_map else load_curves
     direction = "history" if _relaxes(scene) else direction
-    return read(file, units=units, cantilever=Cantilever(stiffness, factor), direction=direction)
+    return load_curves(file, units=units, cantilever=Cantilever(stiffness, factor), direction=direction, is_map=is_map)
 
 
 def _relaxes(scene: Scene) -> bool:

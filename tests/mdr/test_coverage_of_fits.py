@@ -29,7 +29,7 @@ from contact import (
     TruncatedParaboloid,
 )
 from mdr.curves import CurveFit, fit_curve, fit_history
-from mdr.curves.adhesion import table_of
+from mdr.curves.adhesion import branch_of, table_of
 from mdr.curves.force_curve import curve_to, longest_curve
 from mdr.curves.histories import force_of_depth
 
@@ -179,7 +179,7 @@ def withdrawal(draw: Draw) -> Curve:
     depth = np.linspace(-(3 + 30 * draw.random()) * length, deepest, int(draw.choice([200, 600])))[::-1]
     reach = min(2.0 ** np.ceil(np.log2(4 * deepest + 20 * length)), 6e-6)
     table = table_of(longest_curve(scene, reach).scene)
-    force = modulus * np.interp(depth, *table.branch(np.sqrt(work / modulus)), left=0.0)
+    force = modulus * np.interp(depth, *branch_of(table, np.sqrt(work / modulus)), left=0.0)
     depth, force = recorded(draw, depth, force, 10 ** draw.uniform(-3, -1.7))
     guess = scene.replace(effects=(Adhesion(work_of_adhesion=work * 10 ** draw.uniform(-0.5, 0.5)),))
     return Curve(

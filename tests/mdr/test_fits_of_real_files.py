@@ -21,7 +21,7 @@ from contact import (
 )
 from mdr import Mdr
 from mdr.curves import ForceCurve, Limit, fit_curve, fit_map
-from mdr.curves.adhesion import table_of
+from mdr.curves.adhesion import branch_of, table_of
 from mdr.curves.force_curve import curve_to
 from mdr.curves.reading import Cantilever, load_curves, read_map
 from reports.command_line import run
@@ -60,6 +60,13 @@ def test_a_sphere_is_pressed_by_its_depth_and_not_by_the_travel():
     depth = np.linspace(-20e-6, 0.44e-6, 1500)
     force = with_noise(ForceCurve(scene.replace(loading=IndentationDepths([1e-6])))(depth, 5e3))
     assert fit_curve(scene, depth, force).youngs_modulus == pytest.approx(5e3, rel=0.03, abs=0.0)
+
+
+def test_a_curve_that_is_deeper_than_the_indenter_is_refused_with_both_depths():
+    scene = HALF_SPACE.replace(indenter=Sphere(radius=5e-6))
+    depth = np.linspace(0, 1e-4, 100)
+    with pytest.raises(InvalidInput, match=r"indentation = 0\.0001 m: the scene can be solved up to .* m only"):
+        fit_curve(scene, depth, hertz(depth), parameters=("youngs_modulus",))
 
 
 def film(modulus, base=1e9):
@@ -197,7 +204,7 @@ def test_adhesion_is_found_from_any_guess_or_refused(work, modulus, deepest):
     )
     depth = np.linspace(-3 * (work**2 * 5e-6 / modulus**2) ** (1 / 3) - 1e-7, deepest, 200)
     table = table_of(curve_to(true, 6 * max(deepest, np.ptp(depth))).scene)
-    force = modulus * np.interp(depth, *table.branch(np.sqrt(work / modulus)), left=0.0)
+    force = modulus * np.interp(depth, *branch_of(table, np.sqrt(work / modulus)), left=0.0)
     guess = true.replace(layer=layer.replace(youngs_modulus=1e3), effects=(Adhesion(work_of_adhesion=3 * work),))
     names = ("youngs_modulus", "contact_point", "baseline", "work_of_adhesion")
     try:

@@ -103,6 +103,28 @@ def test_a_normalised_table_is_kept_and_its_scale_fitted(relaxed):
     assert found.values["instantaneous_shear_modulus"] == pytest.approx(3e3, rel=1e-4, abs=0.0)
 
 
+def test_the_scale_of_a_solid_with_a_dashpot_scales_the_dashpot_too():
+    loading = ForceHistory(time=TIME[:HOLD], force=FORCE)
+    depth = Mdr(accuracy=1e-5).solve(scene(VOIGT, loading)).indentation_depth
+    doubled = KelvinVoigt(shear_modulus=2 * VOIGT.shear_modulus, viscosity=2 * VOIGT.viscosity)
+    guess = scene(VOIGT, loading).replace(layer=LAYER.replace(youngs_modulus=18e3), effects=(doubled,))
+    found = fit_history(guess, TIME[:HOLD], depth, FORCE, parameters=("scale", "contact_point"))
+    assert found.values["instantaneous_shear_modulus"] == pytest.approx(3e3, rel=1e-3, abs=0.0)
+
+
+def test_the_interval_of_a_relaxation_time_does_not_depend_on_the_unit_of_time():
+    """The logarithm of a relaxation time of one unit vanishes; intervals of times and moduli are compared."""
+    ratios = []
+    for unit in (1.0, 3.0):
+        solid = StandardSolid(long_term_shear_modulus=1e3, maxwell_shear_modulus=2e3, viscosity=2e3 * unit)
+        loading = ForceHistory(time=unit * TIME[:HOLD], force=FORCE)
+        depth = Mdr(accuracy=1e-5).solve(scene(solid, loading)).indentation_depth
+        found = fit_history(scene(solid, loading), unit * TIME[:HOLD], depth, FORCE, parameters=("moduli", "times"))
+        errors = found.standard_error
+        ratios.append(errors["relaxation_time"] / unit / errors["maxwell_shear_modulus"])
+    assert ratios[0] == pytest.approx(ratios[1], rel=1e-2, abs=0.0)
+
+
 SCENE_FILE = """layer = {thickness = "10 um", youngs_modulus = "9 kPa", poissons_ratio = 0.5}
 indenter = {kind = "paraboloid", radius_of_curvature = "5 um"}
 loading = {kind = "depth_history", time = ["0 s", "1 s"], depth = ["0 nm", "100 nm"]}
