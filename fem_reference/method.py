@@ -38,7 +38,6 @@ from contact.answer.method import not_round
 from contact.answer.no_contact import without_contact
 from contact.answer.one_thread import one_thread
 from contact.answer.small_strains import within_small_strains
-from fem_reference.adhesion import adhesive_equilibria, detachment_path
 from fem_reference.equilibria import (
     FemEquilibrium,
     contact_path,
@@ -48,8 +47,6 @@ from fem_reference.equilibria import (
     searched_radius,
 )
 from fem_reference.fields import FemFields
-from fem_reference.friction.answers import AdheredFemFields, rubbed_history, rubbed_path, with_shear_error
-from fem_reference.histories import history, impact
 from fem_reference.materials import contact_modulus
 from fem_reference.prescribed_contact import solve_contact
 from fem_reference.settings import Discretisation
@@ -147,13 +144,22 @@ class Fem(Discretisation):
         return with_accuracy_note(answer, self.accuracy, self.pressure_accuracy)
 
     def _attempt(self, scene: Scene, log: StageLog) -> Callable[[Discretisation], Answer]:
-        """Function that solves the scene with given settings, and with coarser ones for its errors."""
+        """Function that solves the scene with given settings, and with coarser ones for its errors.
+
+        Modules of effects are imported for their scenes only.
+        """
         written, in_time = asdict(self), isinstance(scene.loading, MOTIONS)
         if scene.effect(Friction) is not None and not isinstance(scene.indenter, FlatPunch):
+            from fem_reference.friction.answers import rubbed_history, rubbed_path  # noqa: PLC0415
+
             return partial(rubbed_history if in_time else rubbed_path, scene, written=written, log=log)
         if in_time:
+            from fem_reference.histories import history, impact  # noqa: PLC0415
+
             return partial(impact if isinstance(scene.loading, Impact) else history, scene, written=written, log=log)
         if isinstance(scene.loading, Detachment):
+            from fem_reference.adhesion import detachment_path  # noqa: PLC0415
+
             return partial(detachment_path, scene, written, log)
         return partial(self._at_rest, scene, cache(partial(searched_radius, scene, log)), log)
 
@@ -163,8 +169,12 @@ class Fem(Discretisation):
         """Path of equilibria at prescribed radii, depths or forces; ``search`` is `searched_radius`, cached."""
         modulus, sticks = contact_modulus(scene.layer), scene.effect(Friction) is not None
         coarser, states = (self._states(scene, each, search, log) for each in (settings.coarser(), settings))
-        on_top = (AdheredFemFields if sticks else FemFields)(states, modulus, coarser)
-        if not sticks:
+        on_top = FemFields(states, modulus, coarser)
+        if sticks:
+            from fem_reference.friction.answers import AdheredFemFields, with_shear_error  # noqa: PLC0415
+
+            on_top = AdheredFemFields(states, modulus, coarser)
+        else:
             refuse_other_contacts(scene, states, coarser)
         path, companion = (contact_path(scene, each, on_top, asdict(self), log) for each in (states, coarser))
         answer = path_with_errors(path, companion, states, coarser)
@@ -179,6 +189,8 @@ class Fem(Discretisation):
         if sticks:
             return flat_punch_equilibria(scene, solve)
         if scene.effects:
+            from fem_reference.adhesion import adhesive_equilibria  # noqa: PLC0415
+
             return adhesive_equilibria(scene, solve, settings, log)
         return elastic_equilibria(scene, solve, settings.coarsening, search)
 

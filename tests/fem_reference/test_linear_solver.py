@@ -128,7 +128,7 @@ def test_a_mesh_that_does_not_fit_is_refused_in_words(monkeypatch, name, value):
 
 def test_no_memory_error_leaves_the_method(monkeypatch):
     """Assembling a mesh that is too fine takes memory before it is factorised."""
-    monkeypatch.setattr(Fem, "_solve", out_of_memory)
+    monkeypatch.setattr(Fem, "_attempt", lambda *_: out_of_memory)
     scene = Scene(
         layer=Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.3),
         indenter=FlatPunch(radius=1.0),

@@ -8,6 +8,7 @@ from cases.case import Case
 from cases.claims import Agree
 from cases.declare.registry import load_cases
 from cases.foreign import against, beside, with_registered
+from cases.run.runner import plan
 from cases.runs import RUN, read_run
 from contact import InvalidInput
 from reports.command_line import run
@@ -74,7 +75,7 @@ def test_a_comparison_has_every_scene_that_the_case_compares_whatever_the_suite(
     (found,) = against([case], ["mine"], ["fem"])
     assert isinstance(found, Case)
     assert {scene.name for scene in found.scenes} == compared
-    places = [(task.scene, task.use.label, task.variant) for task in found.tasks()]
+    places = [(task.scene, task.use.label, task.variant) for task in plan([found])]
     assert len(places) == len(set(places)) or any("refined" in variant for *_, variant in places)
     assert {method for _, method, _ in places} == {"mine", "fem"}
 
