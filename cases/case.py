@@ -190,7 +190,7 @@ class Case:
         return Task(case=self.name, scene=scene.name, use=use, problem=scene.scene, sampling=scene.sampling)
 
     def tasks(self) -> Iterator[Task]:
-        """Yield every scene by every method, then the tasks of each claim and study; several claims may need the same."""
+        """Yield every scene by every method, then the tasks of each claim; several claims may need the same task."""
         for scene in self.scenes:
             yield from (self.task(scene, use) for use in self.methods_of(scene))
         for claim in self.claims:
