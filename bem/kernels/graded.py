@@ -27,6 +27,7 @@ from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.integrate import solve_ivp
 
 from bem.kernels.stack import Material, Transfer, half_space
 from bem.numerics import WAVES, Octaves, barycentric
@@ -255,8 +256,6 @@ def _integrated(rate: _Rate, start: NDArray[Any], begin: FloatArray, end: FloatA
     Raises:
         NotConvergedError: If the tolerance is not met.
     """
-    # The import is slow, and only graded layers need it.
-    from scipy.integrate import solve_ivp  # noqa: PLC0415
 
     def slope(share: float, y: NDArray[Any]) -> NDArray[Any]:
         z = begin + (end - begin) * share

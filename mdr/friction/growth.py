@@ -189,6 +189,7 @@ class Growth:
         slopes = chebyshev.chebder(columns) * 2 / end
 
         def density(t: FloatArray, rest: FloatArray) -> tuple[ComplexArray, ComplexArray]:
+            """Phi and (1 - t^2) Phi' at t in [0, 1)."""
             y = 2 * t * size / end - 1
             g, change = (chebyshev.chebval(y, coefficients, tensor=False) for coefficients in (columns, slopes))
             rho = np.exp(1j * eps * np.log((1 + t) / rest)) / np.sqrt(self.punches.largest.kap)

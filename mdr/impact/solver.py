@@ -67,6 +67,7 @@ def impact_groups(
         kinds[blow.power, blow.rates.size].append(blow.number)
 
     def solve(chunk: list[int]) -> FloatArray:
+        """The five outcomes in SI units and their relative errors of the impacts of these numbers, shape (10, n)."""
         members = [blows[i] for i in chunk]
         answers = solved(members, _checked(accuracy))
         values = np.stack(
