@@ -7,8 +7,10 @@ import pytest
 from cases.declare.methods import build
 from contact import (
     Adhesion,
+    Cone,
     ContactRadii,
     Detachment,
+    FlatPunch,
     IndentationDepths,
     Layer,
     NormalForces,
@@ -16,6 +18,7 @@ from contact import (
     Scene,
     TruncatedCone,
 )
+from fem_reference import Fem
 from mdr import Mdr
 
 QUANTITIES = ("contact_radius", "indentation_depth", "normal_force", "contact_stiffness")
@@ -82,3 +85,25 @@ def test_a_detachment_at_a_rim_states_what_it_errs():
     for quantity in ("pull_off_depth", "pull_off_force"):
         true = abs(getattr(coarse, quantity) / getattr(fine, quantity) - 1)
         assert true <= coarse.error_estimate[quantity][0] + fine.error_estimate[quantity][0], quantity
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("method", "poissons_ratio", "indenter", "stiffness"),
+    [
+        # Peeling of an incompressible layer is stable from a/h = 0.4619 on. At 0.462 it ends next to the edge.
+        (Fem(order=3, edge_cell=1e-5), 0.5, FlatPunch(radius=0.462), None),
+        (Fem(order=4, growth=0.8), 0.45, Cone(slope=0.1), 0.0161),
+    ],
+)
+def test_a_pull_off_inside_a_branch_states_the_error_of_its_radius(method, poissons_ratio, indenter, stiffness):
+    """The branch is flat there: two meshes agree in the radius by accident while both differ from the true one."""
+    scene = Scene(
+        layer=Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=poissons_ratio, support="bonded"),
+        indenter=indenter,
+        loading=Detachment(machine_stiffness=stiffness),
+        effects=(Adhesion(work_of_adhesion=1e-4),),
+    )
+    fem, mdr = method.solve(scene), Mdr().solve(scene)
+    apart = abs(fem.pull_off_contact_radius - mdr.pull_off_contact_radius)
+    assert apart <= fem.uncertainty("pull_off_contact_radius")
