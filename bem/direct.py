@@ -87,7 +87,8 @@ class Kernel:
         if self.is_graded:
             first = min(getattr(layer, "breakpoints", ()), default=inf) / self.thickness
             self.width *= min(1.0, _LONGEST * first)
-            self.reach *= min(max(_GRADED, _BREAK / first), _MOST)
+            # Narrower panels than usual resolve shorter waves too.
+            self.reach *= min(max(_GRADED, _BREAK / first), _MOST) * max(1.0, Sizes().width / sizes.width)
             y = self.decay / np.hypot(self.reach, self.decay) * np.sin(pi / 2 * np.linspace(0.04, 1.0, 3 * sizes.terms))
             values = self.one_minus_chi(self.decay * np.sqrt(1 / y**2 - 1))
             self.d = np.linalg.lstsq(y[:, None] ** np.arange(sizes.terms), values / y, rcond=None)[0]

@@ -153,14 +153,16 @@ class Radius:
     """
 
     def __init__(self, kernel: ContactKernel, a: float, sizes: Sizes = USUAL, octave: int | None = None) -> None:
-        self.kernel, self.a, self.sizes = kernel, a, sizes
+        # The tail of graded layers is an asymptotic series, so finer sizes begin it at twice the wave number.
+        more = max(1.0, 1 + sizes.extra / 6) if kernel.tail else 1.0
+        self.kernel, self.a, self.sizes = kernel, a, sizes._replace(reach=more * sizes.reach)
         octave = max(int(np.ceil(np.log2(max(a, 1e-3)))), -3) if octave is None else octave
         self.count = sizes.polynomials(octave, is_graded=bool(kernel.tail))
         self.degree = np.sqrt(4 * np.arange(self.count) + 1)  # b_n(1)
         least = 5 * self.count + _TURNING if self.is_rooted else 0.0
-        self._waves = _Waves(self._lowest(octave), max(sizes.reach * 2.0**octave, least), self.count, sizes.nodes)
+        self._waves = _Waves(self._lowest(octave), max(self.sizes.reach * 2.0**octave, least), self.count, sizes.nodes)
         kappa, w, table = _transforms(self._waves)
-        use = slice(0, None if kernel.tail else int(np.searchsorted(kappa, sizes.reach * a)) + sizes.nodes)
+        use = slice(0, None if kernel.tail else int(np.searchsorted(kappa, self.sizes.reach * a)) + sizes.nodes)
         self._table, rest = table[:, use], kernel.one_minus_chi(kappa[use] / a)
         self.largest_chi = max(1.0, 1 - float(rest.min()))
         self._weight = 2 / np.pi * w[use] * rest

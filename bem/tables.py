@@ -8,7 +8,7 @@ phi_1 of the punch follows:
     2 k_bar q = sum_n c_n P_2n(u)/P_2n(0),    phi_1(t) = sum_n c_n P_2n(t/a),    int_0^1 phi_1 d(t/a) = c_0 = k_bar.
 
 At its edge phi_1 = y_1 = sqrt(k_bar + d k_bar/d ln a), Eq. (6). Errors are estimated from a second table with half as
-many cells, ratios and radii (`FlatPunchTable.coarser`).
+many cells and radii and two thirds of the ratios (`FlatPunchTable.coarser`).
 """
 
 from __future__ import annotations
@@ -125,7 +125,8 @@ class FlatPunchTable:
     def _spline(self) -> BSpline:
         """Spline over ln(a/h) of ln k_bar and c_n/(2 k_bar), n > 0, whose coefficients c_n are fitted to q(rho)."""
         u = np.sqrt(1.0 - self.radii**2)
-        rows = even_legendre(u, min(LARGEST_DEGREE, self.radii.size // 2) + 1)
+        largest = LARGEST_DEGREE if self.coarser else 3 * LARGEST_DEGREE // 4  # of which thin layers need all
+        rows = even_legendre(u, min(largest, self.radii.size // 2) + 1)
         n = np.arange(1, rows.shape[1])
         at_zero = np.cumprod(-(2 * n - 1) / (2 * n))  # P_2n(0)
         fitted = np.linalg.lstsq(rows[:, 1:], (self.pressure * u - 0.5).T, rcond=None)[0].T * at_zero
@@ -237,7 +238,8 @@ class FftTable(Record):
 def _table(settings: FftTable, layer: Layer, rung: float) -> FlatPunchTable:
     """The table up to the ratio `rung`, with its coarser table, cached."""
     cells, count, radii = settings.cells, settings.ratios, settings.radii
-    coarser = _made(layer, rung, cells // 2, (count + 1) // 2, radii // 2)
+    # Errors fall with the sixth power of the ratios: half of them state sixty times too much.
+    coarser = _made(layer, rung, cells // 2, 2 * count // 3, radii // 2)
     return replace(_made(layer, rung, cells, count, radii), coarser=coarser)
 
 

@@ -102,6 +102,19 @@ def test_kinks_and_bends_on_a_uniform_table_are_those_of_one_layer(indenter):
     np.testing.assert_allclose(other.pressure(inside, 0), one.pressure(inside, 0), rtol=1e-7)
 
 
+def test_steep_layers_state_the_waves_that_are_left_out():
+    """More nodes change answers by less than is stated, and both methods then agree to 1e-10."""
+    loading, finest = ContactRadii([0.06]), []
+    for method in (Mdr(), IntegralEquationMethod()):
+        scene = Scene(layer=LAYERS["power law"], indenter=CONTACTS["small flat end"][0], loading=loading)
+        usual, finer = method.solve(scene), method.refined().solve(scene)
+        for quantity in ("indentation_depth", "contact_stiffness"):
+            change = np.abs(getattr(usual, quantity) / getattr(finer, quantity) - 1)
+            assert np.all((change > 0) & (change <= usual.error_estimate[quantity])), quantity
+        finest.append(finer.indentation_depth)
+    np.testing.assert_allclose(*finest, rtol=1e-10)
+
+
 def test_wide_contacts_are_refused_with_the_limit():
     with pytest.raises(UnsupportedSceneError, match=r"a/h = 20: .* ratios up to 16"):
         solved(EXPONENTIAL, PARABOLOID, ContactRadii([20.0]))
