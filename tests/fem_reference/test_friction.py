@@ -56,12 +56,13 @@ def agree(path, exact):
         (0.0, "bonded", 1.0, PARABOLOID),
         pytest.param(0.3, "unbonded", 0.3, Sphere(radius=20.0), marks=pytest.mark.slow),
         pytest.param(0.5, "bonded", 2.0, PARABOLOID, marks=pytest.mark.slow),
-        pytest.param(0.5, "unbonded", 5.0, PARABOLOID, marks=pytest.mark.slow),
+        pytest.param(0.5, "unbonded", 5.0, Paraboloid(radius_of_curvature=100.0), marks=pytest.mark.slow),
     ],
 )
 def test_full_stick_is_that_of_mdr(nu, support, radius, indenter):
     scene = rubbed(math.inf, layer(nu, support), ContactRadii([radius]), indenter)
-    path, exact = COARSE.solve(scene), Mdr().solve(scene)
+    # On a contact five times as wide as the layer is thick coarse cells err, and say so, by more than 1e-4.
+    path, exact = (Fem() if radius == 5.0 else COARSE).solve(scene), Mdr().solve(scene)
     assert isinstance(path, FrictionPath)
     agree(path, exact)
     assert path.normal_force == pytest.approx(exact.normal_force, rel=1e-4, abs=0.0)
